@@ -1,0 +1,47 @@
+# Everything runs in .venv, which the first target that needs it makes.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: venv demo test test-browser lint check-reference bench paper clean
+
+venv: .venv/.ready
+
+.venv/.ready: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	touch $@
+
+demo: venv
+	$(BIN)/glyphspline demo --out outputs/demo
+
+lint: venv
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+test: lint
+	$(BIN)/python -m pytest
+
+# The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look).
+paper: venv
+	$(BIN)/python -m scripts.paper
+
+# Every polygon of the full comparison, some minutes; the tests take a tenth.
+check-reference: venv
+	$(BIN)/python scripts/check_reference.py
+
+bench: venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	$(BIN)/python -m scripts.benchmark
+
+# Playwright drives Debian's Chromium; nothing else is downloaded.
+test-browser: venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[browser]'
+	@command -v chromium >/dev/null || { test "$$(id -u)" = 0 && apt-get update -q && apt-get install -qy chromium; } \
+		|| { echo "make test-browser needs Debian's chromium: apt-get install chromium (as root)" >&2; exit 1; }
+	$(BIN)/python -m pytest tests/browser
+
+# Also the cache of compiled code, which does not notice edits in functions that are called from another file.
+clean:
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis *.egg-info build outputs/demo
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,84 @@
+"""Font glyph outlines as closed C2 B-splines, by the geometric interpolation of Xiong, Li and Mao (2012)."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from . import display
+from .bspline import Spline
+from .convert import convert
+from .display import plot
+from .errors import FontError, GlyphsplineError, PolygonError
+from .glyph import ContourResult, GlyphResult, Measures, Options
+from .interpolation import Interpolation, interpolate, interpolate_many, interpolate_vertex
+from .outline import Contour, FontMetrics, Outline
+from .sampling import sample
+from .version import __version__
+
+display.install()
+
+if TYPE_CHECKING:
+    from .readers import Font as Font
+    from .readers import open_font as open_font
+    from .readers import open_source as open_source
+    from .writers.curvature_map import to_curvature_svg as to_curvature_svg
+    from .writers.font import write_font as write_font
+    from .writers.svg import to_svg as to_svg
+    from .writers.table import write_table as write_table
+    from .writers.ufo import write_ufo as write_ufo
+
+_ON_DEMAND = {
+    "Font": ".readers",
+    "open_font": ".readers",
+    "open_source": ".readers",
+    "to_curvature_svg": ".writers.curvature_map",
+    "to_svg": ".writers.svg",
+    "write_font": ".writers.font",
+    "write_table": ".writers.table",
+    "write_ufo": ".writers.ufo",
+}
+"""Names whose modules bring font or drawing libraries with them: the curve core opens without those."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ON_DEMAND:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_ON_DEMAND[name], __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+__all__ = [
+    "Contour",
+    "ContourResult",
+    "Font",
+    "FontError",
+    "FontMetrics",
+    "GlyphResult",
+    "GlyphsplineError",
+    "Interpolation",
+    "Measures",
+    "Options",
+    "Outline",
+    "PolygonError",
+    "Spline",
+    "__version__",
+    "convert",
+    "interpolate",
+    "interpolate_many",
+    "interpolate_vertex",
+    "open_font",
+    "open_source",
+    "plot",
+    "sample",
+    "to_curvature_svg",
+    "to_svg",
+    "write_font",
+    "write_table",
+    "write_ufo",
+]

@@ -1,0 +1,107 @@
+"""Files of a run: safe names that differ in more than case, and writes that are whole or not there at all."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
+
+from ..errors import GlyphsplineError
+
+LONGEST_NAME = 150
+"""Bytes of a file name before its suffix. File systems take 255; the rest is room for clash numbers and suffixes."""
+
+PARTIAL = ".part"
+"""How temporary files end. They begin with a dot, so that no glob over results meets them."""
+
+O_BINARY = getattr(os, "O_BINARY", 0)
+"""Windows would write other line ends."""
+
+_PLAIN = re.compile(r"[a-z0-9_]{1,75}")
+"""Names that the rules leave as they are: most names of a large font, for which asking them takes half a second."""
+
+_NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
+
+
+class OutputError(GlyphsplineError):
+    """The output folder cannot be written, or holds something that a run must not touch."""
+
+
+def file_names(glyph_names: Iterable[str]) -> list[str]:
+    """A file name, without suffix, for each glyph name; no two are alike without regard to case.
+
+    They depend on all names of the font in order, not on which glyphs are selected.
+    """
+    taken: set[str] = set()
+    found = []
+    for name in glyph_names:
+        plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
+        stem = name if plain else userNameToFileName(_tame(name), taken)
+        taken.add(stem.lower())
+        found.append(stem)
+    return found
+
+
+def _tame(name: str) -> str:
+    """What the UFO rules leave open: names too long in bytes, empty ones, and half characters."""
+    clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
+    return clipped.decode(errors="ignore").rstrip(". ") or "_"
+
+
+def write_whole(path: str, content: str | bytes) -> int:
+    """Write a file under a temporary name beside it, then rename; returns its size in bytes.
+
+    Raises:
+        OutputError: it cannot be written; nothing is left under the final name but what was there.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    folder, _, name = path.rpartition("/")
+    partial = f"{folder}/.{name}-{os.getpid()}{PARTIAL}"
+    try:
+        # O_EXCL does not follow a link that somebody has put where the temporary file goes.
+        handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | O_BINARY, 0o666)
+        try:
+            try:
+                written = os.write(handle, data)
+                while written < len(data):
+                    written += os.write(handle, data[written:])
+            finally:
+                os.close(handle)
+            os.replace(partial, path)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(partial)
+            raise
+    except OSError as error:
+        raise OutputError(f"cannot be written: {error.strerror or error}", font=path) from error
+    return len(data)
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder inside the output folder; a link in its place would lead the run elsewhere and is refused."""
+    if path.is_symlink():
+        raise OutputError("is a symbolic link, which could lead out of the output folder", font=str(path))
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot be made: {error.strerror or error}", font=str(path)) from error
+
+
+def remove_partials(folder: Path) -> None:
+    """Remove temporary files that an interrupted run has left in a folder."""
+    with suppress(FileNotFoundError), os.scandir(folder) as items:
+        for item in items:
+            if item.name.startswith(".") and item.name.endswith(PARTIAL):
+                with suppress(OSError):
+                    os.unlink(item.path)
+
+
+def sizes(folder: Path) -> dict[str, int]:
+    """The size in bytes of every regular file of a folder, by name; empty if there is no such folder."""
+    with suppress(FileNotFoundError), os.scandir(folder) as items:
+        return {item.name: item.stat(follow_symlinks=False).st_size for item in items if item.is_file()}
+    return {}

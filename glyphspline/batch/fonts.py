@@ -1,0 +1,81 @@
+"""Many fonts: where they are, and a folder for each face of each."""
+
+from __future__ import annotations
+
+import glob
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from fontTools.ufoLib.filenames import reservedFileNames
+
+from ..errors import GlyphsplineError
+from .files import LONGEST_NAME
+
+SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
+"""What in a folder is taken for a font; a file that is named itself is tried whatever its suffix."""
+
+
+def find_fonts(inputs: Iterable[str]) -> list[Path]:
+    """The font files that are meant, each once, in the order of their paths.
+
+    Args:
+        inputs: files, UFO folders, other folders (searched to the bottom), globs (``**`` too), and ``@list``: a text
+            file with one of these a line, relative to where the command was called; empty lines and lines with ``#``
+            are passed over.
+
+    Raises:
+        GlyphsplineError: an input that is not there, or a list that cannot be read.
+    """
+    return sorted({path for item in inputs for path in _found(item)})
+
+
+def _found(item: str) -> Iterator[Path]:
+    path = Path(item)
+    if item.startswith("@"):
+        yield from find_fonts(_listed(Path(item[1:])))
+    elif is_ufo(path):
+        yield path
+    elif path.is_dir():
+        yield from (file for file in path.rglob("*") if file.suffix.lower() in SUFFIXES and file.is_file())
+        yield from (folder for folder in path.rglob("*.ufo") if is_ufo(folder))
+    elif path.exists():
+        yield path
+    else:
+        matches = [Path(match) for match in glob.glob(item, recursive=True)]
+        if not matches:
+            raise GlyphsplineError("no such file or folder, and as a pattern it matches nothing", font=item)
+        yield from (file for file in matches if file.is_file())
+
+
+def is_ufo(path: Path) -> bool:
+    """Whether a folder is a UFO, which is one font."""
+    return (path / "metainfo.plist").is_file()
+
+
+def _listed(path: Path) -> list[str]:
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise GlyphsplineError(f"cannot be read: {error}", font=str(path)) from error
+    named = [line.strip() for line in lines if line.strip() and not line.lstrip().startswith("#")]
+    nested = [line for line in named if line.startswith("@")]
+    if nested:
+        raise GlyphsplineError(f"a list in a list: {nested[0]}", font=str(path))
+    return named
+
+
+def folders_for(fonts: Iterable[Path]) -> list[str]:
+    """A folder name for each font, made of its file name; no two are alike without regard to case."""
+    taken: set[str] = set()
+    found = []
+    for font in fonts:
+        clipped = re.sub(r"[^\w-]", "-", font.name).encode()[:LONGEST_NAME].decode(errors="ignore")
+        name = stem = clipped.strip("-") or "font"
+        count = 1
+        while name.lower() in taken or name.lower() in reservedFileNames:
+            count += 1
+            name = f"{stem}-{count}"
+        taken.add(name.lower())
+        found.append(name)
+    return found

@@ -1,0 +1,174 @@
+"""The manifest and its journal: what is finished, in what order, and how a run finds out after an interruption.
+
+While a run is under way, each finished glyph is a line of the journal, in any order: the sizes of its files, a tab,
+its manifest line. At the end the manifest is written whole, in glyph index order, and the journal goes. A line that
+was cut off, or whose files are not there in those sizes, counts as not written.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from .files import PARTIAL, OutputError, sizes
+from .spec import SUFFIXES
+from .summary import Summary
+from .work import Done
+
+MANIFEST = "manifest.jsonl"
+JOURNAL = ".journal.jsonl"
+
+
+@dataclass
+class Record:
+    """Where the lines of finished glyphs are: for each glyph index a file and an offset in it.
+
+    Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found.
+    """
+
+    where: dict[int, tuple[str, int]] = field(default_factory=dict)
+    failed: set[int] = field(default_factory=set)
+    counts: Summary = field(default_factory=Summary)
+
+    def finished(self) -> set[int]:
+        """Glyphs that need not be done again. Those that failed are tried again: the cause may be gone."""
+        return self.where.keys() - self.failed
+
+
+def read_record(out: Path) -> Record:
+    """What an earlier run has finished in a folder, by its manifest and its journal."""
+    record = Record()
+    present = {name: sizes(out / name) for name in SUFFIXES}
+    for name in (MANIFEST, JOURNAL):
+        for offset, length_of, entry in _lines(out / name):
+            if not _is_entry(entry) or not _written(entry["files"], length_of, present):
+                continue
+            record.where[entry["gid"]] = (name, offset)
+            record.counts.add(entry)
+            (record.failed.add if entry["status"] == "failed" else record.failed.discard)(entry["gid"])
+    return record
+
+
+def _lines(path: Path) -> Iterator[tuple[int, list[int] | None, Any]]:
+    """Offset, file sizes (None in a manifest) and content of each whole line of a manifest or journal."""
+    try:
+        with open(path, "rb") as file:
+            offset = 0
+            for line in file:
+                head, tab, text = line.rpartition(b"\t")
+                try:
+                    if line.endswith(b"\n"):
+                        lengths = [int(part) for part in head.split(b",") if part] if tab else None
+                        yield offset, lengths, json.loads(text)
+                except ValueError:
+                    pass  # a line that was cut off and then continued by the next run
+                offset += len(line)
+    except FileNotFoundError:
+        return
+
+
+def _is_entry(entry: Any) -> bool:
+    return isinstance(entry, dict) and isinstance(entry.get("gid"), int) and isinstance(entry.get("files"), dict)
+
+
+def _written(files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
+    """Whether all files of an entry are there, and as long as they were written if that is known."""
+    there = [present.get(Path(path).parent.name, {}).get(Path(path).name) for path in files.values()]
+    return None not in there and (lengths is None or there == lengths)
+
+
+def remove_written(out: Path) -> None:
+    """Remove the files that the manifest and journal of an earlier run name, and none outside its own folders."""
+    for name in (MANIFEST, JOURNAL):
+        for _, _, entry in _lines(out / name):
+            for path in entry["files"].values() if _is_entry(entry) else ():
+                folder, _, file = str(path).partition("/")
+                if folder in SUFFIXES and file == Path(file).name and not (out / folder).is_symlink():
+                    (out / folder / file).unlink(missing_ok=True)
+
+
+class Journal:
+    """The journal, open for appending. A link in its place is not followed."""
+
+    def __init__(self, out: Path, record: Record) -> None:
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+        self.path = out / JOURNAL
+        self.record = record
+        try:
+            self._file = open(os.open(self.path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
+            self._offset = os.fstat(self._file.fileno()).st_size
+            self._write(b"\n")  # ends a line that was cut off
+        except OSError as error:
+            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(self.path)) from error
+
+    def _write(self, data: bytes) -> None:
+        view = memoryview(data)
+        while view:
+            written = self._file.write(view) or 0
+            self._offset += written
+            view = view[written:]
+
+    def add(self, done: list[Done]) -> None:
+        """Record glyphs whose files are written."""
+        lines = []
+        at = self._offset
+        for glyph in done:
+            line = (",".join(map(str, glyph.sizes)) + "\t" + glyph.line + "\n").encode()
+            lines.append(line)
+            self.record.where[glyph.gid] = (JOURNAL, at)
+            at += len(line)
+        try:
+            self._write(b"".join(lines))
+        except OSError as error:
+            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(self.path)) from error
+
+    def close(self) -> None:
+        """Close the file; it stays."""
+        self._file.close()
+
+
+def entries_of(out: Path) -> Iterator[dict[str, Any]]:
+    """The entries of a finished folder's manifest, in glyph index order.
+
+    Raises:
+        OutputError: there is no manifest, or a line of it cannot be read.
+    """
+    path = out / MANIFEST
+    try:
+        with open(path, encoding="utf-8") as file:
+            for line in file:
+                yield json.loads(line)
+    except FileNotFoundError:
+        raise OutputError("no manifest: the folder holds no finished run", font=str(path)) from None
+    except ValueError as error:
+        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+
+
+def finish(out: Path, record: Record) -> Iterator[bytes]:
+    """Write the manifest in glyph index order, giving each line as it passes, and remove the journal at the end."""
+    partial = out / f".{MANIFEST}-{os.getpid()}{PARTIAL}"
+    opened: dict[str, BinaryIO] = {}
+    try:
+        with open(partial, "xb") as manifest:
+            for gid in sorted(record.where):
+                name, offset = record.where[gid]
+                if name not in opened:
+                    opened[name] = open(out / name, "rb")  # noqa: SIM115
+                opened[name].seek(offset)
+                line = opened[name].readline().rpartition(b"\t")[2]
+                manifest.write(line)
+                yield line
+            manifest.flush()
+            os.fsync(manifest.fileno())
+        os.replace(partial, out / MANIFEST)
+        (out / JOURNAL).unlink(missing_ok=True)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(out / MANIFEST)) from error
+    finally:
+        for file in opened.values():
+            file.close()

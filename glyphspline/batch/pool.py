@@ -1,0 +1,201 @@
+"""Worker processes that can be killed and replaced, behind the interface of ``concurrent.futures``.
+
+The pools of the standard library break when one process dies, and cannot end one that hangs. Here a process that dies,
+or shows no sign of life for too long, costs only the call that it was at: that call's future gets the error, and
+another process takes the place.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future
+from contextlib import suppress
+from multiprocessing import connection, resource_tracker
+from typing import Any
+
+from ..errors import GlyphsplineError
+
+POLL = 0.25
+"""Seconds between looks for processes that have hung."""
+
+
+class WorkerLostError(GlyphsplineError):
+    """The process died during the call: killed, out of memory, or crashed."""
+
+
+class TimeLimitError(GlyphsplineError):
+    """The process showed no sign of life for longer than allowed, and was killed."""
+
+
+class WorkerStartError(GlyphsplineError):
+    """A process died before it could do anything; no other would fare better."""
+
+
+_last_sign: Any = None
+
+
+def sign_of_life() -> None:
+    """Called by a long call between its parts, so that the time limit counts for each part."""
+    if _last_sign is not None:
+        _last_sign.value = time.monotonic()
+
+
+def _serve(calls: Any, sign: Any) -> None:
+    """The life of a worker process: calls in, results out, until the other end is closed."""
+    global _last_sign
+    _last_sign = sign
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent ends its workers
+    with suppress(EOFError, OSError):
+        calls.send(None)
+        while True:
+            function, arguments = calls.recv()
+            try:
+                answer = (True, function(*arguments))
+            except Exception as error:
+                answer = (False, error)
+            calls.send(answer)
+
+
+class _Worker:
+    """One process, its end of the pipe, and the future of the call that it is at."""
+
+    def __init__(self, context: Any) -> None:
+        self.sign = context.RawValue("d", 0.0)
+        self.calls, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs, self.sign), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.ready = False
+        self.future: Future[Any] | None = None
+
+    @property
+    def idle(self) -> bool:
+        return self.ready and self.future is None
+
+    def end(self) -> None:
+        """Kill the process, whatever it is doing."""
+        self.process.kill()
+        self.process.join()
+        self.calls.close()
+
+
+class WorkerPool(Executor):
+    """A fixed number of processes; :meth:`submit` gives futures whose errors may be the three above.
+
+    Args:
+        size: how many processes.
+        seconds: time limit between signs of life.
+        preload: modules to import once, in the process from which the workers are forked.
+    """
+
+    def __init__(self, size: int, seconds: float, preload: Sequence[str] = ()) -> None:
+        self._max_workers = size
+        self._seconds = seconds
+        self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
+        if os.name != "nt":
+            resource_tracker.ensure_running()
+            self._context.set_forkserver_preload(list(preload))
+        self._queue: deque[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._wake, self._woken = self._context.Pipe()
+        self._closing = False
+        self._workers: list[_Worker] = []
+        self._thread = threading.Thread(target=self._manage, daemon=True)
+        self._thread.start()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Queue a call of a function that can be pickled."""
+        if kwargs or self._closing:
+            raise RuntimeError("the pool is closed, or was given keywords")
+        future: Future[Any] = Future()
+        self._queue.append((future, fn, args))
+        self._wake.send_bytes(b"")
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes; what they are at is lost, as is what is queued."""
+        if not self._closing:
+            self._closing = True
+            self._wake.send_bytes(b"")
+        if wait:
+            self._thread.join()
+
+    def _manage(self) -> None:
+        try:
+            while not self._closing:
+                self._start()
+                self._assign()
+                busy = any(worker.future for worker in self._workers)
+                awaited = [self._woken, *(worker.calls for worker in self._workers)]
+                for item in connection.wait(awaited, POLL if busy else None):
+                    if item is self._woken:
+                        self._woken.recv_bytes()
+                    else:
+                        self._receive(next(worker for worker in self._workers if worker.calls is item))
+                self._end_hung()
+        except Exception as error:
+            self._closing = True
+            self._fail_all(error)
+        finally:
+            for worker in self._workers:
+                worker.end()
+            self._fail_all(WorkerLostError("the pool was closed"))
+
+    def _assign(self) -> None:
+        for worker in self._workers:
+            if not worker.idle:
+                continue
+            while self._queue:
+                future, function, arguments = self._queue.popleft()
+                if future.set_running_or_notify_cancel():
+                    worker.sign.value = time.monotonic()
+                    worker.future = future
+                    with suppress(OSError):  # a dead one shows when its end of the pipe is read
+                        worker.calls.send((function, arguments))
+                    break
+
+    def _start(self) -> None:
+        """Processes as they are needed: as many as there are calls, up to the size."""
+        wanted = len(self._queue) + sum(worker.future is not None for worker in self._workers)
+        while len(self._workers) < min(self._max_workers, wanted):
+            self._workers.append(_Worker(self._context))
+
+    def _receive(self, worker: _Worker) -> None:
+        try:
+            answer = worker.calls.recv()
+        except (EOFError, OSError):
+            if not worker.ready:
+                raise WorkerStartError("a worker process could not start") from None
+            self._replace(worker, WorkerLostError("the worker process died"))
+            return
+        if not worker.ready:
+            worker.ready = True
+            return
+        future, worker.future = worker.future, None
+        good, value = answer
+        if future is not None:
+            (future.set_result if good else future.set_exception)(value)
+
+    def _end_hung(self) -> None:
+        now = time.monotonic()
+        for worker in list(self._workers):
+            if worker.future and now - worker.sign.value > self._seconds:
+                self._replace(worker, TimeLimitError(f"took longer than {self._seconds:g} s"))
+
+    def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
+        worker.end()
+        self._workers[self._workers.index(worker)] = _Worker(self._context)
+        if worker.future is not None:
+            worker.future.set_exception(error)
+
+    def _fail_all(self, error: Exception) -> None:
+        left = [worker.future for worker in self._workers if worker.future and not worker.future.done()]
+        left += [future for future, _, _ in self._queue if future.set_running_or_notify_cancel()]
+        self._queue.clear()
+        for future in left:
+            future.set_exception(error)

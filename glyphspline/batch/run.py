@@ -1,0 +1,156 @@
+"""The flow of a run: what is left to do, the shared curvature scale, glyphs through workers, the manifest."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from dataclasses import replace
+from operator import itemgetter
+from pathlib import Path
+
+from ..curvature import robust_scale
+from ..readers import Source
+from ..report import write_report
+from .files import OutputError, file_names, make_folder, remove_partials
+from .manifest import JOURNAL, MANIFEST, Journal, Record, entries_of, finish, read_record, remove_written
+from .schedule import chunk_size, spread, workers
+from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from .summary import Summary
+from .whole import check_possible, missing, write_fonts
+from .work import Job, Task, failed, survey, work
+
+SCALE_SAMPLE = 200
+"""Glyphs from which the shared curvature scale is taken, evenly spread over those selected."""
+
+SCALE_CHUNK = 4
+"""Of these so many at a time: a run over a few glyphs should use all workers from its start."""
+
+Observer = Callable[[int, int, int], None]
+"""Told from time to time: glyphs done in the folder, of how many, and how many failed."""
+
+
+def convert_font(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec | None = None,
+    *,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> Summary:
+    """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and an index.
+
+    A folder that an earlier run of the same kind has begun or finished is gone on with; glyphs beyond those now
+    asked for stay in it.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        glyphs: names, as :meth:`Source.select` gives them.
+        out: the folder, made if need be.
+        spec: how to convert and what to write.
+        jobs: worker processes; None takes all cores, 0 does everything in this process.
+        executor: where the work is done instead, such as a :class:`.cluster.ClusterExecutor`; it stays open.
+        restart: throw away what an earlier run has left.
+        observer: called as glyphs get done.
+
+    Raises:
+        OutputError: the folder cannot be written, or was made with other options and ``restart`` is not given.
+        GlyphsplineError: the options are out of range.
+    """
+    spec = spec or RunSpec()
+    check_possible(spec)
+    record = prepare(source, out, spec, restart)
+    tasks = tasks_of(source, glyphs)
+    job = Job(source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec)
+    finished = record.finished()
+    left = [task for task in tasks if task.gid not in finished]
+    summary = Summary()
+    with nullcontext(executor) if executor else workers(jobs if left else 0, spec.limits.seconds, spec.options) as pool:
+        job = with_scale(job, source, tasks, pool)
+        if left:
+            journal = Journal(out, record)
+            try:
+                convert_tasks(job, left, pool, journal, summary, observer)
+            finally:
+                journal.close()
+        for name in spec.folders if left else ():
+            remove_partials(out / name)
+    if left or not (out / MANIFEST).exists() or (out / JOURNAL).exists():
+        conclude(out, record, summary)
+    else:
+        summary = record.counts
+    if left or missing(source, out, spec):
+        summary.remarks += write_fonts(source, out, spec)
+    return summary
+
+
+def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
+    """Make the folders, and find what an earlier run has left there."""
+    make_folder(out)
+    old = None if restart else read_run(out)
+    if old is not None:
+        changed = differences(old, describe(source, spec, None))
+        if changed:
+            raise OutputError(
+                "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
+            )
+    else:
+        remove_written(out)
+        for name in (MANIFEST, JOURNAL, RUN_FILE):
+            (out / name).unlink(missing_ok=True)
+    for name in spec.folders:
+        make_folder(out / name)
+        remove_partials(out / name)
+    remove_partials(out)
+    return read_record(out) if old is not None else Record()
+
+
+def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
+    """A task for each glyph, in glyph index order."""
+    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    stems = file_names(source.glyph_names)
+    return [Task(gid, source.glyph_names[gid], stems[gid]) for gid in sorted({index[name] for name in glyphs})]
+
+
+def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
+    """The job with the curvature scale its maps share: that of the folder's run.json, or one found now."""
+    old = read_run(job.out)
+    if old is not None:
+        return replace(job, curvature_scale=old["curvature_scale"])
+    if {"curvature", "png", "pdf"} & set(job.spec.formats):
+        chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
+        found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, chosen, SCALE_CHUNK)
+                 if isinstance(combs, list)]  # fmt: skip
+        combs = [item for _, items in sorted(found, key=itemgetter(0)) for item in items]
+        em = source.metrics.units_per_em
+        scale = robust_scale(combs) or 1 / em
+        job = replace(job, curvature_scale=float(f"{scale:.6g}"))
+    write_run(job.out, describe(source, job.spec, job.curvature_scale))
+    return job
+
+
+def convert_tasks(
+    job: Job, tasks: list[Task], pool: Executor, journal: Journal, summary: Summary, observer: Observer | None
+) -> None:
+    """All tasks through the pool, each recorded in the journal once its files are written."""
+    before = len(journal.record.finished())
+    failures = 0
+    for chunk, result in spread(pool, work, job, tasks, chunk_size(pool, len(tasks))):
+        done = result if isinstance(result, list) else [failed(job, task, result.message) for task in chunk]
+        journal.add(done)
+        for glyph in done:
+            summary.time(glyph.seconds, glyph.name)
+            failures += glyph.status == "failed"
+        if observer:
+            observer(before + summary.done, before + len(tasks), failures)
+
+
+def conclude(out: Path, record: Record, summary: Summary) -> None:
+    """Write manifest and index, and count what is in them."""
+    for line in finish(out, record):
+        summary.add(json.loads(line))
+    write_report(out, entries_of(out), read_run(out) or {})

@@ -1,0 +1,147 @@
+"""What is run: the options of a whole run, and ``run.json``, which says them."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import GlyphsplineError
+from ..glyph import Options
+from ..readers import Source
+from ..version import __version__
+from ..writers.font_glyphs import Flavour, fitting_tolerance
+from ..writers.svg import VIEW_BOXES, ViewBox
+from .files import OutputError, write_whole
+
+RUN_FILE = "run.json"
+
+RESULTS = "results"
+
+SUFFIXES = {"source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", RESULTS: ".json"}
+"""Formats of one file a glyph, each in a folder of its name. "source" is what the index shows beside a map, "results"
+what formats of the whole font are made from."""
+
+WHOLE = ("ufo", "otf", "ttf", "parquet")
+"""Formats of one file a font."""
+
+FORMATS = (*(name for name in SUFFIXES if name not in ("source", RESULTS)), *WHOLE)
+"""Formats to ask for."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one glyph may cost before it fails.
+
+    Attributes:
+        seconds: of wall clock; its worker is killed and replaced.
+        segments: of the source outline. vertices: of all its polygons.
+    """
+
+    seconds: float = 60.0
+    segments: int = 100_000
+    vertices: int = 200_000
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """How every glyph of a run is converted and what is written of it.
+
+    Attributes:
+        options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
+        limits: for each glyph; they decide only what fails, so they are no part of ``run.json``.
+    """
+
+    options: Options = field(default_factory=Options)
+    formats: tuple[str, ...] = ("svg", "curvature")
+    view_box: ViewBox = "em"
+    limits: Limits = field(default_factory=Limits)
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.formats if name not in FORMATS]
+        if unknown or not self.formats:
+            raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
+        if self.view_box not in VIEW_BOXES:
+            raise GlyphsplineError(f"view_box is one of {', '.join(VIEW_BOXES)}, not {self.view_box!r}")
+        object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
+
+    @property
+    def folders(self) -> tuple[str, ...]:
+        """The folders written to: one a format of single glyphs, and those that other formats need."""
+        own = tuple(name for name in self.formats if name not in WHOLE)
+        return (*own, *(["source"] if "curvature" in own else []), *([RESULTS] if self.whole else []))
+
+    @property
+    def whole(self) -> tuple[str, ...]:
+        """The formats of one file a font among those asked for."""
+        return tuple(name for name in self.formats if name in WHOLE)
+
+    def fitting(self, units_per_em: float) -> Options:
+        """The options to convert with: where a font is to be written, its rounding is taken out of the tolerance."""
+        flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
+        if not flavours or self.options.step is not None or self.options.count is not None:
+            return self.options
+        tolerance = self.options.tolerance_for(units_per_em)
+        return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))
+
+
+def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> dict[str, Any]:
+    """The content of ``run.json``: nothing in it depends on the machine, the clock or the number of workers."""
+    metrics = asdict(source.metrics)
+    return {
+        "glyphspline": __version__,
+        "font": {
+            "file": source.path.name,
+            "sha256": source.sha256,
+            "face_index": source.face_index,
+            "location": dict(source.location),
+            "family": source.family,
+            "style": source.style,
+            "metrics": metrics,
+        },
+        "options": asdict(spec.options),
+        "formats": list(spec.formats),
+        "view_box": spec.view_box,
+        "curvature_scale": curvature_scale,
+    }
+
+
+def write_run(out: Path, run: dict[str, Any]) -> None:
+    """Write ``run.json``."""
+    write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n")
+
+
+def read_run(out: Path) -> dict[str, Any] | None:
+    """``run.json`` of a folder, or None if it has none.
+
+    Raises:
+        OutputError: there is one, and it cannot be read.
+    """
+    path = out / RUN_FILE
+    try:
+        run = json.loads(path.read_text(encoding="utf-8"))
+        scale = run["curvature_scale"]
+        if not (scale is None or (isinstance(scale, float | int) and math.isfinite(scale))):
+            raise ValueError("a curvature scale that is no number")
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+    return dict(run)
+
+
+def differences(old: dict[str, Any], new: dict[str, Any], prefix: str = "") -> list[str]:
+    """What two runs were asked that is not the same, a phrase each; the file's name and the scale do not count."""
+    found = []
+    for key in dict.fromkeys([*old, *new]):
+        name = f"{prefix}{key}"
+        if name in ("font.file", "curvature_scale"):
+            continue
+        a, b = old.get(key), new.get(key)
+        if isinstance(a, dict) and isinstance(b, dict):
+            found += differences(a, b, f"{name}.")
+        elif a != b:
+            found.append(f"{name}: {json.dumps(a)} in the folder, {json.dumps(b)} now")
+    return found

@@ -1,0 +1,67 @@
+"""A glyph's whole result as JSON text and back, to the last bit: numbers that arrays hold are kept as their bytes."""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from ..bspline import Spline
+from ..glyph import ContourResult, GlyphResult, Measures, Options
+from ..outline import Contour, FontMetrics, Outline
+from ..result import Interpolation
+
+KINDS: dict[str, type] = {
+    kind.__name__: kind
+    for kind in (Contour, ContourResult, FontMetrics, GlyphResult, Interpolation, Measures, Options, Outline, Spline)
+}
+"""All that a result is made of; nothing else is ever made of a file's content."""
+
+TYPES = {"float64": "<f8", "int64": "<i8"}
+
+
+def to_text(result: GlyphResult) -> str:
+    """The result as one line of JSON."""
+    return json.dumps(_plain(result), separators=(",", ":")) + "\n"
+
+
+def from_text(text: str) -> GlyphResult:
+    """The result that was written.
+
+    Raises:
+        ValueError: the text is not one.
+    """
+    try:
+        result = _made(json.loads(text))
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"not a stored result: {error}") from error
+    if not isinstance(result, GlyphResult):
+        raise ValueError("not a stored result")
+    return result
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        kind = value.dtype.name
+        data = base64.b64encode(value.astype(TYPES[kind]).tobytes()).decode()
+        return {"array": kind, "shape": list(value.shape), "data": data}
+    if is_dataclass(value):
+        return {"kind": type(value).__name__} | {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _made(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(_made(item) for item in value)
+    if not isinstance(value, dict):
+        return value
+    if "array" in value:
+        flat = np.frombuffer(base64.b64decode(value["data"]), TYPES[value["array"]])
+        return flat.astype(value["array"]).reshape(value["shape"])
+    kind = KINDS[value.pop("kind")]
+    return kind(**{name: _made(item) for name, item in value.items()})

@@ -1,0 +1,86 @@
+"""What a run came to: glyphs by status, the worst of them, and what failed."""
+
+from __future__ import annotations
+
+import heapq
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+SHOWN = 10
+"""How many of the worst, the slowest and the failed are kept by name; a CJK face may have thousands."""
+
+SLOW = 0.5
+"""Seconds from which the slowest glyphs are worth a line."""
+
+
+@dataclass
+class Summary:
+    """Counts over a whole folder, and the extremes of it by glyph name.
+
+    Attributes:
+        statuses: glyphs by status. not_converged, outside_tolerance: glyphs with such a contour.
+        worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
+        slowest: (seconds, glyph) of what was done now. done: glyphs done now, the others had been before.
+        remarks: what is to be said of files written of the whole font.
+    """
+
+    statuses: Counter[str] = field(default_factory=Counter)
+    not_converged: int = 0
+    outside_tolerance: int = 0
+    worst: list[tuple[float, str]] = field(default_factory=list)
+    slowest: list[tuple[float, str]] = field(default_factory=list)
+    failures: list[tuple[str, str]] = field(default_factory=list)
+    done: int = 0
+    remarks: list[str] = field(default_factory=list)
+
+    def add(self, entry: dict[str, Any]) -> None:
+        """Count one line of the manifest."""
+        self.statuses[entry["status"]] += 1
+        if entry["status"] == "failed" and len(self.failures) < SHOWN:
+            self.failures.append((entry["glyph"], entry["error"]))
+        contours = entry["contours"]
+        self.not_converged += any(contour["converged"] is False for contour in contours)
+        self.outside_tolerance += any(contour["within_tolerance"] is False for contour in contours)
+        deviations = [contour["deviation"] for contour in contours if contour["deviation"] is not None]
+        if deviations:
+            keep_largest(self.worst, (max(deviations), entry["glyph"]))
+
+    def time(self, seconds: float, glyph: str) -> None:
+        """Note how long a glyph took."""
+        self.done += 1
+        keep_largest(self.slowest, (seconds, glyph))
+
+    def facts(self) -> dict[str, Any]:
+        """The summary as JSON has it."""
+        return {**asdict(self), "statuses": dict(self.statuses)}
+
+    def lines(self) -> Iterator[str]:
+        """The summary for people."""
+        counts = ", ".join(f"{self.statuses[status]} {status}" for status in ("ok", "empty", "failed"))
+        yield f"{counts}; {self.done} done now"
+        if self.not_converged:
+            yield f"{self.not_converged} glyphs with a contour that did not converge"
+        if self.outside_tolerance:
+            yield f"{self.outside_tolerance} glyphs with a contour outside the tolerance"
+        yield from self.remarks
+        if self.worst:
+            yield "largest deviations: " + ", ".join(f"{glyph} {value:.3g}" for value, glyph in self.worst[:5])
+        if self.slowest and self.slowest[0][0] > SLOW:
+            yield "slowest: " + ", ".join(f"{glyph} {value:.1f} s" for value, glyph in self.slowest[:5])
+        for glyph, error in self.failures:
+            yield f"failed: {glyph}: {error}"
+        if self.failed > len(self.failures):
+            yield f"and {self.failed - len(self.failures)} more, in the manifest"
+
+    @property
+    def failed(self) -> int:
+        """How many glyphs failed."""
+        return self.statuses["failed"]
+
+
+def keep_largest(items: list[tuple[float, str]], item: tuple[float, str]) -> None:
+    """Put an item in its place in a list of the largest, largest first, that grows no longer than ``SHOWN``."""
+    if len(items) < SHOWN or item[0] > items[-1][0]:
+        items[:] = heapq.nlargest(SHOWN, [*items, item], key=lambda each: each[0])

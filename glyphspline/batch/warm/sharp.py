@@ -1,0 +1,10 @@
+"""Fitting to a tolerance in "sharp": a leaf of two cubics that meet in corners."""
+
+from __future__ import annotations
+
+from ...convert import convert
+from ...glyph import Options
+from ...outline import Outline
+from . import LEAF, SQUARE
+
+convert(Outline("leaf", contours=(LEAF, SQUARE)), Options(corners="sharp"))

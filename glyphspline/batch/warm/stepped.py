@@ -1,0 +1,27 @@
+"""What every run needs, and sampling by step or count: a square taken through both ways."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...convert import convert
+from ...express.contours import cubics_of
+from ...express.curves import paths
+from ...express.stepping import stepped_points
+from ...glyph import Options
+from ...outline import Outline
+from .. import work as work
+from . import SQUARE
+
+
+def warm() -> None:
+    """Take a square through both ways."""
+    result = convert(Outline("square", contours=(SQUARE,)), Options(step=20.0))
+    spline = result.contours[0].interpolations[0].spline
+    cubics_of(np.array([2.0, 2.0]), np.array([2, 2]))
+    stepped_points(SQUARE.cubics(), np.array([0, 4]), 20.0, 4.0, 1000)
+    counts = np.array([len(spline.control_points)])
+    paths(spline.control_points, spline.knots, np.array([0, counts[0]]), counts, np.array([0, 1]), 2)
+
+
+warm()

@@ -1,0 +1,111 @@
+"""Formats of one file a font, written at the end of a run from the stored results of its glyphs, one by one."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from ..glyph import GlyphResult, Options
+from ..readers import Source
+from .files import PARTIAL, OutputError, write_whole
+from .manifest import entries_of
+from .spec import RESULTS, RunSpec
+from .store import from_text
+
+
+def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
+    """Write the formats asked for of all glyphs in the folder's manifest; returns remarks for people.
+
+    Raises:
+        OutputError: a file cannot be written, or a stored result not be read.
+        GlyphsplineError: the source cannot become such a font.
+    """
+    remarks = []
+    for name in spec.whole:
+        path = out / f"{file_stem(source)}.{name}"
+        try:
+            remarks += WRITERS[name](source, stored(source, out, spec.options), path, spec)
+        except OSError as error:
+            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
+    return remarks
+
+
+def missing(source: Source, out: Path, spec: RunSpec) -> bool:
+    """Whether any of the files is not there."""
+    return any(not (out / f"{file_stem(source)}.{name}").exists() for name in spec.whole)
+
+
+def file_stem(source: Source) -> str:
+    """The files' name without suffix."""
+    return (re.sub(r"[^\w-]+", "", source.family)[:50] or "font") + "-spline"
+
+
+def stored(source: Source, out: Path, options: Options) -> Iterator[GlyphResult]:
+    """The results of a finished run in glyph index order, empty glyphs too; those that failed are left out."""
+    for entry in entries_of(out):
+        file = entry["files"].get(RESULTS)
+        if entry["status"] == "empty":
+            yield GlyphResult(source.outline(entry["glyph"]), options, ())
+        elif file is not None:
+            path = out / RESULTS / Path(file).name
+            try:
+                yield from_text(path.read_text(encoding="utf-8"))
+            except (OSError, ValueError) as error:
+                raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+
+
+def _ufo(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
+    from ..writers.ufo import write_ufo
+
+    return [f"{path.name}: {write_ufo(source, glyphs, path)} glyphs"]
+
+
+def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
+    from ..writers.font import to_font
+    from ..writers.font_glyphs import Flavour
+
+    flavour: Flavour = "otf" if path.suffix == ".otf" else "ttf"
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    data, summary = to_font(source, glyphs, flavour, tolerance=tolerance)
+    write_whole(str(path), data)
+    remark = f"{path.name}: {summary.replaced} glyphs replaced"
+    if summary.largest_error is not None:
+        remark += f", within {summary.largest_error:.3g} units of the source"
+    if summary.beyond:
+        remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
+    return [remark]
+
+
+def _parquet(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
+    from ..writers.table import write_table
+
+    partial = path.with_name(f".{path.name}-{os.getpid()}{PARTIAL}")
+    try:
+        with open(partial, "xb") as file:
+            count = write_table(source, glyphs, file)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return [f"{path.name}: {count} contours"]
+
+
+WRITERS: dict[str, Callable[[Source, Iterator[GlyphResult], Path, RunSpec], list[str]]] = {
+    "ufo": _ufo,
+    "otf": _font,
+    "ttf": _font,
+    "parquet": _parquet,
+}
+
+
+def check_possible(spec: RunSpec) -> None:
+    """Find out before the run, not after it, that a library is not installed.
+
+    Raises:
+        GlyphsplineError: it is not.
+    """
+    if "parquet" in spec.whole:
+        from ..writers.table import arrow
+
+        arrow()

@@ -1,0 +1,350 @@
+"""The shell: ``glyphspline convert | atlas | info | report | view | demo``.
+
+What is heavy is imported by the command that needs it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import typer
+
+from . import options as opt
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from ..batch import RunSpec, Summary
+    from ..readers import Source
+
+PATIENCE = 300.0
+"""Seconds that ``info`` takes at most."""
+
+MEMORY = 16 << 30
+"""Bytes of address space a process may have. Compiled code and the stacks of threads take a few of these GB."""
+
+app = typer.Typer(
+    help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.command()
+def convert(
+    font: opt.FontFile,
+    out: opt.Out,
+    text: opt.Text = None,
+    text_file: opt.TextFile = None,
+    unicodes: opt.Unicodes = None,
+    glyphs: opt.Glyphs = None,
+    gids: opt.Gids = None,
+    every: opt.Every = False,
+    face_index: opt.FaceIndex = 0,
+    location: opt.Location = None,
+    variant: opt.Variant = 2,
+    margin: opt.Margin = 0.02,
+    fallback: opt.WhereNone = opt.Fallback.peak,
+    corners: opt.CornerMode = opt.Corners.smooth,
+    tolerance: opt.Tolerance = None,
+    step: opt.Step = None,
+    count: opt.Count = None,
+    effort: opt.HowHard = opt.Effort.fast,
+    view_box: opt.ViewBox = opt.View.em,
+    precision: opt.Precision = 2,
+    remove_overlaps: opt.RemoveOverlaps = False,
+    measure: opt.Measure = False,
+    formats: opt.Formats = "svg,curvature",
+    jobs: opt.Jobs = None,
+    scheduler: opt.Scheduler = None,
+    resume: opt.Resume = True,
+    quiet: opt.Quiet = False,
+    json_log: opt.JsonLog = False,
+) -> None:
+    """Convert glyphs of a font to SVG drawings and curvature maps, with a manifest and an index."""
+    given = dict(locals())
+    with errors():
+        from ..readers import open_source
+
+        spec = opt.spec_of(given)
+        source = open_source(font, face_index, opt.location_of(location))
+        names = opt.selection_of(source, given)
+        if names.missing and not quiet:
+            say(f"not in the font: {', '.join(names.missing)}")
+        if not names:
+            stop("none of the glyphs asked for is in the font")
+        with workplace(jobs, scheduler, spec) as executor:
+            summary = run(source, names, out, spec, executor, restart=not resume, quiet=quiet, json_log=json_log)
+    raise typer.Exit(1 if summary.failed else 0)
+
+
+@app.command()
+def info(
+    font: opt.FontFile, face_index: opt.OneFace = None, location: opt.Location = None, as_json: opt.Json = False
+) -> None:
+    """Show what a font file holds: faces, axes, units per em, numbers of glyphs and contours."""
+    with errors():
+        from ..batch.schedule import workers
+        from ..readers.info import file_facts
+        from .describe import lines_of
+
+        # In a process of its own: a font can be made so that counting its contours takes years.
+        with workers(1, PATIENCE) as executor:
+            facts = executor.submit(file_facts, font, face_index, opt.location_of(location)).result()
+    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else "\n".join(lines_of(facts)))
+
+
+@app.command()
+def report(folder: opt.Folder) -> None:
+    """Write the gallery, index.html, anew: of one run, or of a folder that holds several."""
+    with errors():
+        from ..batch import write_gallery
+
+        write_gallery(folder)
+    typer.echo(folder / "index.html")
+
+
+@app.command()
+def atlas(
+    font: opt.FontFile,
+    out: opt.AtlasFile = Path("atlas.pdf"),
+    text: opt.Text = None,
+    text_file: opt.TextFile = None,
+    unicodes: opt.Unicodes = None,
+    glyphs: opt.Glyphs = None,
+    gids: opt.Gids = None,
+    every: opt.Every = False,
+    profiles: opt.Profiles = None,
+    face_index: opt.FaceIndex = 0,
+    location: opt.Location = None,
+    variant: opt.Variant = 2,
+    margin: opt.Margin = 0.02,
+    fallback: opt.WhereNone = opt.Fallback.peak,
+    corners: opt.CornerMode = opt.Corners.smooth,
+    tolerance: opt.Tolerance = None,
+    step: opt.Step = None,
+    count: opt.Count = None,
+    effort: opt.HowHard = opt.Effort.fast,
+    quiet: opt.Quiet = False,
+) -> None:
+    """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours."""
+    unsaid = {"precision": 2, "measure": False, "remove_overlaps": False, "formats": "svg", "view_box": opt.View.em}
+    given = {**locals(), **unsaid}
+    with errors():
+        from ..batch import make_atlas
+        from ..readers import open_font
+
+        source = open_font(font, face_index, opt.location_of(location))
+        names = opt.selection_of(source, given)
+        if not names:
+            stop("none of the glyphs asked for is in the font")
+        chosen = None if profiles is None else source.select(text=profiles)
+        with progress(quiet) as observer:
+            told = (lambda done, total: observer(done, total, 0)) if observer else None
+            pages, failed = make_atlas(source, names, out, opt.spec_of(given).options, profiles=chosen, observer=told)
+        if not quiet:
+            say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
+    raise typer.Exit(1 if failed else 0)
+
+
+@app.command()
+def view(
+    font: opt.FontFile,
+    face_index: opt.FaceIndex = 0,
+    port: opt.Port = 0,
+    browser: opt.Browser = True,
+) -> None:
+    """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
+    with errors():
+        try:
+            from ..viewer import serve
+        except ImportError as error:
+            stop(f"the viewer needs Starlette and uvicorn ({error.name}): pip install 'glyphspline[view]'")
+        serve(font, face_index, port=port, browser=browser, told=lambda address: say(f"{address} (Ctrl-C ends it)"))
+
+
+@app.command()
+def demo(
+    font: opt.OwnFont = None,
+    text: opt.Text = None,
+    out: opt.Out = Path("outputs/demo"),
+    jobs: opt.Jobs = None,
+    quiet: opt.Quiet = False,
+) -> None:
+    """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
+    failed = 0
+    with errors():
+        from ..batch import RunSpec
+        from ..readers import open_source
+
+        shown, spec = [], RunSpec()
+        with workplace(jobs, None, spec) as executor:
+            for path, characters in [(font, "龍好")] if font else demo_fonts():
+                source = open_source(path)
+                names = source.select(text=text or characters)
+                if not names:
+                    stop(f"{path} has none of {text or characters}: give --text")
+                folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
+                failed += run(source, names, folder, spec, executor, restart=True, quiet=quiet).failed
+                shown.append(folder)
+    if not quiet:
+        typer.echo("Open in a browser:")
+        for folder in shown:
+            typer.echo(f"  {folder / 'index.html'}")
+        typer.echo("Drawings are in svg/ beside it, curvature maps in curvature/.")
+    raise typer.Exit(1 if failed else 0)
+
+
+def demo_fonts() -> list[tuple[Path, str]]:
+    """The fonts and characters shown when none are given: the repository's, and one that comes with matplotlib."""
+    fonts = Path(__file__).parents[2] / "fonts_test"
+    if not (fonts / "kouzan-gyosho.ttf").exists():
+        stop("the demonstration fonts are in the repository's fonts_test/; here, give a font: glyphspline demo FONT")
+    import matplotlib
+
+    dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
+    return [
+        (fonts / "kouzan-gyosho.ttf", "龍好"),
+        (fonts / "kouzan-kaisho.ttf", "龍好"),
+        (fonts / "kouzan-gyosho.otf", "龍好"),
+        (dejavu, "g&"),
+    ]
+
+
+@contextmanager
+def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
+    """Where the work is done: in so many processes (None: one a core, 0: this one), or on a cluster."""
+    if scheduler is not None:
+        from ..batch.cluster import ClusterExecutor
+
+        executor: Executor = ClusterExecutor(scheduler)
+    else:
+        from ..batch.schedule import workers
+
+        executor = workers(jobs, spec.limits.seconds, spec.options)
+    with executor:
+        yield executor
+
+
+def run(
+    source: Source,
+    names: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    executor: Executor,
+    *,
+    restart: bool,
+    quiet: bool,
+    json_log: bool = False,
+) -> Summary:
+    """A run with progress on a terminal and a summary at its end."""
+    from ..batch import convert_font
+
+    with json_lines() if json_log else progress(quiet) as observer:
+        summary = convert_font(source, names, out, spec, executor=executor, restart=restart, observer=observer)
+    if json_log:
+        say(json.dumps({"out": str(out), **summary.facts()}))
+    elif not quiet:
+        for line in summary.lines():
+            say(line)
+        say(f"written to {out}")
+    return summary
+
+
+@contextmanager
+def json_lines() -> Iterator[Any]:
+    """Progress as JSON lines on standard error, one a second at most."""
+    last = 0.0
+
+    def observe(done: int, total: int, failed: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= 1 or done == total:
+            last = now
+            say(json.dumps({"done": done, "total": total, "failed": failed}))
+
+    yield observe
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Any]:
+    """A progress bar on standard error, if that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]:.0f}/s"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[failed]} failed"),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None, rate=0.0, failed=0)
+
+        def observe(done: int, total: int, failed: int) -> None:
+            speed = bar.tasks[0].speed or 0.0
+            bar.update(task, completed=done, total=total, failed=failed, rate=speed)
+
+        yield observe
+
+
+@contextmanager
+def errors() -> Iterator[None]:
+    """What can go wrong becomes one line on standard error and exit status 2."""
+    from ..errors import GlyphsplineError
+
+    try:
+        yield
+    except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
+        stop(str(error))
+    except MemoryError:
+        stop("not enough memory")
+    except KeyboardInterrupt:
+        say("interrupted; the same command goes on from here")
+        raise typer.Exit(130) from None
+
+
+def say(line: str) -> None:
+    """A line for people, on standard error."""
+    typer.echo(line, err=True)
+
+
+def stop(message: str) -> NoReturn:
+    """End with a message and status 2: the call or the font is unusable."""
+    say(f"glyphspline: {message}")
+    raise typer.Exit(2)
+
+
+def limit_memory() -> None:
+    """Keep this process, and those it starts, from taking the whole machine when a font asks for it."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    if soft == resource.RLIM_INFINITY or soft > MEMORY:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, hard))
+
+
+def main() -> None:
+    """The command ``glyphspline``."""
+    limit_memory()
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")
+    try:
+        app(prog_name="glyphspline")
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)

@@ -1,0 +1,37 @@
+"""What ``glyphspline info`` says of a font file, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+SHOWN = 5
+"""Glyph names in a line."""
+
+
+def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:
+    """The facts that :func:`glyphspline.readers.info.file_facts` gives, line by line."""
+    yield f"{facts['file']}: {facts['format']}, {facts['faces']} face{'s' if facts['faces'] != 1 else ''}"
+    for font in facts["fonts"]:
+        yield f"face {font['face_index']}: {font['family']} {font['style']}"
+        yield (
+            f"  {font['units_per_em']:g} units per em, ascender {font['ascender']:g}, descender {font['descender']:g}"
+        )
+        for axis in font["axes"]:
+            limits = f"{axis['minimum']:g} to {axis['maximum']:g}, default {axis['default']:g}"
+            yield f"  axis {axis['tag']} ({axis['name']}): {limits}"
+        if font["instances"]:
+            yield f"  named instances: {', '.join(font['instances'])}"
+        yield (
+            f"  {font['glyphs']} glyphs, {font['characters']} characters, {font['contours']} contours,"
+            f" {font['segments']} segments"
+        )
+        yield from _glyphs(font["broken"], "cannot be read")
+        yield from _glyphs(font["degenerate"], "with contours that enclose nothing")
+        yield from _glyphs(font["overlaps"] or (), "with overlaps")
+
+
+def _glyphs(names: Sequence[str], what: str) -> Iterator[str]:
+    if names:
+        more = ", …" if len(names) > SHOWN else ""
+        yield f"  {len(names)} glyph{'s' if len(names) != 1 else ''} {what}: {', '.join(names[:SHOWN])}{more}"

@@ -1,0 +1,49 @@
+"""The errors a caller can expect: bad input is an exception that says what was wrong and where."""
+
+from __future__ import annotations
+
+
+class GlyphsplineError(ValueError):
+    """Bad input. ``font``, ``glyph`` and ``contour`` say where, as far as it is known.
+
+    The parts are filled in from the inside out: the interpolation knows only its polygon, the glyph
+    pipeline adds contour and glyph, the batch adds the font. ``str()`` gives the whole sentence.
+    """
+
+    def __init__(
+        self, message: str, *, font: str | None = None, glyph: str | None = None, contour: int | None = None
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.font = font
+        self.glyph = glyph
+        self.contour = contour
+
+    def locate(
+        self, *, font: str | None = None, glyph: str | None = None, contour: int | None = None
+    ) -> GlyphsplineError:
+        """Add what an outer layer knows, keeping what an inner layer has already said."""
+        self.font = font if self.font is None else self.font
+        self.glyph = glyph if self.glyph is None else self.glyph
+        self.contour = contour if self.contour is None else self.contour
+        return self
+
+    def __str__(self) -> str:
+        place = [
+            part
+            for part in (
+                self.font,
+                f"glyph {self.glyph!r}" if self.glyph is not None else None,
+                f"contour {self.contour}" if self.contour is not None else None,
+            )
+            if part
+        ]
+        return f"{', '.join(place)}: {self.message}" if place else self.message
+
+
+class PolygonError(GlyphsplineError):
+    """A polygon that no curve can be put through: wrong shape, not finite, or too few distinct vertices."""
+
+
+class FontError(GlyphsplineError):
+    """A font that cannot be opened, or a face, axis or glyph that it does not have."""

@@ -1,0 +1,133 @@
+"""The pen that a font draws on to become contours."""
+
+# The names of a pen's methods are fontTools' own.
+# ruff: noqa: N802, N815
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from fontTools.pens.basePen import BasePen
+
+from ..arrays import FloatArray
+from ..errors import GlyphsplineError
+from ..outline import Contour
+
+Point: TypeAlias = tuple[float, float]
+
+# Points nearer than this, in font units, are one: it absorbs the rounding of variation deltas and transforms, in
+# single precision at that, which would otherwise leave closing segments of length 1e-4, and is far below any grid.
+COINCIDENT = 1e-3
+
+# A few hundred bytes of nested components can ask for 2^64 copies. No real glyph comes near these.
+MAX_SEGMENTS = 200_000
+MAX_COMPONENTS = 10_000
+
+
+class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
+    """Collects contours: lines, quadratics with their implied points made explicit, and cubics.
+
+    Components are decomposed. Segments of no length are dropped. A contour whose points all lie on one
+    line encloses nothing (single points, which fonts use as anchors, are the usual case): it is left out
+    and noted. An open path is closed by a line, as every rasteriser does when filling.
+
+    Attributes:
+        contours: the contours so far. left_out: numbers of those left out.
+        drawn: how many there were, those left out too.
+        numbers: the number of each contour to come, if they are not drawn from 0 on without gaps.
+    """
+
+    skipMissingComponents = False
+
+    def __init__(self, glyph_set: Any = None, glyph_name: str | None = None, coincident: float = COINCIDENT) -> None:
+        super().__init__(glyph_set)
+        self.contours: list[Contour] = []
+        self.left_out: list[int] = []
+        self.numbers: Sequence[int] = ()
+        self.drawn = 0
+        self._coincident = coincident
+        self._points: list[Point] = []
+        self._degrees: list[int] = []
+        self._segments = 0
+        self._components = 0
+        self._nesting = [glyph_name]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was left out, a sentence each."""
+        return tuple(f"contour {number} left out: it encloses nothing" for number in sorted(self.left_out))
+
+    def finish(self) -> None:
+        """Close a contour left open at the end."""
+        self._closePath()
+
+    def addComponent(self, glyphName: str, transformation: Any) -> None:
+        """Draw another glyph of the set in place; a loop or a flood of components is an error."""
+        self._components += 1
+        if glyphName in self._nesting:
+            loop = [*self._nesting[self._nesting.index(glyphName) :], glyphName]
+            raise GlyphsplineError("components in a loop: " + " > ".join(map(str, loop)))
+        if self._components > MAX_COMPONENTS:
+            raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
+        if self.glyphSet is None or glyphName not in self.glyphSet:
+            raise GlyphsplineError(f"component {glyphName!r} does not exist")
+        self._nesting.append(glyphName)
+        super().addComponent(glyphName, transformation)
+        self._nesting.pop()
+
+    def _moveTo(self, pt: Point) -> None:
+        self._closePath()
+        self._points = [pt]
+
+    def _lineTo(self, pt: Point) -> None:
+        self._add(pt)
+
+    def _qCurveToOne(self, pt1: Point, pt2: Point) -> None:
+        self._add(pt1, pt2)
+
+    def _curveToOne(self, pt1: Point, pt2: Point, pt3: Point) -> None:
+        self._add(pt1, pt2, pt3)
+
+    def _add(self, *to: Point) -> None:
+        """Append the segment from the current point through ``to``, unless it goes nowhere."""
+        self._segments += 1
+        if self._segments > MAX_SEGMENTS:
+            raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
+        if any(not self._same(self._points[-1], point) for point in to):
+            self._points.extend(to)
+            self._degrees.append(len(to))
+
+    def _closePath(self) -> None:
+        if not self._points:
+            return
+        if not self._same(self._points[0], self._points[-1]):
+            self._degrees.append(1)
+        elif self._degrees:
+            self._points.pop()  # the last segment ends on points[0]
+        points = np.array(self._points, dtype=np.float64)
+        if not np.isfinite(points).all():
+            raise GlyphsplineError("coordinates that are not finite", contour=self._number())
+        if self._degrees and not self._flat(points):
+            self.contours.append(Contour(points, np.array(self._degrees, dtype=np.int64)))
+        else:
+            self.left_out.append(self._number())
+        self.drawn += 1
+        self._points, self._degrees = [], []
+
+    _endPath = _closePath
+
+    def _number(self) -> int:
+        return self.numbers[self.drawn] if self.drawn < len(self.numbers) else self.drawn
+
+    def _same(self, a: Point, b: Point) -> bool:
+        return abs(a[0] - b[0]) <= self._coincident and abs(a[1] - b[1]) <= self._coincident
+
+    def _flat(self, points: FloatArray) -> bool:
+        """Whether all (N, 2) points lie on the line from the first to the farthest."""
+        arms = points - points[0]
+        lengths = np.hypot(arms[:, 0], arms[:, 1])
+        far = arms[lengths.argmax()]
+        across = arms[:, 0] * far[1] - arms[:, 1] * far[0]
+        return bool(np.abs(across).max() <= self._coincident * lengths.max())

@@ -1,0 +1,137 @@
+"""The shapes of an SVG document, drawn with a pen: their path data read by svgpathtools, transforms applied."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from svgpathtools import Arc, CubicBezier, Line, QuadraticBezier, parse_path
+from svgpathtools.parser import parse_transform
+from svgpathtools.svg_to_paths import ellipse2pathd, rect2pathd
+
+from ..arrays import FloatArray
+from ..errors import GlyphsplineError
+from .pens import Point
+
+DEEPEST = 200
+"""Groups in groups. Beyond it lies no drawing that anybody has made."""
+
+ARC = 45.0
+"""Degrees of an elliptic arc that become one cubic: it is then off by 4e-6 of the radius."""
+
+NOT_DRAWN = {"defs", "clipPath", "mask", "symbol", "pattern", "marker", "metadata", "title", "desc", "style", "text"}
+LEFT_OUT = {"use": "clones (use)", "image": "images", "text": "text"}
+
+FLIP = np.diag([1.0, -1.0, 1.0])
+
+
+def draw_shapes(root: Any, pen: Any) -> tuple[str, ...]:
+    """Draw all that is filled, in document order, (x, y) as (x, -y); returns a remark on each kind left out."""
+    left_out: dict[str, int] = {}
+    for element, matrix, filled in shapes(root, FLIP, True, left_out):
+        if filled:
+            draw_path(path_data(element), matrix, pen)
+        else:
+            left_out["shapes without fill"] = left_out.get("shapes without fill", 0) + 1
+    return tuple(f"{count} {kind} left out" for kind, count in left_out.items())
+
+
+def shapes(
+    element: Any, matrix: FloatArray, filled: bool, left_out: dict[str, int], depth: int = 0
+) -> Iterator[tuple[Any, FloatArray, bool]]:
+    """Each shape with the (3, 3) matrix to font space, and whether it is filled."""
+    if depth > DEEPEST:
+        raise GlyphsplineError(f"groups nested more than {DEEPEST} deep")
+    if not isinstance(element.tag, str):
+        return  # a comment
+    tag, style = element.tag.rpartition("}")[2], styles(element)
+    if tag in LEFT_OUT:
+        left_out[LEFT_OUT[tag]] = left_out.get(LEFT_OUT[tag], 0) + 1
+    if tag in NOT_DRAWN or style.get("display") == "none":
+        return
+    if element.get("transform"):
+        matrix = matrix @ np.asarray(parse_transform(element.get("transform")), dtype=np.float64)
+    filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
+    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline"):
+        yield element, matrix, filled
+    for child in element:
+        yield from shapes(child, matrix, filled, left_out, depth + 1)
+
+
+def styles(element: Any) -> dict[str, str]:
+    """``fill`` and ``display``: of the style attribute, else of their own."""
+    found = {name: element.get(name).strip() for name in ("fill", "display") if element.get(name)}
+    for item in (element.get("style") or "").split(";"):
+        name, colon, value = item.partition(":")
+        if colon and name.strip() in ("fill", "display"):
+            found[name.strip()] = value.strip()
+    return found
+
+
+def path_data(element: Any) -> str:
+    """A shape as path data."""
+    tag = element.tag.rpartition("}")[2]
+    if tag == "path":
+        return str(element.get("d") or "")
+    convert = {"rect": rect2pathd, "circle": ellipse2pathd, "ellipse": ellipse2pathd}
+    if tag in convert:
+        return str(convert[tag](dict(element.attrib)))
+    points = element.get("points") or ""
+    return f"M{points}Z" if points.strip() else ""
+
+
+def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
+    """Path data with a pen, subpath by subpath: two that meet in a point are not joined."""
+    here = 0j
+    for subpath in re.findall(r"[Mm][^Mm]*", data):
+        start = moved_to(subpath, here)
+        path = parse_path(subpath, current_pos=here)
+        pen.moveTo(placed([start], matrix)[0])
+        end = start
+        for segment in path:
+            draw_segment(segment, matrix, pen)
+            end = segment.end
+        pen.closePath()
+        here = start if subpath.rstrip().endswith(("Z", "z")) else end
+
+
+def moved_to(subpath: str, here: complex) -> complex:
+    """Where a subpath begins."""
+    numbers = re.findall(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", subpath)
+    if len(numbers) < 2:
+        raise GlyphsplineError("path data that begins nowhere")
+    point = complex(float(numbers[0]), float(numbers[1]))
+    return here + point if subpath[0] == "m" else point
+
+
+def draw_segment(segment: Any, matrix: FloatArray, pen: Any) -> None:
+    """A line, quadratic, cubic or arc, from where the pen is."""
+    if isinstance(segment, Line):
+        pen.lineTo(*placed([segment.end], matrix))
+    elif isinstance(segment, QuadraticBezier):
+        pen.qCurveTo(*placed([segment.control, segment.end], matrix))
+    elif isinstance(segment, CubicBezier):
+        pen.curveTo(*placed([segment.control1, segment.control2, segment.end], matrix))
+    elif isinstance(segment, Arc):
+        for cubic in arc_cubics(segment):
+            pen.curveTo(*placed(cubic, matrix))
+    else:
+        raise GlyphsplineError(f"a path segment of an unknown kind, {type(segment).__name__}")
+
+
+def arc_cubics(arc: Any) -> Iterator[list[complex]]:
+    """The three points that each cubic of an elliptic arc adds."""
+    pieces = max(1, int(np.ceil(abs(arc.delta) / ARC)))
+    handle = 4 / 3 * np.tan(np.radians(arc.delta) / pieces / 4) / np.radians(arc.delta)
+    for k in range(pieces):
+        t0, t1 = k / pieces, (k + 1) / pieces
+        start, end = arc.point(t0), arc.point(t1)
+        yield [start + handle * arc.derivative(t0), end - handle * arc.derivative(t1), end]
+
+
+def placed(points: list[complex], matrix: FloatArray) -> list[Point]:
+    """Points of the drawing in font space."""
+    (a, b, x), (c, d, y) = matrix[:2].tolist()
+    return [(a * p.real + b * p.imag + x, c * p.real + d * p.imag + y) for p in map(complex, points)]

@@ -1,0 +1,204 @@
+"""UFO sources (versions 1 to 3), through fontTools' ufoLib: the default layer, components decomposed."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType, SimpleNamespace
+from typing import Any
+
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import fromstring
+from fontTools.pens.pointPen import PointToSegmentPen
+from fontTools.ufoLib import UFOReader
+
+from ..errors import FontError, GlyphsplineError
+from ..outline import FontMetrics, Outline
+from .base import NamedGlyphs, reason
+from .pens import ContourPen
+
+ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
+
+
+class Ufo(NamedGlyphs):
+    """A UFO folder; made by :func:`open_ufo`. A :class:`.source.Source`.
+
+    Attributes:
+        path: the folder, as given. face_index, location: 0 and empty, as a UFO is one master.
+        family, style: from ``fontinfo.plist``, falling back on the folder's name and "Regular".
+        metrics: units per em, ascender and descender.
+        glyph_names: by ``public.glyphOrder``, then those not in it by name. Glyphs in ``public.skipExportGlyphs``
+            are not among them, but are there to be components of others.
+        cmap: code point to the first glyph that claims it.
+    """
+
+    format = "UFO"
+    face_index = 0
+    num_faces = 1
+    location: Mapping[str, float] = MappingProxyType({})
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        reader = UFOReader(path, validate=True)
+        info = SimpleNamespace(familyName=None, styleName=None, unitsPerEm=None, ascender=None, descender=None)
+        reader.readInfo(info)
+        self.family, self.style = info.familyName or path.stem, info.styleName or "Regular"
+        em = float(info.unitsPerEm or 1000)
+        if em <= 0:
+            raise FontError(f"units per em cannot be {em:g}")
+        ascender, descender = info.ascender, info.descender
+        self.metrics = FontMetrics(
+            em,
+            float(0.8 * em if ascender is None else ascender),
+            float(-0.2 * em if descender is None else descender),
+        )
+        self._glyphs = reader.getGlyphSet()
+        outside = [name for name, file in self._glyphs.contents.items() if Path(file).name != file]
+        if outside:
+            raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
+        self.glyph_names = _exported(list(self._glyphs.contents), reader.readLib())
+        self.cmap: Mapping[int, str] = MappingProxyType(self._code_points())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_ufo, (self.path,)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Of the names and contents of all its files, in hexadecimal."""
+        digest = hashlib.sha256()
+        for file in _files(self.path):
+            content = file.read_bytes()
+            digest.update(f"{file.relative_to(self.path).as_posix()}\0{len(content)}\0".encode() + content)
+        return digest.hexdigest()
+
+    def outline(self, name: str) -> Outline:
+        """The glyph's contours from the default layer, components decomposed.
+
+        Raises:
+            FontError: there is no glyph of that name.
+            GlyphsplineError: the glyph's file is broken, or its components are nested in a loop.
+        """
+        gid = self._gid(name)
+        pen = ContourPen(_Drawable(self), name)
+        try:
+            glyph = self._read(name)
+            glyph.draw(pen)
+            pen.finish()
+        except GlyphsplineError as error:
+            error.locate(font=str(self.path), glyph=name)
+            raise
+        except Exception as error:  # ufoLib raises errors of many types
+            message = f"cannot be drawn: {reason(error)}"
+            raise GlyphsplineError(message, font=str(self.path), glyph=name) from error
+        return Outline(
+            name=name,
+            gid=gid,
+            unicodes=self._unicodes.get(name, ()),
+            advance=float(glyph.width),
+            contours=tuple(pen.contours),
+            metrics=self.metrics,
+            notes=pen.notes,
+        )
+
+    def _read(self, name: str) -> _Glyph:
+        glyph = _Glyph()
+        self._glyphs.readGlyph(name, glyph, glyph.record, validate=True)
+        return glyph
+
+    def _code_points(self) -> dict[int, str]:
+        """Also the place where every glyph's file is looked at for entities, before ufoLib reads any."""
+        claims: dict[str, list[int]] = {}
+        for name in self._glyphs.contents:
+            try:
+                root = parsed(self._glyphs.getGLIF(name))
+                claims[name] = [int(item.get("hex"), 16) for item in root.iter("unicode")]
+            except GlyphsplineError as error:
+                raise FontError(error.message, glyph=name) from error
+        found: dict[int, str] = {}
+        for name in self.glyph_names:
+            for code in claims[name]:
+                found.setdefault(code, name)
+        return found
+
+
+class _Glyph:
+    """What ufoLib fills in: a width, and the calls to a point pen, which are drawn later."""
+
+    def __init__(self) -> None:
+        self.width: float = 0
+        self._calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
+        self.record: Any = self
+
+    def __getattr__(self, method: str) -> Any:
+        if method not in ("beginPath", "addPoint", "endPath", "addComponent"):
+            raise AttributeError(method)
+        return lambda *args, **named: self._calls.append((method, args, named))
+
+    def draw(self, pen: Any) -> None:
+        """Draw with a segment pen."""
+        points = PointToSegmentPen(pen)
+        for method, args, named in self._calls:
+            getattr(points, method)(*args, **named)
+
+
+class _Drawable:
+    """The glyphs as a pen looks for components: skipped ones too."""
+
+    def __init__(self, ufo: Ufo) -> None:
+        self._ufo = ufo
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._ufo._glyphs.contents
+
+    def __getitem__(self, name: str) -> _Glyph:
+        return self._ufo._read(name)
+
+
+def open_ufo(path: str | Path) -> Ufo:
+    """Open a UFO folder.
+
+    Raises:
+        FontError: it cannot be read or is no UFO.
+    """
+    path = Path(path)
+    try:
+        for file in _files(path):
+            if file.suffix == ".plist":
+                parsed(file.read_bytes())
+        return Ufo(path)
+    except GlyphsplineError as error:
+        raise FontError(error.message, font=str(path), glyph=error.glyph) from error
+    except OSError as error:
+        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+    except Exception as error:
+        raise FontError(f"a broken UFO: {reason(error)}", font=str(path)) from error
+
+
+def parsed(document: bytes) -> Any:
+    """The root of an XML document that declares no entities: they can make a small file a huge one, or read another.
+
+    Raises:
+        GlyphsplineError: it does, or is no XML at all.
+    """
+    try:
+        return fromstring(document)
+    except DefusedXmlException as error:
+        raise GlyphsplineError("its XML declares entities, which are refused") from error
+    except SyntaxError as error:
+        raise GlyphsplineError(f"not well-formed XML: {error}") from error
+
+
+def _exported(names: list[str], lib: Mapping[str, Any]) -> tuple[str, ...]:
+    there, skipped = set(names), set(lib.get(SKIP_KEY, ()))
+    ordered = [name for name in dict.fromkeys(lib.get(ORDER_KEY, ())) if name in there]
+    return tuple(name for name in [*ordered, *sorted(there - set(ordered))] if name not in skipped)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """All files of a folder in a fixed order; links to folders are not followed."""
+    for here, folders, files in os.walk(folder):
+        folders.sort()
+        yield from (Path(here, file) for file in sorted(files))

@@ -1,0 +1,110 @@
+"use strict";
+/* One glyph, large: layers, cross-fade of source and result, zoom and pan, its measures contour by contour. */
+
+(() => {
+  const COLUMNS = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound",
+    "overshoot", "max_curvature", "bending_energy", "converged", "within_tolerance"];
+
+  /** `dialog` as in gallery.html; `layersOn()` gives the set of layers; `labels` names the measures. */
+  GS.detail = (dialog, layersOn, labels) => {
+    const find = (name) => dialog.querySelector(`[data-part="${name}"]`);
+    const picture = find("picture"), fade = find("fade");
+    const zoom = GS.zoomable(picture, (scale, unit) => {
+      find("scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
+      ruler(unit);
+    });
+    let rows = [], position = 0, drawing = null, closed = () => {};
+
+    /** A ruler of a round number of font units, so that a zoom means something. */
+    const ruler = (unit) => {
+      const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most));
+      const length = [5, 2, 1].find((k) => k * power <= most) * power;
+      find("ruler").style.width = `${length / unit}px`;
+      find("ruler").textContent = `${+length.toPrecision(2)} units`;
+    };
+
+    const draw = () => {
+      if (!drawing) return;
+      const { run } = rows[position];
+      picture.replaceChildren(GS.layers(run, drawing, layersOn()));
+      const { units_per_em: em, ascender, descender } = run.metrics, advance = rows[position].advance ?? em;
+      const guides = [[-em, 0, 3 * em, 0], [0, -ascender, 0, -descender], [advance, -ascender, advance, -descender]];
+      picture.prepend(GS.svg("path", { class: "guides", d: guides.map(([a, b, c, d]) => `M${a} ${b}L${c} ${d}`).join("") }));
+      find("legend").replaceChildren(layersOn().has("comb") || layersOn().has("colour") ? GS.legend(em, run.scale) : "");
+      fading();
+    };
+
+    const fading = () => {
+      const value = +fade.value / 100;
+      picture.style.setProperty("--source-shown", Math.min(1, 2 - 2 * value).toFixed(3));
+      picture.style.setProperty("--result-shown", Math.min(1, 2 * value).toFixed(3));
+      fade.setAttribute("aria-valuetext", value === 0.5 ? "both" : value < 0.5 ? "more of the source" : "more of the result");
+    };
+
+    const facts = (row) => {
+      const table = GS.element("table", {});
+      const used = COLUMNS.filter((key) => drawing.contours.some((contour) => contour[key] !== null && contour[key] !== undefined));
+      const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"));
+      drawing.contours.forEach((_, i) => head.append(GS.element("th", { scope: "col" }, String(i))));
+      table.append(GS.element("caption", { class: "unseen" }, `Measures of ${row.name}`), GS.element("thead", {}, head));
+      const body = GS.element("tbody", {});
+      for (const key of used) {
+        const line = GS.element("tr", {}, GS.element("th", { scope: "row" }, labels[key] ?? key));
+        for (const contour of drawing.contours) {
+          const bad = (key === "converged" || key === "within_tolerance") && contour[key] === false;
+          line.append(GS.element("td", bad ? { class: "bad" } : {}, GS.number(contour[key])));
+        }
+        body.append(line);
+      }
+      table.append(body);
+      const links = Object.entries(drawing.files).map(([kind, path]) =>
+        GS.element("a", { href: GS.fileLink(row.run, path), target: "_blank", rel: "noopener" }, kind));
+      find("facts").replaceChildren(
+        ...(drawing.error ? [GS.element("p", { class: "bad" }, drawing.error)] : []),
+        ...(drawing.contours.length ? [GS.element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Measures" }, table)] : []),
+        GS.element("p", { class: "links" }, ...links));
+    };
+
+    const show = async (to) => {
+      position = Math.max(0, Math.min(rows.length - 1, to));
+      const row = rows[position];
+      find("title").textContent = row.text && row.text.trim() ? `${row.text}  ${row.name}` : row.name;
+      find("about").textContent = [row.run.family, row.run.style, `gid ${row.gid}`, row.unicodes, row.status]
+        .filter(Boolean).join(" · ");
+      find("count").textContent = `${position + 1} of ${rows.length}`;
+      find("before").disabled = position === 0;
+      find("after").disabled = position === rows.length - 1;
+      drawing = await GS.drawings(row.run, row.index);
+      if (rows[position] !== row) return;
+      picture.setAttribute("aria-label", `${row.name}: source outline and interpolated curve`);
+      zoom.fit(GS.box(row.run, row.advance));
+      draw();
+      facts(row);
+    };
+
+    find("before").addEventListener("click", () => show(position - 1));
+    find("after").addEventListener("click", () => show(position + 1));
+    find("closer").addEventListener("click", () => zoom.zoom(1.6));
+    find("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
+    find("fit").addEventListener("click", () => zoom.fit());
+    find("close").addEventListener("click", () => dialog.close());
+    fade.addEventListener("input", fading);
+    dialog.addEventListener("close", () => closed(position));
+    dialog.addEventListener("keydown", (event) => {
+      if (event.target.matches("input, select")) return;
+      if (event.key === "[" || event.key === "PageUp") show(position - 1);
+      else if (event.key === "]" || event.key === "PageDown") show(position + 1);
+      else zoom.key(event);
+    });
+
+    return {
+      draw,
+      open(chosen, at, then) {
+        rows = chosen;
+        closed = then;
+        dialog.showModal();
+        show(at);
+      },
+    };
+  };
+})();

@@ -1,0 +1,42 @@
+"""The measures of a glyph as the gallery sorts and filters by them: those of its contours, taken together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+MEASURES: dict[str, tuple[str, Callable[[Sequence[Any]], Any]]] = {
+    "deviation": ("deviation", max),
+    "deviation_bound": ("deviation, certified", max),
+    "iterations": ("iterations", max),
+    "residual": ("residual", max),
+    "rate_bound": ("rate bound", max),
+    "vertices": ("vertices", sum),
+    "segments": ("segments", sum),
+    "numbers": ("numbers to store", sum),
+    "fallbacks": ("fallbacks", sum),
+    "bending_energy": ("bending energy", sum),
+    "max_curvature": ("largest curvature", max),
+    "overshoot": ("overshoot", max),
+    "length": ("length", sum),
+    "area_change": ("change of area", lambda values: max(values, key=abs)),
+    "new_crossings": ("new crossings", sum),
+    "converged": ("converged", all),
+    "within_tolerance": ("within tolerance", all),
+}
+"""For each measure of a contour what it is called, and how contours make a glyph: the worst of them, or the sum."""
+
+DIGITS = 5
+
+
+def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """All of ``MEASURES`` for one glyph, None where no contour has it."""
+    found: dict[str, Any] = {"contours": len(contours)}
+    for key, (_, together) in MEASURES.items():
+        values = [contour[key] for contour in contours if contour.get(key) is not None]
+        found[key] = _short(together(values)) if values else None
+    return found
+
+
+def _short(value: Any) -> Any:
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value

@@ -1,0 +1,169 @@
+"use strict";
+/* Path data to Bézier pieces, and from those what is drawn over them: combs, colours, vertices. SVG coordinates, y down. */
+
+const GS = {};
+
+(() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  const TURN = Math.PI / 12; // a tooth at least every 15 degrees of turn, as in the curvature maps
+  const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 160; // in em and in units of the scale, as in the maps
+  const MOST_TEETH = 400; // a piece
+
+  /** The colours of curvature, from the strongest right turn to the strongest left turn. */
+  GS.usePalette = (palette) => {
+    GS.palette = palette;
+    const ends = [palette[0], palette[(palette.length - 1) / 2], palette[palette.length - 1]];
+    document.documentElement.style.setProperty("--curvature", `linear-gradient(90deg, ${ends.join(", ")})`);
+  };
+
+  GS.svg = (name, attributes = {}, ...children) => {
+    const node = document.createElementNS(SVG, name);
+    for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+    node.append(...children);
+    return node;
+  };
+
+  GS.element = (name, attributes = {}, ...children) => {
+    const node = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) {
+      if (key === "class") node.className = value;
+      else if (key in node && key !== "list" && typeof value !== "string") node[key] = value;
+      else node.setAttribute(key, value);
+    }
+    node.append(...children);
+    return node;
+  };
+
+  /** Absolute M, L, Q, C, Z path data as contours, each a list of pieces [[x, y], …] of 2 to 4 points. */
+  GS.contours = (data) => {
+    const contours = [];
+    let pieces = null, start = null, at = null;
+    for (const [, command, rest] of data.matchAll(/([MLQCZ])([^MLQCZ]*)/g)) {
+      const numbers = (rest.match(/-?[\d.]+(?:e-?\d+)?/g) || []).map(Number);
+      const points = [];
+      for (let i = 0; i + 1 < numbers.length; i += 2) points.push([numbers[i], numbers[i + 1]]);
+      if (command === "M") {
+        at = start = points.shift();
+        contours.push((pieces = []));
+      }
+      const step = { M: 1, L: 1, Q: 2, C: 3 }[command];
+      for (let i = 0; i < points.length; i += step) {
+        pieces.push([at, ...points.slice(i, i + step)]);
+        at = points[i + step - 1];
+      }
+      if (command === "Z" && (at[0] !== start[0] || at[1] !== start[1])) pieces.push([at, start]);
+    }
+    return contours;
+  };
+
+  /** The points of "M x y x y … Z" data, one list a polygon. */
+  GS.polygons = (data) => data.split("M").slice(1).map((part) => {
+    const numbers = (part.match(/-?[\d.]+(?:e-?\d+)?/g) || []).map(Number);
+    return Array.from({ length: numbers.length >> 1 }, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
+  });
+
+  const cubic = (p) => {
+    if (p.length === 4) return p;
+    const mix = (a, b, t) => [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t];
+    return p.length === 3
+      ? [p[0], mix(p[0], p[1], 2 / 3), mix(p[2], p[1], 2 / 3), p[2]]
+      : [p[0], mix(p[0], p[1], 1 / 3), mix(p[0], p[1], 2 / 3), p[1]];
+  };
+
+  /** Point, unit normal to the left (as seen with y up) and curvature with the font's sign, at t of a cubic. */
+  GS.frame = (p, t) => {
+    const s = 1 - t, point = [0, 0], first = [0, 0], second = [0, 0];
+    for (const k of [0, 1]) {
+      const [a, b, c, d] = [p[0][k], p[1][k], p[2][k], p[3][k]];
+      point[k] = s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d;
+      first[k] = 3 * (s * s * (b - a) + 2 * s * t * (c - b) + t * t * (d - c));
+      second[k] = 6 * (s * (c - 2 * b + a) + t * (d - 2 * c + b));
+    }
+    const speed = Math.hypot(...first);
+    if (!(speed > 1e-9)) return { point, normal: [0, 0], curvature: 0, speed };
+    return {
+      point, speed,
+      normal: [first[1] / speed, -first[0] / speed],
+      curvature: -(first[0] * second[1] - first[1] * second[0]) / speed ** 3, // y down turns the sign
+    };
+  };
+
+  const angle = (a, b) => Math.abs(Math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]));
+
+  /** Frames along each contour: even in parameter, closer where the piece turns; `length` is arc length so far. */
+  GS.frames = (contours, em) => contours.map((pieces) => {
+    const found = [];
+    let length = 0;
+    for (const piece of pieces) {
+      const p = cubic(piece), legs = [1, 2, 3].map((i) => [p[i][0] - p[i - 1][0], p[i][1] - p[i - 1][1]]);
+      const extent = legs.reduce((sum, leg) => sum + Math.hypot(...leg), 0);
+      const turn = angle(legs[0], legs[1]) + angle(legs[1], legs[2]);
+      const n = Math.min(MOST_TEETH, Math.max(2, Math.ceil(extent / (SPACING * em) + turn / TURN)));
+      for (let i = 0; i <= n; i++) {
+        const frame = GS.frame(p, i / n);
+        const last = found[found.length - 1];
+        if (last) length += Math.hypot(frame.point[0] - last.point[0], frame.point[1] - last.point[1]);
+        found.push(Object.assign(frame, { length }));
+      }
+    }
+    return found;
+  });
+
+  const short = (value) => +value.toFixed(2);
+  const move = (a, b) => `M${short(a[0])} ${short(a[1])}L${short(b[0])} ${short(b[1])}`;
+  const sides = () => (GS.palette.length - 1) / 2;
+
+  GS.colourClass = (relative) => {
+    const n = sides();
+    return Math.max(-n, Math.min(n, Math.round(relative * n))) + n;
+  };
+
+  /** The comb as a group: teeth by colour class, the line through their tips, a dot where a tooth was cut. */
+  GS.comb = (contours, em, scale) => {
+    const teeth = GS.palette.map(() => []), ends = [], cut = [];
+    for (const frames of GS.frames(contours, em)) {
+      const tips = frames.map(({ point, normal, curvature }) => {
+        const strength = scale > 0 ? curvature / scale : 0;
+        const reach = TOOTH * em * Math.max(-LONGEST, Math.min(LONGEST, strength));
+        const tip = [point[0] - reach * normal[0], point[1] - reach * normal[1]];
+        if (Math.abs(reach) > 1e-4 * em) teeth[GS.colourClass(strength)].push(move(point, tip));
+        if (Math.abs(strength) > LONGEST) cut.push(move(tip, tip));
+        return tip;
+      });
+      if (tips.length) ends.push("M" + tips.map((tip) => `${short(tip[0])} ${short(tip[1])}`).join("L") + "Z");
+    }
+    const group = GS.svg("g", { class: "comb" });
+    teeth.forEach((data, i) => data.length && group.append(GS.svg("path", { d: data.join(""), stroke: GS.palette[i] })));
+    group.append(GS.svg("path", { class: "tips", d: ends.join("") }));
+    if (cut.length) group.append(GS.svg("path", { class: "cut", d: cut.join("") }));
+    return group;
+  };
+
+  /** The curve itself in the colours of its curvature. */
+  GS.coloured = (contours, em, scale) => {
+    const parts = GS.palette.map(() => []);
+    for (const frames of GS.frames(contours, em)) {
+      for (let i = 1; i < frames.length; i++) {
+        const mean = (frames[i].curvature + frames[i - 1].curvature) / 2;
+        parts[GS.colourClass(scale > 0 ? mean / scale : 0)].push(move(frames[i - 1].point, frames[i].point));
+      }
+    }
+    const group = GS.svg("g", { class: "coloured" });
+    parts.forEach((data, i) => data.length && group.append(GS.svg("path", { d: data.join(""), stroke: GS.palette[i] })));
+    return group;
+  };
+
+  /** Dots that keep their size whatever the zoom: strokes of no length with round caps. */
+  GS.dots = (points, name) => GS.svg("path", { class: name, d: points.map((p) => move(p, p)).join("") });
+
+  /** The legend of combs and colours: a bar of the palette over numbers in 1/em. */
+  GS.legend = (em, scale) => {
+    const reach = scale * em, width = 14 * GS.palette.length;
+    const bar = GS.svg("svg", { viewBox: `0 0 ${width} 10`, class: "bar", "aria-hidden": "true", preserveAspectRatio: "none" });
+    GS.palette.forEach((fill, i) => bar.append(GS.svg("rect", { x: 14 * i, width: 14.5, height: 10, fill })));
+    const text = (value) => value.toPrecision(3).replace(/\.?0+$/, "").replace("-", "\u2212");
+    return GS.element("div", { class: "legend", role: "img", "aria-label":
+      `Curvature from ${text(-reach)} to ${text(reach)} in 1/em, left turns positive` },
+    bar, GS.element("span", {}, text(-reach)), GS.element("span", {}, "κ in 1/em"), GS.element("span", {}, text(reach)));
+  };
+})();

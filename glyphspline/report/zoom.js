@@ -1,0 +1,92 @@
+"use strict";
+/* Zoom and pan of an SVG drawing by its view box: wheel, drag, pinch, double click, keys. */
+
+(() => {
+  const CLOSEST = 4000; // times
+
+  /** Make `svg` zoomable; returns {fit(box), zoom(factor), pan(dx, dy), key(event), box()}. `changed` hears the scale. */
+  GS.zoomable = (svg, changed = () => {}, mayDrag = () => true) => {
+    let home = [0, 0, 1000, 1000], box = [...home];
+    const fingers = new Map();
+
+    const show = () => {
+      svg.setAttribute("viewBox", box.map((v) => +v.toPrecision(9)).join(" "));
+      changed(home[2] / box[2], unit());
+    };
+    /** Drawing units in a pixel, whatever side the view box is letterboxed on. */
+    const unit = () => {
+      const r = svg.getBoundingClientRect();
+      return Math.max(box[2] / Math.max(r.width, 1), box[3] / Math.max(r.height, 1));
+    };
+    const place = (event) => {
+      const r = svg.getBoundingClientRect(), u = unit();
+      return [
+        box[0] + box[2] / 2 + (event.clientX - r.left - r.width / 2) * u,
+        box[1] + box[3] / 2 + (event.clientY - r.top - r.height / 2) * u,
+      ];
+    };
+    const zoom = (factor, about = [box[0] + box[2] / 2, box[1] + box[3] / 2]) => {
+      const width = Math.min(home[2] * 4, Math.max(home[2] / CLOSEST, box[2] / factor));
+      const k = width / box[2];
+      box = [about[0] + (box[0] - about[0]) * k, about[1] + (box[1] - about[1]) * k, width, box[3] * k];
+      show();
+    };
+    const pan = (dx, dy) => {
+      box[0] += dx;
+      box[1] += dy;
+      show();
+    };
+    const fit = (to = home) => {
+      home = [...to];
+      box = [...to];
+      show();
+    };
+
+    svg.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.002)), place(event));
+    }, { passive: false });
+    svg.addEventListener("dblclick", (event) => zoom(event.shiftKey ? 1 / 3 : 3, place(event)));
+    svg.addEventListener("pointerdown", (event) => {
+      if (!mayDrag(event)) return;
+      svg.setPointerCapture(event.pointerId);
+      fingers.set(event.pointerId, event);
+      svg.classList.add("dragging");
+    });
+    svg.addEventListener("pointermove", (event) => {
+      const before = fingers.get(event.pointerId);
+      if (!before) return;
+      const other = [...fingers.values()].find((finger) => finger.pointerId !== event.pointerId);
+      if (other) {
+        const spread = (e) => Math.max(8, Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY));
+        zoom(spread(event) / spread(before), place(other));
+      } else {
+        const u = unit();
+        pan((before.clientX - event.clientX) * u, (before.clientY - event.clientY) * u);
+      }
+      fingers.set(event.pointerId, event);
+    });
+    const lift = (event) => {
+      fingers.delete(event.pointerId);
+      if (!fingers.size) svg.classList.remove("dragging");
+    };
+    svg.addEventListener("pointerup", lift);
+    svg.addEventListener("pointercancel", lift);
+
+    /** Arrow keys pan, + and - zoom, 0 fits; true if the key was one of these. */
+    const key = (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return false;
+      const step = box[2] / 12;
+      const acts = {
+        "+": () => zoom(1.5), "=": () => zoom(1.5), "-": () => zoom(1 / 1.5), 0: () => fit(),
+        ArrowLeft: () => pan(-step, 0), ArrowRight: () => pan(step, 0), ArrowUp: () => pan(0, -step),
+        ArrowDown: () => pan(0, step),
+      };
+      if (!acts[event.key]) return false;
+      acts[event.key]();
+      event.preventDefault();
+      return true;
+    };
+    return { fit, zoom, pan, key, place, unit, box: () => [...box] };
+  };
+})();

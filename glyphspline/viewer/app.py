@@ -1,0 +1,148 @@
+"""The viewer's routes: the page and its files, the font, and what is computed for the page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from ..errors import GlyphsplineError
+from ..report.gallery import palette
+from ..writers.svg import to_svg
+from .guard import Guard
+from .payload import glyph_payload, result_payload, step_payload
+from .search import search
+from .state import State, read_state
+from .work import COMPARED, Work, steps
+
+LONGEST_BODY = 200_000
+"""Bytes of a request; moved vertices take most of it."""
+
+PAGES = {
+    "viewer.css": ("glyphspline.viewer", "text/css"),
+    "viewer_stage.js": ("glyphspline.viewer", "text/javascript"),
+    "viewer_chart.js": ("glyphspline.viewer", "text/javascript"),
+    "viewer.js": ("glyphspline.viewer", "text/javascript"),
+    "theme.css": ("glyphspline.report", "text/css"),
+    "shapes.js": ("glyphspline.report", "text/javascript"),
+    "zoom.js": ("glyphspline.report", "text/javascript"),
+}
+"""All files there are to be had, and where they are kept: no path of a request ever reaches the file system."""
+
+
+FIRST = "龍龙好gSa"
+"""Characters to begin with: the paper's, or some with curves."""
+
+
+def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starlette:
+    """The viewer of one font as an ASGI application.
+
+    Args:
+        path: the font file. face_index: which font of a collection.
+        hosts: what a request's ``Host`` may be, as in "127.0.0.1:8642".
+
+    Raises:
+        FontError: the font cannot be opened.
+    """
+    work = Work(path, face_index)
+    routes = [
+        Route("/", page),
+        Route("/static/{name}", static),
+        Route("/api/font", _answer(lambda request: font_facts(work))),
+        Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
+        Route("/api/glyph", _computed(work, glyph_answer), methods=["POST"]),
+        Route("/api/compare", _computed(work, compare_answer), methods=["POST"]),
+        Route("/api/steps", _computed(work, steps_answer), methods=["POST"]),
+        Route("/api/svg", _computed(work, svg_answer), methods=["POST"]),
+    ]
+    return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])
+
+
+def page(request: Request) -> Response:
+    """The page itself, the same for every font."""
+    return Response(files(__package__).joinpath("viewer.html").read_bytes(), media_type="text/html")
+
+
+def static(request: Request) -> Response:
+    """One of the page's files."""
+    found = PAGES.get(request.path_params["name"])
+    if found is None:
+        return Response("no such file", status_code=404)
+    return Response(files(found[0]).joinpath(request.path_params["name"]).read_bytes(), media_type=found[1])
+
+
+def font_facts(work: Work) -> dict[str, Any]:
+    """What the page needs to know of the font."""
+    font = work.font
+    return {
+        "family": font.family,
+        "style": font.style,
+        "glyphs": len(font.glyph_names),
+        "metrics": {
+            "units_per_em": font.metrics.units_per_em,
+            "ascender": font.metrics.ascender,
+            "descender": font.metrics.descender,
+        },
+        "axes": [
+            {"tag": a.tag, "name": a.name, "minimum": a.minimum, "default": a.default, "maximum": a.maximum}
+            for a in font.axes
+        ],
+        "first": next((font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap), font.glyph_names[0]),
+        "scale": work.scale(),
+        "palette": palette(),
+    }
+
+
+def glyph_answer(work: Work, state: State) -> dict[str, Any]:
+    """The glyph by the state's own variant, and the command that does the same."""
+    result = work.result(state)
+    return glyph_payload(result.outline) | result_payload(result) | {"command": work.command(state)}
+
+
+def compare_answer(work: Work, state: State) -> dict[str, Any]:
+    """The same polygon by variants 1, 2 and 3."""
+    return {"results": [result_payload(work.result(state, variant)) for variant in COMPARED]}
+
+
+def steps_answer(work: Work, state: State) -> dict[str, Any]:
+    """The iteration of the glyph's closed curves."""
+    return {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]}
+
+
+def svg_answer(work: Work, state: State) -> dict[str, Any]:
+    """The drawing that a conversion writes."""
+    return {"svg": to_svg(work.result(state))}
+
+
+def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:
+    async def endpoint(request: Request) -> Response:
+        return JSONResponse(await run_in_threadpool(make, request))
+
+    return endpoint
+
+
+def _computed(work: Work, make: Callable[[Work, State], dict[str, Any]]) -> Callable[[Request], Any]:
+    """An endpoint that reads a state; what is wrong with it, or with the glyph, is an answer too."""
+
+    async def endpoint(request: Request) -> Response:
+        body = b""
+        async for part in request.stream():
+            body += part
+            if len(body) > LONGEST_BODY:
+                return JSONResponse({"error": "too long"}, status_code=413)
+        try:
+            state = read_state(json.loads(body), work.em)
+            return JSONResponse(await run_in_threadpool(make, work, state))
+        except (GlyphsplineError, ValueError) as error:
+            return JSONResponse({"error": str(error)}, status_code=400)
+
+    return endpoint

@@ -1,0 +1,89 @@
+"""Results as the page draws them: path data and lists of points, y down, a few digits each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..glyph import GlyphResult, Measures
+from ..outline import Contour, Outline
+from ..result import Interpolation
+from ..writers.markup import code_points, path_data, polyline_data
+
+DIGITS = 2
+
+ARC = 7
+"""Points on the curve along the interval of a footpoint."""
+
+
+def glyph_payload(outline: Outline) -> dict[str, Any]:
+    """The source outline and what is known of the glyph."""
+    return {
+        "glyph": outline.name,
+        "gid": outline.gid,
+        "unicodes": code_points(outline),
+        "advance": outline.advance,
+        "source": path_data(outline.contours, DIGITS),
+    }
+
+
+def result_payload(result: GlyphResult) -> dict[str, Any]:
+    """The result: its path, polygons, control polygons, footpoints and measures."""
+    arcs = [arc for contour in result.contours for arc in contour.interpolations]
+    return {
+        "variant": result.options.variant,
+        "result": path_data((contour.curve for contour in result.contours), DIGITS),
+        "polygons": [points(contour.polygon) for contour in result.contours],
+        "movable": [len(c.interpolations) == 1 and c.interpolations[0].spline.closed for c in result.contours],
+        "notes": list(result.notes),
+        "residuals": [finite(arc.residuals.tolist()) for arc in arcs],
+        "intervals": "".join(interval_data(arc) for arc in arcs),
+        "measures": [measures_payload(contour.measures) for contour in result.contours],
+        **curves_payload(arcs),
+    }
+
+
+def curves_payload(arcs: Iterable[Interpolation]) -> dict[str, Any]:
+    """Control polygons and footpoints of some curves."""
+    arcs = list(arcs)
+    return {
+        "control": "".join(polyline_data(arc.spline.control_points, DIGITS, closed=arc.spline.closed) for arc in arcs),
+        "controls": [point for arc in arcs for point in points(arc.spline.control_points)],
+        "feet": [point for arc in arcs for point in points(arc.spline(arc.parameters))],
+    }
+
+
+def step_payload(updates: int, curves: list[Interpolation]) -> dict[str, Any]:
+    """The curves after so many updates."""
+    shapes = [Contour.from_segments(curve.spline.to_bezier()) for curve in curves]
+    error = max((curve.max_error for curve in curves), default=0.0)
+    return {"step": updates, "error": error, "result": path_data(shapes, DIGITS), **curves_payload(curves)}
+
+
+def interval_data(arc: Interpolation) -> str:
+    """The parts of the curve on which footpoints were sought, as path data; those of one point are left out."""
+    wide = arc.intervals[:, 1] > arc.intervals[:, 0]
+    a, b = arc.intervals[wide].T
+    t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, ARC)
+    return "".join(polyline_data(part, DIGITS) for part in arc.spline(t))
+
+
+def points(array: FloatArray) -> list[list[float]]:
+    """(n, 2) as pairs, y down."""
+    found: list[list[float]] = (np.round(array * (1, -1), DIGITS) + 0.0).tolist()
+    return found
+
+
+def measures_payload(measures: Measures) -> Mapping[str, Any]:
+    """Measures as JSON knows them: what is not finite is null."""
+    values = asdict(measures)
+    return {key: None if isinstance(v, float) and not np.isfinite(v) else v for key, v in values.items()}
+
+
+def finite(values: list[float]) -> list[float | None]:
+    """A list with what is not finite left null."""
+    return [value if np.isfinite(value) else None for value in values]

@@ -1,0 +1,272 @@
+"use strict";
+/* The viewer's page: what is asked of the server as controls change, and what is drawn of its answers. */
+
+(async () => {
+  const at = (id) => document.getElementById(id);
+  const WORDS = {
+    0: "(u_{i−2}, u_{i+2}): the whole support; often does not converge", 1: "(u_{i−1}, u_{i+1})",
+    2: "the interval of Lemma 2: converges, and certified to with c > 0", 3: "only the knot u_i: no search, overshoots",
+    4: "as 2, each control point renewed at once (Algorithm 3)",
+  };
+  const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", rate_bound: "rate bound",
+    deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ", bending_energy: "energy" };
+  const number = (v) => (v === null || v === undefined ? "–" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
+
+  const font = await (await fetch("/api/font")).json();
+  GS.usePalette(font.palette);
+  const em = font.metrics.units_per_em;
+  const state = { glyph: font.first, location: {}, variant: 2, margin: 0.02, sampling: "step", amount: 0, corners: "smooth", moved: [], measure: false };
+  const layers = new Set(["source", "result", "vertices"]);
+  let shown = null, compared = null, steps = null, playing = null;
+
+  /** One request of a kind at a time; of those that came in between only the last is sent. */
+  const line = (path, then) => {
+    let busy = false, next = null;
+    const send = async (body) => {
+      if (busy) { next = body; return; }
+      busy = true;
+      try {
+        const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body });
+        const found = await answer.json();
+        if (!next || found.error) then(found);
+      } catch (error) {
+        then({ error: `the viewer does not answer: ${error.message}` });
+      }
+      busy = false;
+      if (next) { const body = next; next = null; send(body); }
+    };
+    return () => send(JSON.stringify(state));
+  };
+
+  const zoom = GS.zoomable(at("picture"), (scale, unit) => {
+    at("zoom-scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
+    const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most)), length = [5, 2, 1].find((k) => k * power <= most) * power;
+    at("ruler").style.width = `${length / unit}px`;
+    at("ruler").textContent = `${+length.toPrecision(2)} units`;
+    for (const svg of document.querySelectorAll("#compared svg")) svg.setAttribute("viewBox", at("picture").getAttribute("viewBox"));
+  }, (event) => mayPan(event));
+
+  const polygons = () => (shown && layers.has("vertices") && state.corners === "smooth"
+    ? shown.polygons.map((points, i) => ({ points, movable: shown.movable[i] })) : []);
+  const mayPan = GS.draggable(at("picture"), zoom.place, zoom.unit, polygons, (contour, vertex, x, y) => {
+    state.moved = state.moved.filter(([c, v]) => c !== contour || v !== vertex);
+    state.moved.push([contour, vertex, +x.toFixed(2), +(-y).toFixed(2)]);
+    ask();
+  });
+
+  const draw = () => {
+    if (!shown) return;
+    const index = +at("step").value, step = steps && index < steps.length ? steps[index] : null;
+    const closed = shown.polygons.filter((_, i) => shown.movable[i]);
+    const result = step ? { ...step, polygons: shown.polygons, intervals: "", tied: closed.flat() } : shown;
+    at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers));
+    at("legend").replaceChildren(...(layers.has("comb") || layers.has("colour") ? [GS.legend(em, font.scale)] : []));
+    at("step-out").textContent = step ? `${step.step}, error ${number(step.error)}` : "result";
+    GS.chart(at("chart"), shown.residuals.length ? shown.residuals : [[0]], 0.005, step ? step.step : null);
+  };
+
+  const drawCompared = () => {
+    at("compared").hidden = !compared;
+    if (!compared) return;
+    const small = new Set([...layers].filter((name) => name !== "feet" && name !== "vertices"));
+    at("compared").replaceChildren(...compared.map((result) => {
+      const picture = GS.svg("svg", { class: "drawing", viewBox: at("picture").getAttribute("viewBox"), role: "img", "aria-label": `variant ${result.variant}` },
+        GS.viewerDrawing(font, shown.source, result, small));
+      const sum = (key) => result.measures.reduce((total, m) => total + (m[key] ?? 0), 0);
+      const most = (key) => Math.max(0, ...result.measures.map((m) => m[key] ?? 0));
+      return GS.element("figure", { class: result.variant === state.variant ? "chosen" : "" }, picture, GS.element("figcaption", {},
+        GS.element("b", {}, `variant ${result.variant}`), ` · ${most("iterations")} iterations · energy ${number(sum("bending_energy"))} · largest κ ${number(most("max_curvature") * em)}/em`));
+    }));
+  };
+
+  const tell = () => {
+    at("title").textContent = `${shown.unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("")} ${shown.glyph}`;
+    const total = shown.measures.reduce((sum, m) => sum + m.vertices, 0), bad = shown.measures.filter((m) => !m.converged).length;
+    at("about").textContent = [`gid ${shown.gid}`, shown.unicodes, `${shown.measures.length} contours`, `${total} vertices`,
+      ...(bad ? [`${bad} not converged`] : []), ...(state.sampling === "tolerance" ? shown.notes : [])].filter(Boolean).join(" · ");
+    at("about").classList.toggle("bad", bad > 0);
+    const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"), ...shown.measures.map((_, i) => GS.element("th", { scope: "col" }, String(i))));
+    const rows = Object.entries(MEASURES).filter(([key]) => shown.measures.some((m) => m[key] !== null)).map(([key, word]) =>
+      GS.element("tr", {}, GS.element("th", { scope: "row" }, word), ...shown.measures.map((m) => GS.element("td", {}, number(m[key])))));
+    at("measures").replaceChildren(head, ...rows);
+    const whole = shown.movable.every(Boolean); // arcs between corners take a few updates each and are not stepped through
+    at("play").disabled = at("step").disabled = !whole;
+    at("step-out").title = whole ? "" : "the iteration of smooth curves only";
+    at("command").textContent = shown.command;
+    at("moved-note").hidden = !state.moved.length;
+  };
+
+  const askSteps = line("/api/steps", (found) => {
+    if (found.error) return;
+    steps = found.steps;
+    at("step").max = String(steps.length);
+    if (+at("step").value === 0 && !playing) at("step").value = String(steps.length);
+    draw();
+    wanted?.();
+    wanted = null;
+  });
+  let wanted = null;
+  const withSteps = (act) => {
+    if (steps) return act();
+    wanted = act;
+    askSteps();
+  };
+  const askCompared = line("/api/compare", (found) => {
+    compared = found.error || !at("compare").checked ? null : found.results;
+    drawCompared();
+  });
+  const askGlyph = line("/api/glyph", (found) => {
+    if (found.error) {
+      at("about").textContent = found.error;
+      at("about").classList.add("bad");
+      return;
+    }
+    const other = !shown || shown.glyph !== found.glyph, onlyMeasured = state.measure && shown?.result === found.result;
+    shown = found;
+    if (onlyMeasured) return tell();
+    if (other) zoom.fit(GS.viewerBox(font, found));
+    tell();
+    draw();
+    document.body.dataset.shown = String(+(document.body.dataset.shown || 0) + 1);
+    if (at("compare").checked) askCompared();
+  });
+  const ask = () => {
+    steps = null;
+    at("step").max = "1";
+    at("step").value = "1";
+    clearInterval(playing);
+    playing = null;
+    state.measure = false;
+    askGlyph();
+    clearTimeout(rest);
+    rest = setTimeout(measured, 350);
+  };
+  /** Deviations take as long to measure as the curve itself, so they are asked for once the sliders rest. */
+  let rest = null;
+  const measured = () => {
+    if (state.sampling === "tolerance" || state.moved.length) return;
+    state.measure = true;
+    askGlyph();
+  };
+
+  /* Controls. The amount's slider is logarithmic: each kind of sampling has its own ends. */
+  const ENDS = { step: [em / 100, em / 4], count: [4, 400], tolerance: [em / 5000, em / 50] };
+  const UNITS = { step: ["chord", " units"], count: ["vertices a contour", ""], tolerance: ["distance allowed", " units"] };
+  const amount = () => {
+    const [low, high] = ENDS[state.sampling], share = +at("amount").value / 100;
+    const value = low * (high / low) ** share;
+    state.amount = state.sampling === "count" ? Math.round(value) : +value.toPrecision(3);
+    at("amount-word").textContent = UNITS[state.sampling][0];
+    at("amount-out").textContent = `${state.amount}${UNITS[state.sampling][1]}`;
+  };
+  const read = () => {
+    state.variant = +document.querySelector("[name=variant]:checked").value;
+    state.sampling = document.querySelector("[name=sampling]:checked").value;
+    state.corners = document.querySelector("[name=corners]:checked").value;
+    state.margin = +at("margin").value;
+    at("margin-out").textContent = state.margin.toFixed(3);
+    at("variant-words").textContent = WORDS[state.variant];
+    amount();
+  };
+  /* Step and count sample whole contours, which sharp corners cut. */
+  const together = (sampling, corners) => {
+    document.querySelector(`[name=sampling][value=${sampling}]`).checked = true;
+    document.querySelector(`[name=corners][value=${corners}]`).checked = true;
+    at("amount").value = START[sampling];
+  };
+  for (const input of document.querySelectorAll("[name=corners], [name=sampling]")) {
+    input.addEventListener("change", () => {
+      if (input.value === "sharp" && state.sampling !== "tolerance") together("tolerance", "sharp");
+      else if (input.name === "sampling" && input.value !== "tolerance") together(input.value, "smooth");
+    });
+  }
+  const START = { step: 45, count: 50, tolerance: 35 };
+  for (const input of document.querySelectorAll("[name=sampling]")) input.addEventListener("change", () => { at("amount").value = START[input.value]; });
+  for (const input of document.querySelectorAll("[name=sampling], [name=corners], #amount")) input.addEventListener("input", () => { state.moved = []; });
+  for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], #margin, #amount")) {
+    input.addEventListener(input.type === "radio" ? "change" : "input", () => { read(); ask(); });
+  }
+  for (const axis of font.axes) {
+    state.location[axis.tag] = axis.default;
+    const input = GS.element("input", { type: "range", min: String(axis.minimum), max: String(axis.maximum), step: "any", value: String(axis.default), "data-axis": axis.tag });
+    const out = GS.element("output", {}, number(axis.default));
+    input.addEventListener("input", () => { state.location[axis.tag] = +(+input.value).toPrecision(4); out.textContent = number(state.location[axis.tag]); state.moved = []; ask(); });
+    at("axes").append(GS.element("label", { class: "slider" }, `${axis.name} (${axis.tag})`, out, input));
+  }
+  for (const [name, label] of Object.entries(GS.viewerLayers)) {
+    const box = GS.element("input", { type: "checkbox", "data-layer": name, checked: layers.has(name) });
+    box.addEventListener("change", () => { layers[box.checked ? "add" : "delete"](name); draw(); drawCompared(); });
+    at("layers").append(GS.element("label", {}, box, GS.element("i"), label));
+  }
+
+  const choose = (name) => {
+    state.glyph = name;
+    state.moved = [];
+    for (const option of at("glyphs").children) option.setAttribute("aria-selected", String(option.dataset.name === name));
+    ask();
+  };
+  const find = async () => {
+    const words = at("words").value;
+    const found = await (await fetch(`/api/glyphs?words=${encodeURIComponent(words)}`)).json();
+    if (words !== at("words").value) return;
+    at("glyphs").replaceChildren(...found.glyphs.map(({ name, text }) => {
+      const option = GS.element("div", { role: "option", class: text.trim() ? "" : "named", title: name, "aria-label": name, "aria-selected": String(name === state.glyph), "data-name": name }, text.trim() || name);
+      option.addEventListener("click", () => choose(name));
+      return option;
+    }));
+    if (words && found.glyphs.length && state.glyph !== found.glyphs[0].name) choose(found.glyphs[0].name);
+  };
+  at("words").addEventListener("input", find);
+  at("glyphs").addEventListener("keydown", (event) => {
+    const options = [...at("glyphs").children], now = options.findIndex((option) => option.dataset.name === state.glyph);
+    const to = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!to || !options.length) return;
+    event.preventDefault();
+    const option = options[Math.max(0, Math.min(options.length - 1, now + to))];
+    option.scrollIntoView({ block: "nearest" });
+    choose(option.dataset.name);
+  });
+
+  at("step").addEventListener("pointerdown", () => withSteps(() => {}));
+  at("step").addEventListener("focus", () => withSteps(() => {}));
+  at("step").addEventListener("input", draw);
+  at("play").addEventListener("click", () => withSteps(() => {
+    clearInterval(playing);
+    for (const name of ["control", "feet"]) if (!layers.has(name)) document.querySelector(`[data-layer=${name}]`).click();
+    at("step").value = "0";
+    draw();
+    playing = setInterval(() => {
+      at("step").value = String(+at("step").value + 1);
+      draw();
+      if (+at("step").value >= steps.length) { clearInterval(playing); playing = null; }
+    }, 280);
+  }));
+  at("compare").addEventListener("change", () => (at("compare").checked ? askCompared() : ((compared = null), drawCompared())));
+  at("restore").addEventListener("click", () => { state.moved = []; ask(); });
+  at("copy").addEventListener("click", async () => {
+    await navigator.clipboard.writeText(at("command").textContent);
+    at("copy").textContent = "Copied";
+    setTimeout(() => { at("copy").textContent = "Copy command"; }, 1200);
+  });
+  at("save").addEventListener("click", async () => {
+    const answer = await fetch("/api/svg", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(state) });
+    const found = await answer.json();
+    if (found.error) return;
+    const url = URL.createObjectURL(new Blob([found.svg], { type: "image/svg+xml" }));
+    GS.element("a", { href: url, download: `gid-${shown.gid}.svg` }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  });
+  at("picture").addEventListener("keydown", zoom.key);
+  at("closer").addEventListener("click", () => zoom.zoom(1.6));
+  at("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
+  at("fit").addEventListener("click", () => zoom.fit());
+  at("theme").addEventListener("click", () => {
+    document.documentElement.dataset.theme = getComputedStyle(document.documentElement).colorScheme === "dark" ? "light" : "dark";
+  });
+
+  at("family").textContent = `${font.family} ${font.style}`;
+  document.title = `${font.family} – glyphspline`;
+  read();
+  find();
+  ask();
+})();

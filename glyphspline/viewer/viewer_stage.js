@@ -1,0 +1,66 @@
+"use strict";
+/* The drawing: layers of a glyph and its result, and vertices that can be taken hold of. */
+
+(() => {
+  const REACH = 12; // pixels within which a vertex is taken hold of
+
+  GS.viewerLayers = {
+    source: "Source", result: "Result", vertices: "Vertices", polygon: "Polygon", control: "Control polygon", feet: "Footpoints",
+    intervals: "Intervals", comb: "Curvature comb", colour: "Colour",
+  };
+
+  /** The layers of `source` (path data) and `result` (as the server gives it) that are on. */
+  GS.viewerDrawing = (font, source, result, on) => {
+    const em = font.metrics.units_per_em, group = GS.svg("g"), contours = GS.contours(result.result);
+    const add = (name, make) => on.has(name) && group.append(...make());
+    add("source", () => [GS.svg("path", { class: "source", d: source })]);
+    add("result", () => [GS.svg("path", { class: "result", d: result.result })]);
+    add("intervals", () => [GS.svg("path", { class: "intervals", d: result.intervals || "" })]);
+    add("comb", () => [GS.comb(contours, em, font.scale)]);
+    add("colour", () => [GS.coloured(contours, em, font.scale)]);
+    add("control", () => [GS.svg("path", { class: "control", d: result.control }), GS.dots(result.controls, "controls-dots")]);
+    const closed = (points) => "M" + points.map((p) => p.join(" ")).join("L") + "Z";
+    add("polygon", () => [GS.svg("path", { class: "polygon", d: result.polygons.filter((p) => p.length).map(closed).join("") })]);
+    add("vertices", () => [GS.dots(result.polygons.flat(), "vertices")]);
+    add("feet", () => {
+      const vertices = result.tied || [];
+      const ties = result.feet.map((foot, i) => (vertices[i] ? `M${vertices[i].join(" ")}L${foot.join(" ")}` : "")).join("");
+      return [GS.svg("path", { class: "ties", d: ties }), GS.dots(result.feet, "feet")];
+    });
+    return group;
+  };
+
+  /** A box around the ink with room for combs; the em where there is no ink. */
+  GS.viewerBox = (font, glyph) => {
+    const { units_per_em: em, ascender, descender } = font.metrics, room = 0.09 * em;
+    const points = GS.contours(glyph.source).flat(2);
+    if (!points.length) return [0, -ascender, glyph.advance || em, ascender - descender];
+    const [xs, ys] = [0, 1].map((k) => points.map((point) => point[k]));
+    const [left, top] = [Math.min(...xs) - room, Math.min(...ys) - room];
+    return [left, top, Math.max(...xs) + room - left, Math.max(...ys) + room - top];
+  };
+
+  /** Lets a vertex be dragged: `grasp(contour, vertex, x, y, done)` hears its new place in drawing coordinates. */
+  GS.draggable = (svg, place, unit, polygons, grasp) => {
+    let held = null;
+    const nearest = (event) => {
+      const [x, y] = place(event);
+      let best = null, least = REACH * unit();
+      polygons().forEach(({ points, movable }, contour) => movable && points.forEach(([px, py], vertex) => {
+        const distance = Math.hypot(px - x, py - y);
+        if (distance < least) [best, least] = [{ contour, vertex }, distance];
+      }));
+      return best;
+    };
+    svg.addEventListener("pointerdown", (event) => {
+      held = nearest(event);
+      if (held) svg.setPointerCapture(event.pointerId);
+    });
+    svg.addEventListener("pointermove", (event) => {
+      if (held) grasp(held.contour, held.vertex, ...place(event));
+      else if (!event.buttons) svg.classList.toggle("near", Boolean(nearest(event)));
+    });
+    for (const name of ["pointerup", "pointercancel"]) svg.addEventListener(name, () => { held = null; });
+    return (event) => !nearest(event);
+  };
+})();

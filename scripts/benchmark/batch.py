@@ -1,0 +1,150 @@
+"""Whole fonts: interpolated SVG beside plain export of the same outlines by others, in one run.
+
+The font is Noto Sans CJK Regular (Debian's fonts-noto-cjk); ``GLYPHSPLINE_BENCH_FONT`` names another with as many Han
+glyphs, ``GLYPHSPLINE_BENCH_GLYPHS`` another number of them. Exports by others write the path and nothing more.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from time import perf_counter
+
+from .measure import Row, in_words
+
+FONT = Path(os.environ.get("GLYPHSPLINE_BENCH_FONT", "/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc"))
+GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "10000"))
+FIRST = 10_000
+"""The first glyph index taken; Noto Sans CJK has Han glyphs there."""
+
+FEW = 200
+"""Glyphs for what takes a hundred times as long; times are by the glyph."""
+
+FONTFORGE = """
+import sys, time, fontforge
+font = fontforge.open(sys.argv[1])
+parts = []
+for k in range(max(1, font.cidsubfontcnt)):  # Han glyphs are in the largest part of a font by CID
+    if font.cidsubfontcnt:
+        font.cidsubfont = k
+    parts.append([glyph for glyph in font.glyphs() if len(glyph.foreground)])
+largest = max(parts, key=len)
+glyphs = largest[len(largest) // 2:][:int(sys.argv[3])]
+start = time.perf_counter()
+for k, glyph in enumerate(glyphs):
+    glyph.export(sys.argv[2] + "/" + str(k) + ".svg")
+print((time.perf_counter() - start) / len(glyphs))
+"""
+
+
+def rows() -> list[Row]:
+    """The table of what a run over a font costs a glyph."""
+    if not FONT.exists():
+        return [Row(f"whole fonts: {FONT.name} is not there", 0.0, "s")]
+    from glyphspline.glyph import Options
+
+    step = Options(step=20.0)
+    few = range(FIRST, FIRST + FEW)
+    many = range(FIRST, FIRST + GLYPHS)
+    with tempfile.TemporaryDirectory() as folder:
+        here = Path(folder)
+        ours(here / "warm", few, step, ("svg",), 1)
+        plain = [], []  # type: tuple[list[float], list[float]]
+        for _ in range(2):  # in turn, so that what else the machine does falls on both
+            plain[0].append(fonttools_export(here / "plain", many))
+            plain[1].append(ours(here / "step", many, step, ("svg",), 1))
+        source, stepped = min(plain[0]), min(plain[1])
+        resumed = ours(here / "step", many, step, ("svg",), 1, restart=False) * len(many)
+        two = ours(here / "two", many, step, ("svg",), 2)
+        bare = floor(here / "floor", many)
+        mapped = ours(here / "maps", few, step, ("svg", "curvature"), 1)
+        certified = ours(here / "close", few, Options(tolerance=1.0), ("svg",), 1)
+        forge = fontforge_export(here / "forge", few)
+    return [
+        row("`--step 20`, one worker, against fontTools' export of the source", stepped, source, 1.5, 1.0),
+        row("`--tolerance 1 --effort fast`, certified, against the same", certified, source, 8, 5),
+        row("`--step 20` against FontForge's export", stepped, forge, 4, 2),
+        row("`--step 20` against the floor: HarfBuzz reads, empty files", stepped, bare, 9, 6),
+        Row("two workers against one", stepped / two, "x", 1.8, note=f"{per(stepped)}, {per(two)}"),
+        row("with curvature maps against without", mapped, stepped, 2, None),
+        Row(f"resume of a finished folder of {GLYPHS} glyphs", resumed, "s", 3 * GLYPHS / 20_000, more=False),
+    ]
+
+
+def row(what: str, ours: float, theirs: float, must: float, aim: float | None) -> Row:
+    """A ratio of times: less is better."""
+    return Row(what, ours / theirs, "x", must, aim, more=False, note=f"{per(ours)}, {per(theirs)}")
+
+
+def per(seconds: float) -> str:
+    """A time a glyph in words."""
+    return f"{in_words(seconds)} a glyph"
+
+
+def ours(
+    out: Path, gids: Sequence[int], options: object, formats: tuple[str, ...], jobs: int, *, restart: bool = True
+) -> float:
+    """Seconds a glyph of a whole run: opening the font, workers' start, files, manifest, index."""
+    from glyphspline.batch import RunSpec, convert_font
+    from glyphspline.readers import open_font
+
+    start = perf_counter()
+    font = open_font(FONT)
+    names = [font.glyph_names[gid] for gid in gids]
+    convert_font(font, names, out, RunSpec(options, formats), jobs=jobs, restart=restart)  # type: ignore[arg-type]
+    return (perf_counter() - start) / len(gids)
+
+
+def fonttools_export(out: Path, gids: Sequence[int]) -> float:
+    """Seconds a glyph of the shortest program that exports a font's outlines as SVG, the font's opening included."""
+    from fontTools.pens.svgPathPen import SVGPathPen
+    from fontTools.ttLib import TTFont
+
+    start = perf_counter()
+    empty(out)
+    font = TTFont(FONT, fontNumber=0, lazy=True)
+    glyphs, order = font.getGlyphSet(), font.getGlyphOrder()
+    for gid in gids:
+        pen = SVGPathPen(glyphs)
+        glyphs[order[gid]].draw(pen)
+        path = f'<path transform="scale(1 -1)" d="{pen.getCommands()}"/>'
+        document = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 -880 1000 1000">{path}</svg>\n'
+        (out / f"{gid}.svg").write_text(document)
+    return (perf_counter() - start) / len(gids)
+
+
+def floor(out: Path, gids: Sequence[int]) -> float:
+    """Seconds a glyph of reading outlines through HarfBuzz and writing empty files."""
+    import uharfbuzz as hb
+    from fontTools.pens.basePen import NullPen
+
+    start = perf_counter()
+    empty(out)
+    font = hb.Font(hb.Face(hb.Blob.from_file_path(str(FONT)), 0))
+    pen = NullPen()
+    for gid in gids:
+        font.draw_glyph_with_pen(gid, pen)
+        with open(f"{out}/{gid}.svg", "w"):
+            pass
+    return (perf_counter() - start) / len(gids)
+
+
+def fontforge_export(out: Path, gids: Sequence[int]) -> float:
+    """Seconds a glyph of FontForge's own export, the font's opening not counted; not a number without FontForge."""
+    empty(out)
+    for python in ("/usr/bin/python3", shutil.which("python3") or "python3"):
+        call = [python, "-c", FONTFORGE, str(FONT), str(out), str(len(gids))]
+        done = subprocess.run(call, capture_output=True, text=True, timeout=600)
+        if done.returncode == 0:
+            return float(done.stdout.split()[-1])
+    return float("nan")
+
+
+def empty(folder: Path) -> None:
+    """A folder with nothing in it: files are always new."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)

@@ -1,0 +1,217 @@
+"""The interpolation beside the plain reference, and beside libraries that solve for a curve directly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import glyphspline as gs
+from glyphspline.arrays import FloatArray, IntArray
+from glyphspline.engine import Ragged, interpolate_ragged
+from glyphspline.reference import footpoint, interpolate_reference, prepare
+
+from .measure import Row, in_words, interleaved
+from .shapes import SHARE, glyph_polygons, random_polygon, smooth_polygon
+
+LIMITS = {20: (5, 6), 90: (2.5, 3), 300: (1.5, 2), 1000: (1.0, 1.2)}
+
+
+def rows() -> list[Row]:
+    """All rows of this suite."""
+    return [*against_reference(), *against_kurbo(), *against_libraries(), *overhead(), *many(), *growth()]
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Polygons laid end to end beforehand, so that only the interpolation is timed."""
+
+    points: FloatArray
+    offsets: IntArray
+    tolerances: FloatArray
+
+    @classmethod
+    def of(cls, polygons: list[FloatArray]) -> Polygons:
+        """Lay out a list."""
+        tolerances = np.array([SHARE * np.ptp(p, axis=0).max() for p in polygons])
+        return cls(np.concatenate(polygons), np.cumsum([0, *map(len, polygons)]), tolerances)
+
+    def run(self, threads: int = 1, **options: Any) -> Ragged:
+        """Interpolate all by variant 2."""
+        return interpolate_ragged(
+            self.points, self.offsets, residual_tolerance=self.tolerances, threads=threads, **options
+        )
+
+
+def _footpoints(result: Ragged) -> int:
+    return int(((result.whole[:, 2] + 1) * result.whole[:, 1]).sum())
+
+
+def against_reference() -> list[Row]:
+    """One footpoint of variant 2 in whole runs, compiled and by numpy.roots."""
+    once = random_polygon(20, 0)
+    polygons = Polygons.of([random_polygon(20, seed) for seed in range(100)])
+    ours, plain = polygons.run(), interpolate_reference(once, residual_tolerance=float(polygons.tolerances[0]))
+    times = interleaved(
+        {
+            "ours": polygons.run,
+            "roots": lambda: interpolate_reference(once, residual_tolerance=5 * SHARE, max_iterations=3),
+        },
+        rounds=9,
+    )
+    assert plain.iterations == ours.whole[0, 2]
+    a, b = times["ours"] / _footpoints(ours), times["roots"] / (4 * 20)
+    note = f"{in_words(a)}, {in_words(b)}"
+    return [Row("variant 2 footpoint against the `numpy.roots` reference", b / a, must=2000, aim=3500, note=note)]
+
+
+def against_kurbo() -> list[Row]:
+    """A footpoint on two cubic pieces: kurbo's nearest point at 1e-6, through kurbopy."""
+    from kurbopy import CubicBez, Point
+
+    p = random_polygon(90)
+    problem = prepare(p)
+    spline = problem.spline(p)
+    pieces = [CubicBez(*(Point(*map(float, point)) for point in piece)) for piece in spline.to_bezier()]
+    targets = [Point(*map(float, point)) for point in p]
+    polygons = Polygons.of([random_polygon(90, seed) for seed in range(20)])
+    ours = polygons.run()
+
+    def kurbo() -> None:
+        for i, target in enumerate(targets):
+            pieces[i - 1].nearest(target, 1e-6)
+            pieces[i].nearest(target, 1e-6)
+
+    times = interleaved({"ours": polygons.run, "kurbo": kurbo})
+    a, b = times["ours"] / _footpoints(ours), times["kurbo"] / len(p)
+    assert np.isfinite(footpoint(spline, p[0], problem.intervals.bounds[0], 0.0))
+    note = f"{in_words(a)}, {in_words(b)}"
+    return [Row("against kurbo's nearest point at 1e-6, two pieces", b / a, must=15, aim=25, note=note)]
+
+
+def against_libraries() -> list[Row]:
+    """A whole interpolation of one smooth contour by the public call, and libraries' closed curves through points."""
+    from geomdl.fitting import interpolate_curve
+    from scipy.interpolate import CubicSpline, make_interp_spline, make_splprep, splprep
+    from splipy import curve_factory
+
+    splipy_curve: Any = curve_factory.cubic_curve
+    periodic = curve_factory.Boundary.PERIODIC
+    found = []
+    for n, (must, aim) in LIMITS.items():
+        p = smooth_polygon(n)
+        closed = np.concatenate([p, p[:1]])
+        u = gs.interpolate(p).spline.knots
+        tolerance = SHARE * float(np.ptp(p, axis=0).max())
+        cases: dict[str, Any] = {
+            "ours": lambda p=p, t=tolerance: gs.interpolate(p, residual_tolerance=t),
+            "`make_interp_spline`": lambda u=u, q=closed: make_interp_spline(u, q, k=3, bc_type="periodic"),
+            "`CubicSpline`": lambda u=u, q=closed: CubicSpline(u, q, bc_type="periodic"),
+            "`splprep`": lambda q=closed: splprep(q.T, s=0, per=True),
+            "`make_splprep`": lambda q=closed: make_splprep(q.T, s=0, bc_type="periodic"),
+            "splipy": lambda u=u, q=closed: splipy_curve(q[:-1], periodic, u[:-1]),
+        }
+        if n <= 90:
+            cases["geomdl (open)"] = lambda q=closed: interpolate_curve(q.tolist(), 3)
+        usable: dict[str, Any] = {}
+        for name, case in cases.items():
+            try:
+                case()
+            except (TypeError, ValueError) as error:  # an older SciPy has no periodic make_splprep
+                print(f"left out: {name}: {error}")
+                continue
+            usable[name] = case
+        times = interleaved(usable)
+        for name in list(usable)[1:]:
+            first = name == "`make_interp_spline`"
+            note = f"{in_words(times['ours'])}, {in_words(times[name])}"
+            ratio = times[name] / times["ours"]
+            what = f"one smooth contour, n = {n}, against {name}"
+            found.append(Row(what, ratio, must=must if first else None, aim=aim if first else None, note=note))
+    return found
+
+
+def overhead() -> list[Row]:
+    """What the public call takes beyond the compiled code, n = 20: 200 calls against one call of 200 contours."""
+    p = smooth_polygon(20)
+    calls = range(200)
+    together = Polygons.of([p] * len(calls))
+    tolerance = float(together.tolerances[0])
+
+    def one_by_one() -> None:
+        for _ in calls:
+            gs.interpolate(p, residual_tolerance=tolerance)
+
+    times = interleaved({"one": one_by_one, "many": together.run}, rounds=25)
+    one, core = times["one"] / len(calls), times["many"] / len(calls)
+    note = f"{in_words(one)}, {in_words(core)}"
+    return [
+        Row("public call beyond the compiled code, n = 20", (one - core) * 1e6, "us", must=12, more=False, note=note)
+    ]
+
+
+def many() -> list[Row]:
+    """2000 glyph contours at once."""
+    from scipy.interpolate import splprep
+
+    contours = glyph_polygons(2000)
+    laid_out = Polygons.of(contours)
+    tolerance = SHARE * 2048
+    rings = [np.concatenate([p, p[:1]]).T for p in contours]
+
+    def library() -> None:
+        for ring in rings:
+            splprep(ring, s=0, per=True)
+
+    def ours(threads: int, finish: str = "iterate") -> list[gs.Interpolation]:
+        return gs.interpolate_many(contours, threads=threads, finish=finish, residual_tolerance=tolerance)
+
+    times = interleaved(
+        {
+            "1": lambda: ours(1),
+            "2": lambda: ours(2),
+            "solve": lambda: ours(2, "solve"),
+            "splprep": library,
+            "core 1": lambda: laid_out.run(1),
+            "core 2": lambda: laid_out.run(2),
+        },
+        rounds=9,
+        repeat=5,
+    )
+    one, two = ours(1), ours(2)
+    same = all(
+        a.spline.control_points.tobytes() == b.spline.control_points.tobytes() for a, b in zip(one, two, strict=True)
+    )
+    assert same
+    words = {name: in_words(seconds) for name, seconds in times.items()}
+    return [
+        Row(
+            "2000 glyph contours, two threads, against a loop over `splprep`",
+            times["splprep"] / times["2"], must=1.2, aim=2, note=f"{words['2']}, {words['splprep']}",
+        ),
+        Row(
+            'the same with `finish="solve"`',
+            times["splprep"] / times["solve"], must=2, aim=3, note=f"{words['solve']}, {words['splprep']}",
+        ),
+        Row(
+            "two threads against one, same bits",
+            times["core 1"] / times["core 2"], must=1.9, note=f"{words['core 1']}, {words['core 2']}",
+        ),
+    ]  # fmt: skip
+
+
+def growth() -> list[Row]:
+    """Time a footpoint from n = 10 to 100,000."""
+    sizes = [5, 10, 100, 1000, 10_000, 100_000]
+    cases: dict[str, Any] = {}
+    counts = {}
+    for n in sizes:
+        polygons = Polygons.of([random_polygon(n, seed) for seed in range(max(1, 20_000 // n))])
+        counts[n] = _footpoints(polygons.run(max_iterations=20))
+        cases[str(n)] = lambda polygons=polygons: polygons.run(max_iterations=20)
+    times = interleaved(cases, rounds=5)
+    each = {n: times[str(n)] / counts[n] for n in sizes}
+    ratio = max(each[n] for n in sizes[1:]) / min(each[n] for n in sizes[1:])
+    note = ", ".join(f"{n}: {in_words(seconds)}" for n, seconds in each.items())
+    return [Row("a footpoint, slowest size against fastest, n = 10 to 100,000", ratio, must=1.5, more=False, note=note)]

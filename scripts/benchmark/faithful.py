@@ -1,0 +1,215 @@
+"""How few segments and numbers keep a glyph within 1/1000 em, against the source itself, FontForge and variant 3.
+
+FontForge is given the benefit of the doubt: of 30 settings of its ``simplify`` the one with the fewest numbers counts
+whose result, by dense sampling, truly stays within the tolerance; where none does, the source does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import matplotlib
+import numpy as np
+from scipy.spatial import cKDTree
+
+import glyphspline as gs
+from glyphspline.arrays import FloatArray
+from glyphspline.bezier import evaluate
+
+from .measure import Row
+
+GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "200"))
+EM = 1000.0
+SPACING = 2.0
+"""Font units between the points at which a peer is measured, each to the polyline through the other side's points."""
+
+FORGE = ("/usr/bin/python3", str(Path(__file__).with_name("fontforge_simplify.py")))
+PLACES = [Path(p) for p in os.environ.get("GLYPHSPLINE_FACES", "").split(os.pathsep) if p]
+PLACES += [Path("/usr/share/fonts"), Path(matplotlib.get_data_path()) / "fonts"]
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face to measure, and what has to be reached on it (must, aim)."""
+
+    name: str
+    pattern: str
+    latin: bool
+    segments: tuple[float, float]
+    numbers: tuple[float, float]
+
+
+FACES = (
+    Face("Ma Shan Zheng", "ma-shan-zheng-*-400-normal.woff2", False, (1.10, 1.00), (0.90, 0.80)),
+    Face("Kouzan gyosho", "kouzan-mouhitsu-gyosho.ttf", False, (0.83, 0.75), (0.92, 0.85)),
+    Face("Noto Sans CJK", "NotoSansCJK-Regular.ttc", False, (1.08, 1.00), (1.00, 0.95)),
+    Face("Noto Serif CJK", "NotoSerifCJK-Regular.ttc", False, (1.17, 1.05), (1.10, 1.00)),
+    Face("DejaVu Sans", "DejaVuSans.ttf", True, (1.01, 0.85), (1.00, 0.90)),
+)
+
+
+def rows() -> list[Row]:
+    """All faces that are installed, or lie in a folder of GLYPHSPLINE_FACES."""
+    return [row for face in FACES for row in face_rows(face)]
+
+
+def outlines(face: Face) -> list[gs.Outline]:
+    """Glyphs spread evenly over the face's ideographs, or its Latin letters, scaled to 1000 units an em."""
+    paths = sorted(path for place in PLACES for path in place.rglob(face.pattern))
+    low, high = (0x21, 0x24F) if face.latin else (0x4E00, 0x9FFF)
+    found: dict[int, tuple[Any, str]] = {}
+    for path in paths:
+        font = gs.open_font(path)
+        for name, code in names(font, low, high):
+            found.setdefault(code, (font, name))
+    codes = sorted(found)
+    result: list[gs.Outline] = []
+    for k in range(min(2 * GLYPHS, len(codes))):
+        font, name = found[codes[k * len(codes) // min(2 * GLYPHS, len(codes))]]
+        outline = font.outline(name)
+        if outline.contours:
+            result.append(to_em(outline))
+    return result[:: max(1, len(result) // GLYPHS)][:GLYPHS]
+
+
+def names(font: Any, low: int, high: int) -> Iterator[tuple[str, int]]:
+    """Glyph names of a font in a range of code points."""
+    for name, codes in font._unicodes.items():
+        for code in codes:
+            if low <= code <= high:
+                yield name, code
+
+
+def to_em(outline: gs.Outline) -> gs.Outline:
+    """The outline scaled to 1000 units an em."""
+    scale = EM / outline.metrics.units_per_em
+    contours = tuple(gs.Contour(c.points * scale, c.degrees) for c in outline.contours)
+    return replace(outline, contours=contours, metrics=gs.FontMetrics(EM))
+
+
+def numbers(contour: gs.Contour) -> int:
+    """Two for every point."""
+    return int(2 * contour.degrees.sum())
+
+
+def face_rows(face: Face) -> list[Row]:
+    """Means over all glyphs of a face."""
+    glyphs = outlines(face)
+    if not glyphs:
+        return []
+    source = np.array([[sum(map(len, g.contours)), sum(map(numbers, g.contours))] for g in glyphs])
+    forge = np.array([fewest(g, results) for g, results in zip(glyphs, forge_results(glyphs), strict=True)])
+    best, best_time = converted(glyphs, gs.Options(corners="sharp", effort="best", tolerance=1.0))
+    fast, fast_time = converted(glyphs, gs.Options(corners="sharp", effort="fast", tolerance=1.0))
+    few = glyphs[:: max(1, len(glyphs) // 25)]
+    smooth, smooth_time = converted(few, gs.Options(tolerance=1.0, effort="best"))
+    third, _ = converted(few, gs.Options(tolerance=1.0, effort="best", variant=3))
+    missed, contours = best[:, 2].sum() + fast[:, 2].sum(), 2 * sum(len(g.contours) for g in glyphs)
+    note = (
+        f"{len(glyphs)} glyphs; a glyph: source {source.mean(0)}, FontForge {forge.mean(0)}, sharp {best.mean(0)[:2]}"
+    )
+    share = best.mean(0) / source.mean(0).repeat(2)[[0, 2, 0, 0]]
+    return [
+        Row(f"{face.name}: segments / source's", share[0], "x", *face.segments, False, note),
+        Row(f"{face.name}: numbers / FontForge's", best.mean(0)[1] / forge.mean(0)[1], "x", *face.numbers, False),
+        Row(f"{face.name}: segments / FontForge's", best.mean(0)[0] / forge.mean(0)[0], "x", None, None, False),
+        Row(f"{face.name}: share of contours not certified", missed / contours, "", 1e-4, None, False),
+        Row(f"{face.name}: best, a glyph", best_time * 1e3, "ms", 25, None, False),
+        Row(f"{face.name}: fast, a glyph", fast_time * 1e3, "ms", 2, None, False),
+        Row(f"{face.name}: fast / best, segments", fast.mean(0)[0] / best.mean(0)[0], "x", 1.3, None, False),
+        Row(
+            f"{face.name}: smooth, vertices / variant 3's", smooth.mean(0)[3] / third.mean(0)[3], "x", 0.9, None, False,
+            f"{smooth.mean(0)[3]:.0f} and {third.mean(0)[3]:.0f} vertices; not certified {smooth[:, 2].sum():.0f} and "
+            f"{third[:, 2].sum():.0f}; {smooth_time * 1e3:.1f} ms a glyph",
+        ),
+    ]  # fmt: skip
+
+
+def converted(glyphs: list[gs.Outline], options: gs.Options) -> tuple[FloatArray, float]:
+    """(glyphs, 4) segments, numbers, contours not certified, vertices; and median processor seconds a glyph."""
+    gs.convert(glyphs[0], options)
+    figures, seconds = [], []
+    for glyph in glyphs:
+        start = process_time()
+        result = gs.convert(glyph, options)
+        seconds.append(process_time() - start)
+        measures = [contour.measures for contour in result.contours]
+        missed = sum(not m.within_tolerance for m in measures)
+        figures.append([sum(m.segments for m in measures), sum(m.numbers for m in measures), missed,
+                        sum(m.vertices for m in measures)])  # fmt: skip
+    return np.array(figures, dtype=np.float64), float(np.mean(seconds))
+
+
+def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:
+    """What FontForge makes of each glyph with each setting."""
+    with subprocess.Popen(
+        FORGE, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as p:
+        assert p.stdin
+        assert p.stdout
+        for glyph in glyphs:
+            contours = [
+                [
+                    (cubic[[0, 3]] if degree == 1 else cubic).tolist()
+                    for cubic, degree in zip(c.cubics(), c.degrees, strict=True)
+                ]
+                for c in glyph.contours
+            ]
+            print(json.dumps(contours), file=p.stdin, flush=True)
+            yield json.loads(p.stdout.readline())
+
+
+def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]:
+    """Segments and numbers of the result with the fewest numbers that stays within one unit."""
+    source = dense([np.array(s) for c in glyph.contours for s in c.segments()])
+    tree = cKDTree(source)
+    sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
+    for size, segments, k in sorted(sizes):
+        curve = dense([np.array(s) for c in results[k] for s in c])
+        if len(curve) and farthest(curve, source, tree) <= 1.0 and farthest(source, curve, cKDTree(curve)) <= 1.0:
+            return segments, size
+    return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))
+
+
+def farthest(points: FloatArray, line: FloatArray, tree: Any) -> float:
+    """Largest distance of points from a polyline, sought on the chords beside its three nearest vertices.
+
+    Three, as where two segments join a vertex comes twice.
+    """
+    nearest = tree.query(points, k=3)[1].ravel()
+    ends = np.repeat(points, 3, axis=0)
+    gaps = []
+    for step in (-1, 1):
+        a = line[nearest]
+        chord = line[np.clip(nearest + step, 0, len(line) - 1)] - a
+        square = (chord**2).sum(axis=1)
+        along = np.clip(((ends - a) * chord).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
+        gaps.append(np.hypot(*(ends - a - along[:, None] * chord).T))
+    return float(np.minimum(*gaps).reshape(-1, 3).min(axis=1).max())
+
+
+def dense(segments: list[FloatArray]) -> FloatArray:
+    """Points on all segments, at most about SPACING apart."""
+    points = []
+    for segment in segments:
+        reach = np.hypot(*np.diff(segment, axis=0).T).sum()
+        x = np.linspace(0, 1, int(np.ceil(reach / SPACING)) + 1)
+        points.append(evaluate(np.broadcast_to(segment, (len(x), *segment.shape)), x))
+    return np.concatenate(points) if points else np.empty((0, 2))
+
+
+if __name__ == "__main__":
+    from .table import markdown
+
+    table = rows()
+    print(markdown(table))
+    if len(sys.argv) > 1:
+        Path(sys.argv[1]).write_text(json.dumps([row.as_json() for row in table], indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,178 @@
+"""Render the README's pictures into ``outputs/pictures/``, in a headless Chromium: ``python scripts/make_pictures.py``.
+
+Needs Debian's chromium and the extra ``browser``. Everything shown is made by the tools themselves, from the fonts in
+``fonts_test/``.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+import glyphspline as gs
+from glyphspline.glyph import Corners
+
+ROOT = Path(__file__).resolve().parent.parent
+FONTS = ROOT / "fonts_test"
+OUT = ROOT / "outputs" / "pictures"
+
+LARGEST = 300_000
+"""Bytes of a picture: a README should open at once."""
+
+TERMINAL = """
+body { margin: 0; background: #1b1a21; color: #e6e4ec; padding: 22px 26px; width: 860px; height: fit-content }
+pre { font: 15px/1.5 'DejaVu Sans Mono', monospace }
+pre { margin: 0; white-space: pre-wrap } b { color: #8fd3a8; font-weight: normal }
+"""
+
+PAIR = """
+body { margin: 0; background: #fff; font: 17px 'DejaVu Sans', sans-serif; display: flex; gap: 10px; color: #222 }
+figure { margin: 0; width: 490px } svg { width: 490px; height: 520px }
+figcaption { text-align: center; padding: 0 0 14px }
+"""
+
+
+def main() -> None:
+    """All pictures, one after the other."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as playwright:
+        sandbox = [] if os.getuid() else ["--no-sandbox"]
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=sandbox)
+        for picture in (dragon, corners, variants, terminal, gallery, viewer):
+            context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=1.25)
+            picture(context.new_page())
+            context.close()
+        browser.close()
+    for path in sorted(OUT.glob("*.png")):
+        size = path.stat().st_size
+        print(f"{path.relative_to(ROOT)}: {size // 1000} kB")
+        if size > LARGEST:
+            sys.exit(f"{path} is larger than {LARGEST} bytes")
+
+
+def dragon(page: Any) -> None:
+    """The Dragon and its curvature comb."""
+    glyph = gs.convert(outline("kouzan-kaisho.ttf", "龍"), gs.Options(tolerance=2.0))
+    drawing = gs.to_curvature_svg(glyph, vertices=False)
+    side_by_side(page, "dragon", [("", gs.to_svg(glyph, view_box="ink")), ("", drawing)])
+
+
+def corners(page: Any) -> None:
+    """One closed curve a contour, and arcs between corners."""
+    found = []
+    captions: dict[Corners, str] = {"smooth": "smooth: one C2 curve a contour", "sharp": "sharp: arcs between corners"}
+    for kind, words in captions.items():
+        glyph = gs.convert(outline("kouzan-gyosho.ttf", "好"), gs.Options(corners=kind, tolerance=2.0))
+        count = sum(contour.measures.segments for contour in glyph.contours)
+        found.append((f"{words}, {count} segments", gs.to_curvature_svg(glyph, scale=0.008)))
+    side_by_side(page, "corners", found)
+
+
+def variants(page: Any) -> None:
+    """Variants 2 and 3 through the same polygon."""
+    found = []
+    for variant in (2, 3):
+        glyph = gs.convert(outline("kouzan-gyosho.ttf", "g"), gs.Options(variant=variant, step=110))
+        words = f"variant {variant}: {max(c.measures.iterations for c in glyph.contours)} iterations"
+        found.append((words, gs.to_curvature_svg(glyph, scale=0.012, control_polygon=True)))
+    side_by_side(page, "variants", found)
+
+
+def terminal(page: Any) -> None:
+    """A session in a shell, as it runs."""
+    with tempfile.TemporaryDirectory() as place:
+        shutil.copy(FONTS / "kouzan-kaisho.ttf", place)
+        lines = []
+        for command in (
+            "glyphspline info kouzan-kaisho.ttf",
+            "glyphspline convert kouzan-kaisho.ttf --text 龍好 --out dragon",
+            "ls dragon dragon/svg",
+        ):
+            words = shlex.split(command)
+            call = [sys.executable, "-m", *words] if words[0] == "glyphspline" else words
+            environment = os.environ | {"PYTHONPATH": str(ROOT)}
+            run = subprocess.run(call, cwd=place, capture_output=True, text=True, check=True, env=environment)
+            said = [line for line in (run.stderr + run.stdout).splitlines() if not line.startswith("slowest")]
+            lines.append(f"<b>$</b> {escape(command)}\n{escape(chr(10).join(said))}\n")
+    session = "\n".join(lines)
+    page.set_content(f"<style>{TERMINAL}</style><pre>{session}</pre>")
+    shot(page.locator("body"), "terminal")
+
+
+def gallery(page: Any) -> None:
+    """The gallery of a font, and one glyph of it zoomed into."""
+    with tempfile.TemporaryDirectory() as place:
+        glyphspline("convert", str(FONTS / "kouzan-gyosho.ttf"), "--all", "--out", place, "--quiet")
+        page.goto((Path(place) / "index.html").as_uri())
+        page.wait_for_selector("body[data-ready]")
+        page.keyboard.press("s")
+        page.keyboard.press("c")
+        page.wait_for_timeout(800)
+        shot(page, "gallery")
+
+
+def viewer(page: Any) -> None:
+    """The viewer with the three variants side by side."""
+    with served("fonts_test/kouzan-gyosho.ttf") as address:
+        page.emulate_media(color_scheme="dark")
+        page.goto(address)
+        page.fill("#words", "g")
+        page.locator("#compare").check()
+        for layer in ("comb", "control"):
+            page.locator(f"[data-layer={layer}]").check(force=True)
+        page.wait_for_selector("#compared figure")
+        page.wait_for_load_state("networkidle")
+        page.wait_for_timeout(1500)
+        shot(page, "viewer")
+
+
+def shot(what: Any, name: str) -> None:
+    """A screenshot in 256 colours, which drawings do not miss and which takes a third of the bytes."""
+    with Image.open(BytesIO(what.screenshot())) as image:
+        image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(OUT / f"{name}.png", optimize=True)
+
+
+def outline(font: str, text: str) -> gs.Outline:
+    """A glyph of one of the repository's fonts."""
+    source = gs.open_font(FONTS / font)
+    return source.outline(source.select(text=text)[0])
+
+
+def side_by_side(page: Any, name: str, drawings: list[tuple[str, str]]) -> None:
+    """Drawings in a row with their captions."""
+    figures = "".join(f"<figure>{svg}<figcaption>{escape(words)}</figcaption></figure>" for words, svg in drawings)
+    page.set_content(f"<style>{PAIR}</style>{figures}")
+    page.set_viewport_size({"width": 990, "height": 570})
+    shot(page, name)
+
+
+def glyphspline(*arguments: str) -> None:
+    """Run the shell."""
+    subprocess.run([sys.executable, "-m", "glyphspline", *arguments], check=True)
+
+
+@contextmanager
+def served(font: str) -> Iterator[str]:
+    """The address of a viewer, as long as it is needed; the font's path is relative, as it stands in the picture."""
+    command = [sys.executable, "-m", "glyphspline", "view", font, "--no-browser"]
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        yield process.stderr.readline().split()[0]
+        process.terminate()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,260 @@
+"""How uneven may knots be before a basis function's peak sinks to 1/2? An exhaustive, certified answer.
+
+The paper leaves this open (its Section 5). The smallest peak over a whole box of knot intervals is bounded from below
+by branch and bound: a box is settled when one value of the basis function, at a parameter fixed in proportion to the
+intervals, stays above the target on all of it. Such a value is a sum of products of ratios L/(L + R) of interval
+lengths, so that it and its gradient can be enclosed by interval arithmetic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from glyphspline.arrays import FloatArray, IntArray
+from glyphspline.intervals import basis_function, peaks
+
+Constraint = Literal["box", "adjacent"]
+
+SLACK = 1e-11
+"""Rounding allowance on every bound: some 50 additions and products of numbers in [0, 1] err by less than 1e-13."""
+
+MAX_BOXES = 4_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Knot vectors ``h = exp(A y)`` with y in a box: the intervals of one basis function, up to a common factor.
+
+    Attributes:
+        A: (degree + 1, k) exponents, so that each interval is a product of powers of the free ratios.
+        offset: (degree + 1,) added to ``A y``.
+        low, high: (k,) the box.
+    """
+
+    A: FloatArray
+    offset: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def family(degree: int, ratio: float, constraint: Constraint) -> Family:
+    """All knot vectors that matter when intervals are within ``ratio`` of each other.
+
+    Moving the first knot to the left or the last to the right raises the basis function everywhere, so the two
+    outer intervals are as short as allowed in the worst case: 1 in a box [1, ratio], and the neighbour divided
+    by ``ratio`` where only adjacent intervals are bound. In that case the first inner interval is set to 1.
+    """
+    inner = degree - 1
+    reach = np.log(ratio)
+    if constraint == "box":
+        A = np.zeros((degree + 1, inner))
+        A[1:-1] = np.eye(inner)
+        return Family(A, np.zeros(degree + 1), np.zeros(inner), np.full(inner, reach))
+    A = np.zeros((degree + 1, inner - 1))
+    A[1:-1] = np.tril(np.ones((inner, inner)), -1)[:, : inner - 1]
+    A[-1] = A[-2]
+    offset = np.zeros(degree + 1)
+    offset[[0, -1]] = -reach
+    return Family(A, offset, np.full(inner - 1, -reach), np.full(inner - 1, reach))
+
+
+def windows_of(h: FloatArray) -> FloatArray:
+    """(m, degree + 2) knots from (m, degree + 1) intervals."""
+    return np.concatenate([np.zeros((len(h), 1)), np.cumsum(h, axis=1)], axis=1)
+
+
+def peak_values(h: FloatArray) -> FloatArray:
+    """(m,) the peak of the basis function on each row of intervals."""
+    windows = windows_of(h)
+    return basis_function(windows, peaks(windows))
+
+
+def peak_positions(h: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The span each peak lies in, and its fraction of that span."""
+    windows = windows_of(h)
+    t = peaks(windows)[:, None]
+    span = np.clip((windows <= t).sum(axis=1) - 1, 0, h.shape[1] - 1)
+    rows = np.arange(len(h))
+    return span, np.clip((t[:, 0] - windows[rows, span]) / h[rows, span], 0.0, 1.0)
+
+
+@dataclass
+class Enclosure:
+    """Interval enclosures [low, high] of a non-negative value and of its gradient by the intervals' logarithms."""
+
+    low: FloatArray
+    high: FloatArray
+    slope_low: FloatArray
+    slope_high: FloatArray
+
+
+def _ratio(low: FloatArray, high: FloatArray, share: FloatArray, knots: slice) -> tuple[Enclosure, Enclosure]:
+    """w = L/(L + R) and 1 - w for the spans ``knots``: ``share`` is 1 left of t, 0 right of it, x in its own span."""
+    inside = np.zeros(low.shape[1])
+    inside[knots] = 1.0
+    left_low, left_high = ((a * share * inside).sum(axis=1) for a in (low, high))
+    right_low, right_high = ((a * (1 - share) * inside).sum(axis=1) for a in (low, high))
+    w_low = left_low / np.maximum(left_low + right_high, 1e-300)
+    w_high = left_high / np.maximum(left_high + right_low, 1e-300)
+    total_low, total_high = (low * inside).sum(axis=1)[:, None], (high * inside).sum(axis=1)[:, None]
+    part_low = low * inside / np.where(inside > 0, low + total_high - high, 1.0)
+    part_high = high * inside / np.where(inside > 0, high + total_low - low, 1.0)
+    away_low, away_high = share - w_high[:, None], share - w_low[:, None]
+    slope_low = np.minimum(part_low * away_low, part_high * away_low)
+    slope_high = np.maximum(part_low * away_high, part_high * away_high)
+    w = Enclosure(w_low, w_high, slope_low, slope_high)
+    return w, Enclosure(1 - w_high, 1 - w_low, -slope_high, -slope_low)
+
+
+def _product(a: Enclosure, b: Enclosure) -> Enclosure:
+    """Enclosure of a b, by the product rule. Both factors are non-negative."""
+
+    def times(low: FloatArray, high: FloatArray, c: Enclosure) -> tuple[FloatArray, FloatArray]:
+        c_low, c_high = c.low[:, None], c.high[:, None]
+        return np.minimum(low * c_low, low * c_high), np.maximum(high * c_low, high * c_high)
+
+    first, second = times(a.slope_low, a.slope_high, b), times(b.slope_low, b.slope_high, a)
+    return Enclosure(a.low * b.low, a.high * b.high, first[0] + second[0], first[1] + second[1])
+
+
+def _sum(a: Enclosure, b: Enclosure) -> Enclosure:
+    return Enclosure(a.low + b.low, a.high + b.high, a.slope_low + b.slope_low, a.slope_high + b.slope_high)
+
+
+def enclose(low: FloatArray, high: FloatArray, span: int, fraction: FloatArray) -> Enclosure:
+    """Cox and de Boor in interval arithmetic: B at ``fraction`` of ``span``, for all intervals in [low, high].
+
+    Args:
+        low, high: (m, degree + 1) bounds of the intervals.
+        span: the one that holds t.
+        fraction: (m,) where in it.
+    """
+    m, spans = low.shape
+    share = np.where(np.arange(spans) < span, 1.0, 0.0) * np.ones((m, 1))
+    share[:, span] = fraction
+    one = Enclosure(np.ones(m), np.ones(m), np.zeros_like(low), np.zeros_like(low))
+    N: dict[int, Enclosure] = {span: one}
+    for width in range(1, spans):
+        raised: dict[int, Enclosure] = {}
+        for i in range(max(0, span - width), min(span, spans - 1 - width) + 1):
+            terms = []
+            if i in N:
+                terms.append(_product(_ratio(low, high, share, slice(i, i + width))[0], N[i]))
+            if i + 1 in N:
+                terms.append(_product(_ratio(low, high, share, slice(i + 1, i + 1 + width))[1], N[i + 1]))
+            raised[i] = terms[0] if len(terms) == 1 else _sum(*terms)
+        N = raised
+    return N[0]
+
+
+def lower_bounds(f: Family, low: FloatArray, high: FloatArray) -> tuple[FloatArray, IntArray]:
+    """A lower bound of the peak on each box (m, k), and (m,) the direction in which to halve the box.
+
+    The value at the peak of the box's lowest-looking vertex is followed along every direction: exactly to the
+    face where its slope has one sign, and from the middle by the mean value theorem where it has not.
+    """
+    middle = (low + high) / 2
+    slope = _slopes(f, middle)
+    span, fraction = peak_positions(np.exp(np.where(slope > 0, low, high) @ f.A.T + f.offset))
+    bound, direction = np.empty(len(low)), np.empty(len(low), dtype=np.int64)
+    for s in np.unique(span):
+        rows = span == s
+        bound[rows], direction[rows] = _bounds_at(f, low[rows], high[rows], int(s), fraction[rows])
+    return bound, direction
+
+
+def _bounds_at(
+    f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray
+) -> tuple[FloatArray, IntArray]:
+    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
+    h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
+    h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
+    box = enclose(h_low, h_high, span, fraction)
+    slope_low = box.slope_low @ positive + box.slope_high @ negative
+    slope_high = box.slope_high @ positive + box.slope_low @ negative
+    at = np.where(slope_low >= 0, low, np.where(slope_high <= 0, high, (low + high) / 2))
+    mixed = (slope_low < 0) & (slope_high > 0)
+    loss = np.where(mixed, np.maximum(-slope_low, slope_high), 0.0) * (high - low) / 2
+    h = np.exp(at @ f.A.T + f.offset)
+    value = enclose(h, h, span, fraction).low - loss.sum(axis=1)
+    return np.maximum(value, box.low) - SLACK, np.argmax((slope_high - slope_low) * (high - low), axis=1)
+
+
+def _slopes(f: Family, y: FloatArray) -> FloatArray:
+    """(m, k) slopes of the peak at points y (envelope theorem: those of B at the peak)."""
+    h = np.exp(y @ f.A.T + f.offset)
+    span, fraction = peak_positions(h)
+    slopes = np.empty_like(y)
+    for s in np.unique(span):
+        rows = span == s
+        point = enclose(h[rows], h[rows], int(s), fraction[rows])
+        slopes[rows] = (point.slope_low + point.slope_high) / 2 @ f.A
+    return slopes
+
+
+def certify(degree: int, ratio: float, constraint: Constraint, target: float = 0.5) -> int | None:
+    """Prove that every basis function allowed by the ratio peaks above ``target``.
+
+    Returns:
+        The number of boxes it took, or None if no proof was found with ``MAX_BOXES``.
+    """
+    f = family(degree, ratio, constraint)
+    low, high = f.low[None], f.high[None]
+    count = 0
+    while len(low):
+        count += len(low)
+        if count > MAX_BOXES:
+            return None
+        bound, direction = lower_bounds(f, low, high)
+        left = ~(bound > target)
+        low, high, direction = low[left], high[left], direction[left]
+        rows = np.arange(len(low))
+        cut = (low[rows, direction] + high[rows, direction]) / 2
+        low2, high2 = low.copy(), high.copy()
+        high2[rows, direction], low2[rows, direction] = cut, cut
+        low, high = np.concatenate([low, low2]), np.concatenate([high2, high])
+    return count
+
+
+def worst_corner(degree: int, ratio: float, constraint: Constraint) -> tuple[float, FloatArray]:
+    """The smallest peak at the corners of the family's box, and the intervals there."""
+    f = family(degree, ratio, constraint)
+    k = len(f.low)
+    choice = (np.arange(2**k)[:, None] >> np.arange(k)) & 1
+    h = np.exp(np.where(choice == 1, f.high, f.low) @ f.A.T + f.offset)
+    values = peak_values(h)
+    return float(values.min()), h[np.argmin(values)] / h.min()
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """The largest ratio with every peak above 1/2 lies in (low, high): proven below, with a counter-example above."""
+
+    low: float
+    high: float
+    intervals: tuple[float, ...]
+    boxes: int
+
+
+def threshold(degree: int, constraint: Constraint, digits: int = 7) -> Threshold | None:
+    """Where the smallest peak reaches 1/2, to ``digits`` digits; None if corners never sink to it.
+
+    Found by bisection on the corners, then proven for the whole box just below; just above, a corner is the
+    counter-example.
+    """
+    low, high = 1.0, 1e6
+    if worst_corner(degree, high, constraint)[0] > 0.5:
+        return None
+    for _ in range(100):
+        middle = np.sqrt(low * high)
+        low, high = (middle, high) if worst_corner(degree, middle, constraint)[0] > 0.5 else (low, middle)
+    step = 10.0 ** (1 - digits) * low / 4
+    below, above = low - step, high + step
+    boxes = certify(degree, below, constraint)
+    value, intervals = worst_corner(degree, above, constraint)
+    if boxes is None or value >= 0.5 - SLACK:
+        raise ArithmeticError(f"degree {degree}: no proof for intervals within {below}")
+    return Threshold(float(below), float(above), tuple(float(f"{x:.9g}") for x in intervals), boxes)

@@ -1,0 +1,240 @@
+"""What every figure shares: the random polygons, the record of claims, the style of the pictures."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from PIL import Image
+
+from glyphspline.arrays import FloatArray
+
+PAPER = (
+    "Y. Xiong, G. Li, A. Mao, “Convergence analysis for B-spline geometric interpolation”, "
+    "Computers & Graphics 36 (2012) 884–891"
+)
+
+SEED = 2012
+GROUPS = (5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90)
+"""Vertices of the polygons of the paper's Section 4; each group has 200 polygons."""
+
+SIDE = 5.0
+"""Vertices are uniform in [0, SIDE]²."""
+
+INK = "#1f2933"
+GREY = "#9aa5b1"
+COLOURS = {
+    "variant 0": "#b7472a",
+    "variant 1": "#2f6db5",
+    "variant 2": "#12876f",
+    "variant 3": "#d98e04",
+    "variant 4": "#7b4fa3",
+}
+MARKERS = {"variant 0": "x", "variant 1": "o", "variant 2": "s", "variant 3": "^", "variant 4": "D"}
+
+plt.rcParams.update(
+    {
+        "figure.dpi": 100,
+        "savefig.dpi": 160,
+        "font.family": "DejaVu Sans",
+        "font.size": 8.5,
+        "axes.titlesize": 9,
+        "axes.edgecolor": GREY,
+        "axes.labelcolor": INK,
+        "axes.linewidth": 0.6,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": "#e4e7eb",
+        "grid.linewidth": 0.5,
+        "xtick.color": INK,
+        "ytick.color": INK,
+        "xtick.major.width": 0.6,
+        "ytick.major.width": 0.6,
+        "text.color": INK,
+        "lines.linewidth": 1.1,
+        "lines.markersize": 3.5,
+        "legend.frameon": False,
+        "svg.hashsalt": "glyphspline",
+        "svg.fonttype": "none",
+    }
+)
+
+
+def random_polygons(n: int, count: int, seed: int = SEED) -> list[FloatArray]:
+    """``count`` polygons of n vertices, uniform in [0, 5]²; the first ones are the same whatever the count."""
+    rng = np.random.default_rng([seed, n])
+    return list(rng.uniform(0, SIDE, (count, n, 2)))
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One claim of the paper, or of ours, beside what was measured.
+
+    Attributes:
+        id, source: a stable name, and where the paper says it.
+        claim, paper: in our words, and what the paper reports.
+        measured: a number, or a mapping that ends in numbers.
+        verdict: "reproduced", "differs", "not decidable"; or "proven", "measured" for what goes beyond the paper.
+        note: why it differs, or how it was measured.
+        command: what makes it again.
+    """
+
+    id: str
+    source: str
+    claim: str
+    paper: str
+    measured: Any
+    verdict: str
+    note: str
+    command: str
+
+
+VERDICTS = ("reproduced", "differs", "not decidable", "proven", "measured")
+
+
+@dataclass
+class Run:
+    """A run of the whole reproduction: its size, where it writes, and what it found.
+
+    Attributes:
+        out: folder for pictures and claims.json.
+        quick: a small version of everything, for the tests.
+        fonts: files given for the faces of Figs. 8 and 9, by figure.
+        claims, times: as claims.json has them; times are kept apart, since they are never the same twice.
+    """
+
+    out: Path
+    quick: bool = False
+    fonts: dict[str, Path] = field(default_factory=dict)
+    claims: list[Claim] = field(default_factory=list)
+    times: dict[str, Any] = field(default_factory=dict)
+    cache: dict[str, Any] = field(default_factory=dict)
+
+    def size(self, full: int, quick: int) -> int:
+        """How many of something."""
+        return quick if self.quick else full
+
+    @property
+    def groups(self) -> tuple[int, ...]:
+        """Numbers of vertices of the polygons of Section 4."""
+        return (5, 20) if self.quick else GROUPS
+
+    def polygons(self) -> dict[int, list[FloatArray]]:
+        """The 2200 polygons of Section 4, by number of vertices."""
+        return {n: random_polygons(n, self.size(200, 3)) for n in self.groups}
+
+    def claim(
+        self,
+        id: str,
+        source: str,
+        claim: str,
+        paper: str,
+        measured: Any,
+        verdict: str,
+        note: str,
+        module: str,
+        digits: int = 6,
+    ) -> None:
+        """Record a claim; numbers are rounded to ``digits``, so that the last bits of a machine do not show."""
+        if verdict not in VERDICTS:
+            raise ValueError(f"verdict {verdict!r} of {id}")
+        command = f"python -m scripts.paper --only {module}"
+        self.claims.append(Claim(id, source, claim, paper, rounded(measured, digits), verdict, note, command))
+
+    def write_claims(self) -> None:
+        """claims.json: sorted by nothing, in the order of the paper."""
+        content = {"paper": PAPER, "claims": [asdict(c) for c in self.claims], "times": rounded(self.times, 4)}
+        text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        (self.out / "claims.json").write_text(text, encoding="utf-8")
+
+    def save(self, figure: Figure, name: str, svg: bool = False) -> None:
+        """Write a picture without date or random ids."""
+        picture = BytesIO()
+        figure.savefig(picture, format="png", metadata={"Software": None})
+        with_few_colours(Image.open(picture)).save(self.out / f"{name}.png", optimize=True)
+        if svg:
+            figure.savefig(self.out / f"{name}.svg", metadata={"Date": None})
+        plt.close(figure)
+
+
+def with_few_colours(picture: Image.Image) -> Image.Image:
+    """The picture with a palette of its own: line drawings lose nothing to the eye, and half of their bytes."""
+    return picture.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+
+
+def rounded(value: Any, digits: int = 6) -> Any:
+    """Plain Python values, floats to so many significant digits, keys as strings."""
+    if isinstance(value, dict):
+        return {str(k): rounded(v, digits) for k, v in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [rounded(v, digits) for v in value]
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        number = float(f"{float(value):.{digits}g}")
+        return int(number) if number.is_integer() and abs(number) < 1e9 else number
+    return value
+
+
+def verdict(agrees: bool) -> str:
+    """The word for a claim that can be decided by a number."""
+    return "reproduced" if agrees else "differs"
+
+
+@contextmanager
+def progress(run: Run, label: str) -> Iterator[None]:
+    """Say on stderr what is being made, and how long it took."""
+    print(f"{label} …", file=sys.stderr, flush=True)
+    start = time.perf_counter()
+    yield
+    run.times[f"{label}, s"] = time.perf_counter() - start
+    print(f"{label}: {run.times[f'{label}, s']:.1f} s", file=sys.stderr, flush=True)
+
+
+def draw_closed(axes: Axes, points: FloatArray, **style: Any) -> None:
+    """A closed polyline."""
+    x, y = np.concatenate([points, points[:1]]).T
+    axes.plot(x, y, **style)
+
+
+def bare(axes: Axes, margin: float = 0.03) -> None:
+    """Equal units, no frame."""
+    axes.set_aspect("equal")
+    axes.margins(margin)
+    axes.axis("off")
+
+
+def letter(axes: Axes, text: str) -> None:
+    """A subfigure's label, below it as in the paper."""
+    axes.text(0.5, -0.04, text, transform=axes.transAxes, ha="center", va="top", fontsize=8.5)
+
+
+def curve_points(spline: Any, per_span: int = 24) -> FloatArray:
+    """Points of a closed spline, evenly in every span."""
+    u = np.asarray(spline.knots)
+    x = np.arange(per_span) / per_span
+    return np.asarray(spline((u[:-1, None] + x * np.diff(u)[:, None]).ravel()))
+
+
+def by_group(groups: Sequence[int], values: Sequence[float]) -> dict[str, float]:
+    """{"5": …, "90": …} as claims.json has series."""
+    return {str(n): float(v) for n, v in zip(groups, values, strict=True)}

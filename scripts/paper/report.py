@@ -1,0 +1,111 @@
+"""outputs/paper/README.md: a template filled from claims.json, so that it holds no number which that file lacks."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+TEMPLATE = Path(__file__).with_name("README.template.md")
+
+SIGN = {"reproduced": "✓", "differs": "≠", "not decidable": "?", "proven": "∎", "measured": "·"}
+
+
+def write_report(out: Path) -> None:
+    """Fill the template from ``out/claims.json``."""
+    content = json.loads((out / "claims.json").read_text(encoding="utf-8"))
+    (out / "README.md").write_text(render(TEMPLATE.read_text(encoding="utf-8"), content), encoding="utf-8")
+
+
+def render(template: str, content: dict[str, Any]) -> str:
+    """Replace ``{{claim id}}``, ``{{paper}}``, ``{{summary}}``, ``{{times}}``; a claim that was not run says so."""
+    claims = {c["id"]: c for c in content["claims"]}
+
+    def fill(match: re.Match[str]) -> str:
+        kind, _, name = match[1].partition(" ")
+        if kind == "summary":
+            return summary(claims)
+        if kind == "paper":
+            return str(content["paper"])
+        if kind == "times":
+            return show(content["times"])
+        return block(claims[name]) if name in claims else f"`{name}` was not run."
+
+    return re.sub(r"\{\{(.+?)\}\}", fill, template)
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """A line a claim."""
+    rows = [
+        f"| {c['source']} | [{c['id']}](#{c['id']}) | {SIGN[c['verdict']]} {c['verdict']} |" for c in claims.values()
+    ]
+    return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
+
+
+def block(claim: dict[str, Any]) -> str:
+    """One claim: what is said, what the paper reports, what was measured, and why it differs."""
+    lines = [
+        f'<a id="{claim["id"]}"></a>',
+        f"**{claim['claim']}** (`{claim['id']}`)",
+        "",
+        f"- Paper: {claim['paper']}",
+        f"- Verdict: **{claim['verdict']}**. {claim['note']}",
+    ]
+    value = claim["measured"]
+    return "\n".join(
+        [*lines, "", show(value)] if isinstance(value, dict) else [*lines, f"- Measured: {json.dumps(value)}"]
+    )
+
+
+def show(value: dict[str, Any]) -> str:
+    """Nested mappings as tables: plain entries first, then a table for each mapping, of rows if it is nested again."""
+    plain = {k: v for k, v in value.items() if not isinstance(v, dict)}
+    nested = {k: v for k, v in value.items() if isinstance(v, dict)}
+    parts = [table({"": plain}) if len(plain) <= 7 else listing(plain)] if plain else []
+    flat = {k: v for k, v in nested.items() if not any(isinstance(x, dict) for x in v.values())}
+    for keys in _alike(flat):
+        parts.append(table({k: flat[k] for k in keys}))
+    for k, v in nested.items():
+        if k not in flat:
+            parts.append(f"{k}:\n\n{show(v)}")
+    return "\n\n".join(parts)
+
+
+def _alike(tables: dict[str, dict[str, Any]]) -> list[list[str]]:
+    """Names of mappings with the same keys together, in order."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, entries in tables.items():
+        groups.setdefault(tuple(entries), []).append(name)
+    return list(groups.values())
+
+
+def table(rows: dict[str, dict[str, Any]]) -> str:
+    """A mapping of rows, all with the same columns."""
+    columns = list(next(iter(rows.values())))
+    names = any(rows)
+    head = ([""] if names else []) + [cell(c) for c in columns]
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for name, entries in rows.items():
+        lines.append("| " + " | ".join(([cell(name)] if names else []) + [cell(entries[c]) for c in columns]) + " |")
+    return "\n".join(lines)
+
+
+def listing(entries: dict[str, Any]) -> str:
+    """A line an entry."""
+    return "\n".join(["| | |", "|---|---|", *(f"| {cell(k)} | {cell(v)} |" for k, v in entries.items())])
+
+
+def cell(value: Any) -> str:
+    """A number just as claims.json writes it; in a word the sign that would end a column is escaped."""
+    return value.replace("|", "\\|") if isinstance(value, str) else json.dumps(value)
+
+
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def numbers_missing(text: str, content: str) -> list[str]:
+    """Numbers of the README, addresses and file names apart, that claims.json does not hold."""
+    text = re.sub(r"`[^`]*`|\]\([^)]*\)|<a [^>]*>", " ", text)
+    known = set(NUMBER.findall(content))
+    return sorted({x for x in NUMBER.findall(text) if x not in known})

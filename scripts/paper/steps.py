@@ -1,0 +1,101 @@
+"""All steps of the reproduction, and how they are run beside each other."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from itertools import repeat
+from multiprocessing import get_context
+
+from . import (
+    arcs,
+    convergence,
+    degrees,
+    fig1,
+    fig2,
+    fig3,
+    fig4,
+    fig5,
+    fig6,
+    fig8,
+    many,
+    quality,
+    remark3,
+    theorems,
+    thresholds,
+)
+from .common import Claim, Run, progress
+from .report import write_report
+
+STEPS: dict[str, Callable[[Run], None]] = {
+    "theorems": theorems.theorems,
+    "fig1": fig1.figure_1,
+    "fig2": fig2.figure_2,
+    "many": many.many_vertices,
+    "fig3": fig3.figure_3,
+    "fig4": fig4.figure_4,
+    "fig5": fig5.figure_5,
+    "fig6": fig6.figures_6_and_7,
+    "fig8": fig8.figures_8_and_9,
+    "quality": quality.quality_study,
+    "thresholds": thresholds.thresholds,
+    "convergence": convergence.convergence,
+    "remark3": remark3.remark_3,
+    "degrees": degrees.degrees,
+    "arcs": arcs.arcs,
+}
+"""In the order of the paper, then what goes beyond it."""
+
+
+TIMED = "fig4"
+"""The step whose times are its result: it runs alone, after the others."""
+
+
+def reproduce(run: Run, only: list[str] | None = None, jobs: int = 2) -> None:
+    """Make all figures and claims, or only some; what an earlier run left is kept where it is not made again."""
+    run.out.mkdir(parents=True, exist_ok=True)
+    start = time.perf_counter()
+    if only:
+        _recall(run)
+    names = only or list(STEPS)
+    beside = [name for name in names if name != TIMED]
+    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
+        for claims, times in pool.map(make, beside, repeat(replace(run, claims=[], times={}))):
+            run.claims += claims
+            run.times.update(times)
+            _write(run)
+    if TIMED in names:
+        claims, times = make(TIMED, replace(run, claims=[], times={}))
+        run.claims += claims
+        run.times.update(times)
+    if not only:
+        run.times["all steps, minutes"] = (time.perf_counter() - start) / 60
+    _write(run)
+
+
+def make(name: str, run: Run) -> tuple[list[Claim], dict[str, float]]:
+    """One step: its pictures into the folder, its claims and its time as the answer."""
+    with progress(run, name):
+        STEPS[name](run)
+    return run.claims, run.times
+
+
+def _recall(run: Run) -> None:
+    """Take over the claims and times of an earlier run."""
+    file = run.out / "claims.json"
+    if file.exists():
+        earlier = json.loads(file.read_text(encoding="utf-8"))
+        run.claims += [Claim(**c) for c in earlier["claims"]]
+        run.times.update(earlier["times"])
+
+
+def _write(run: Run) -> None:
+    """claims.json, the latest of each claim in the order of the paper, and the page made of it."""
+    order = list(STEPS)
+    latest = {c.id: c for c in run.claims}
+    run.claims = sorted(latest.values(), key=lambda c: order.index(c.command.split()[-1]))
+    run.write_claims()
+    write_report(run.out)

@@ -1,0 +1,91 @@
+"""One polygon through the compiled core and the plain reference, and how far apart they come out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import glyphspline as gs
+from glyphspline.arrays import FloatArray
+from glyphspline.reference import interpolate_reference
+
+TOLERANCE = 1e-9
+"""Of control points, in the polygon's extent."""
+
+SETTINGS: list[dict[str, Any]] = [
+    {"variant": 2},
+    {"variant": 2, "margin": 0.02, "fallback": "peak"},
+    {"variant": 1},
+    {"variant": 2, "closed": False},
+    {"variant": 3},
+    {"variant": 2, "finish": "solve"},
+    {"variant": 4},
+    {"variant": 2, "knots": "centripetal"},
+    {"variant": 2, "closed": False, "end_tangents": ((1.0, 0.0), (0.6, 0.8))},
+    {"variant": 2},
+    {"variant": 2, "knots": "uniform"},
+    {"variant": 0, "max_iterations": 30},
+    {"variant": 2, "degree": 5, "max_iterations": 40},
+]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How two results differ.
+
+    Attributes:
+        difference: of control points, in the polygon's extent.
+        iterations: compiled less reference.
+        fallbacks: likewise.
+        rate_bound: likewise.
+    """
+
+    difference: float
+    iterations: int
+    fallbacks: int
+    rate_bound: float
+
+
+def _options(points: FloatArray, number: int, most: int) -> tuple[float, dict[str, Any]]:
+    extent = float(np.ptp(points, axis=0).max())
+    options = {"residual_tolerance": 2e-7 * extent, **SETTINGS[number % len(SETTINGS)]}
+    if np.hypot(*np.diff(points, axis=0).T).min() < 1e-3 * extent:
+        options.pop("finish", None)
+    options["max_iterations"] = min(most, options.get("max_iterations", most))
+    return extent, options
+
+
+def compare(points: FloatArray, number: int, most: int = 120) -> Agreement:
+    """Both results for a polygon, the settings going round with its number.
+
+    The frozen system is only compared where no chord is below 1/1000 of the extent: with vertices a share s apart its
+    solution moves by 1/s times the rounding errors of the parameters.
+    """
+    extent, options = _options(points, number, most)
+    ours, plain = gs.interpolate(points, **options), interpolate_reference(points, **options)
+    P, Q = ours.spline.control_points, plain.spline.control_points
+    size = max(extent, float(np.abs(Q - Q.mean(axis=0)).max()))  # a variant that diverges leaves the polygon behind
+    return Agreement(
+        float(np.abs(P - Q).max()) / size,
+        ours.iterations - plain.iterations,
+        ours.fallbacks - plain.fallbacks,
+        ours.rate_bound - plain.rate_bound,
+    )
+
+
+def sensitivity(points: FloatArray, number: int, most: int = 120) -> tuple[float, int]:
+    """How far the reference moves from itself, and by how many passes, when coordinates change in their last bits."""
+    extent, options = _options(points, number, most)
+    plain = interpolate_reference(points, **options)
+    rng = np.random.default_rng(number)
+    difference, passes = 0.0, 0
+    for _ in range(3):
+        changed = np.nextafter(points, rng.choice([-np.inf, np.inf], points.shape))
+        other = interpolate_reference(changed, **options)
+        passes = max(passes, abs(other.iterations - plain.iterations))
+        P, Q = other.spline.control_points, plain.spline.control_points
+        if P.shape == Q.shape:
+            difference = max(difference, float(np.abs(P - Q).max()) / extent)
+    return difference, passes

@@ -1,0 +1,67 @@
+"""A headless Chromium, a gallery of real runs opened from disk, and a viewer that the shell has started."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+import glyphspline as gs
+from glyphspline.batch import RunSpec, convert_font, write_gallery
+
+FONTS = Path(__file__).parents[2] / "fonts_test"
+SANDBOXED = hasattr(os, "getuid") and os.getuid() != 0  # Chromium's sandbox does not work for root
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(
+            executable_path=shutil.which("chromium"), args=[] if SANDBOXED else ["--no-sandbox"]
+        )
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser: Any) -> Iterator[Any]:
+    """A page on which any error, and any request beyond this machine, fails the test."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    page.set_default_timeout(10_000)
+    wrong: list[str] = []
+    page.on("console", lambda message: wrong.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    here = ("file:", "http://127.0.0.1:", "data:", "blob:")
+    page.on("request", lambda request: None if request.url.startswith(here) else wrong.append(request.url))
+    yield page
+    context.close()
+    assert not wrong
+
+
+@pytest.fixture(scope="session")
+def gallery(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two runs below one folder, with an index of their own."""
+    out = tmp_path_factory.mktemp("gallery")
+    for name, options in (("kouzan-gyosho", gs.Options(count=24, measure=True)), ("variable", gs.Options(step=90))):
+        font = gs.open_font(FONTS / f"{name}.ttf")
+        convert_font(font, font.glyph_names, out / name, RunSpec(options), jobs=0)
+    write_gallery(out)
+    return out
+
+
+@pytest.fixture(scope="session")
+def viewer() -> Iterator[str]:
+    """The address of a viewer, started as a user does."""
+    command = [sys.executable, "-m", "glyphspline", "view", str(FONTS / "kouzan-gyosho.ttf"), "--no-browser"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        yield process.stderr.readline().split()[0]
+        process.terminate()

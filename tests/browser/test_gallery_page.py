@@ -1,0 +1,191 @@
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from glyphspline.report import write_report
+
+
+def opened(page: Any, folder: Path) -> Any:
+    page.goto((folder / "index.html").as_uri())
+    page.wait_for_selector("body[data-ready]")
+    return page
+
+
+def names(page: Any) -> list[str]:
+    """Of the cards in view, in their order."""
+    cells = page.locator(".cell").evaluate_all(
+        "cells => cells.map(c => [+c.getAttribute('aria-posinset'), c.querySelector('b').textContent])"
+    )
+    return [name for _, name in sorted(cells)]
+
+
+def test_shows_every_glyph_of_a_run_with_its_drawing(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    assert page.locator("#count").inner_text() == "18 glyphs"
+    assert len(names(page)) == 18
+    page.wait_for_function("() => document.querySelectorAll('.card .result').length === 17")  # all but the space
+    drawn = page.locator(".card:has(b:text-is('O')) .result").get_attribute("d")
+    svg = (gallery / "kouzan-gyosho" / "svg" / "O_.svg").read_text()
+    assert f'd="{drawn}"' in svg
+
+
+def test_several_fonts_side_by_side(page: Any, gallery: Path) -> None:
+    opened(page, gallery)
+    assert page.locator("#count").inner_text() == "26 glyphs"
+    page.select_option("#run", "variable")
+    assert page.locator("#count").inner_text() == "8 of 26 glyphs"
+    page.locator(".card:not(.empty)").first.click()
+    assert "Regular" in page.locator("[data-part=about]").inner_text()
+
+
+def test_search_sort_and_limits(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    for words in ("龍", "u+9f8d", "uni9F8D"):
+        page.fill("#words", words)
+        page.wait_for_function("() => document.getElementById('count').textContent === '1 of 18 glyphs'")
+        assert names(page) == ["uni9F8D"]
+    page.fill("#words", "")
+    page.wait_for_function("() => document.getElementById('count').textContent === '18 glyphs'")
+    page.select_option("#sort", "deviation")
+    entries = [json.loads(line) for line in (gallery / "kouzan-gyosho" / "manifest.jsonl").read_text().splitlines()]
+    worst = {e["glyph"]: max((c["deviation"] for c in e["contours"]), default=-1.0) for e in entries}
+    assert names(page) == sorted(worst, key=lambda name: -worst[name])
+    limit = sorted(worst.values())[-5]
+    page.fill("#least", str(limit * 0.999))
+    page.wait_for_function("() => document.getElementById('count').textContent === '5 of 18 glyphs'")
+    page.uncheck("#down")
+    assert names(page) == sorted(worst, key=lambda name: worst[name])[-5:]
+    page.select_option("#show", "empty")
+    assert page.locator("#count").inner_text().startswith("0 of")
+
+
+@pytest.mark.parametrize("layer", ["source", "result", "polygon", "vertices", "control", "comb", "coloured"])
+def test_each_layer_is_switched(page: Any, gallery: Path, layer: str) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    box = page.locator(f"header [data-layer={layer.replace('coloured', 'colour')}]")
+    shape = page.locator(f".card:has(b:text-is('g')) .{layer}")
+    before = box.is_checked()
+    for wanted in (not before, before):
+        box.set_checked(wanted, force=True)
+        page.wait_for_timeout(80)
+        assert shape.locator("visible=true").count() == int(wanted)
+
+
+def test_a_glyph_large_zoomed_and_faded(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    page.locator(".card:has(b:text-is('uni9F8D'))").click()
+    picture = page.locator("[data-part=picture]")
+    page.wait_for_selector("[data-part=picture] .result")
+    start = [float(v) for v in picture.get_attribute("viewBox").split()]
+    box = picture.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.wheel(0, -600)
+    width = "document.querySelector('[data-part=picture]').getAttribute('viewBox').split(' ')[2]"
+    page.wait_for_function(f"least => {width} < least", arg=start[2] / 2)
+    zoomed = [float(v) for v in picture.get_attribute("viewBox").split()]
+    assert zoomed[0] + zoomed[2] / 2 == pytest.approx(start[0] + start[2] / 2, abs=start[2] / 200), "about the pointer"
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100, box["y"] + 100, steps=3)
+    page.mouse.up()
+    assert picture.get_attribute("viewBox") != " ".join(map(str, zoomed))
+    page.keyboard.press("0")
+    assert [float(v) for v in picture.get_attribute("viewBox").split()] == pytest.approx(start)
+    page.locator("[data-part=fade]").fill("100")
+    opacity = "s => getComputedStyle(document.querySelector(`[data-part=picture] ${s}`)).opacity"
+    assert (page.evaluate(opacity, ".source"), page.evaluate(opacity, ".result")) == ("0", "1")
+    page.locator("[data-part=fade]").fill("0")
+    assert (page.evaluate(opacity, ".source"), page.evaluate(opacity, ".result")) == ("1", "0")
+    assert page.locator(".side tbody tr").count() > 5
+
+
+def test_by_keyboard_alone(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    page.keyboard.press("/")
+    assert page.evaluate("document.activeElement.id") == "words"
+    page.locator("#list [tabindex='0']").focus()
+    for key in ("ArrowRight", "ArrowRight", "End", "ArrowLeft"):
+        page.keyboard.press(key)
+    focused = page.evaluate("document.activeElement.querySelector('b').textContent")
+    assert focused == names(page)[-2]
+    page.keyboard.press("Enter")
+    assert page.locator("#detail-title").inner_text().endswith(focused)
+    page.keyboard.press("]")
+    page.wait_for_function("() => document.querySelector('[data-part=count]').textContent === '18 of 18'")
+    page.keyboard.press("c")
+    page.wait_for_selector("[data-part=picture] .comb path", state="attached")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.querySelector('b').textContent") == names(page)[-1]
+
+
+def test_what_a_screen_reader_is_told(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    unnamed = page.evaluate(
+        """() => [...document.querySelectorAll('button, input, select, [role=img]')].filter(e => e.checkVisibility() &&
+           !e.getAttribute('aria-label') && !e.labels?.length && !e.textContent.trim()).map(e => e.outerHTML)"""
+    )
+    assert unnamed == []
+    assert page.locator("[role=listitem]").first.get_attribute("aria-setsize") == "18"
+    assert page.locator("#count").get_attribute("aria-live") == "polite"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_in_both_themes(page: Any, gallery: Path, scheme: str) -> None:
+    page.emulate_media(color_scheme=scheme)
+    opened(page, gallery / "kouzan-gyosho")
+    ratio = """selector => {
+      const linear = v => v <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4;
+      const light = c => { const [r, g, b] = c.match(/[\\d.]+/g).map(v => linear(v / 255));
+        return .2126 * r + .7152 * g + .0722 * b; };
+      const e = document.querySelector(selector);
+      let under = e; while (getComputedStyle(under).backgroundColor === 'rgba(0, 0, 0, 0)') under = under.parentElement;
+      const colours = [getComputedStyle(e).color, getComputedStyle(under).backgroundColor];
+      const [a, b] = colours.map(light).sort((x, y) => y - x);
+      return (a + .05) / (b + .05); }"""
+    for selector in ("h1", "#count", ".card .name", ".card:not(.empty) .fact", ".layers label", ".controls label"):
+        assert page.evaluate(ratio, selector) > 4.5, selector
+
+
+def test_twenty_thousand_glyphs_are_a_few_cards_at_a_time(page: Any, tmp_path: Path) -> None:
+    contour = {"vertices": 10, "iterations": 5, "converged": True, "deviation": 0.5}
+    entries: Any = (
+        {"glyph": f"g{gid}", "gid": gid, "unicodes": [], "advance": 1000, "status": "ok", "files": {},
+         "contours": [contour | {"deviation": gid % 997}], "error": None}
+        for gid in range(20_000)
+    )  # fmt: skip
+    write_report(tmp_path, entries, {})
+    opened(page, tmp_path)
+    assert page.locator("#count").inner_text() == "20000 glyphs"
+    for share in (0.25, 0.5, 1.0):
+        page.evaluate(
+            "share => { const g = document.getElementById('grid'); g.scrollTop = share * g.scrollHeight; }", share
+        )
+        page.wait_for_timeout(150)
+        assert page.locator(".cell").count() < 120
+    assert names(page)[-1] == "g19999"
+    page.select_option("#sort", "deviation")
+    page.wait_for_timeout(150)
+    assert int(re.sub(r"\D", "", names(page)[0])) % 997 == 996
+
+
+def test_prints_cards_in_columns(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    page.emulate_media(media="print")
+    assert page.locator(".controls").is_hidden()
+    tops = page.locator(".cell").evaluate_all("cells => cells.map(c => c.getBoundingClientRect().top)")
+    assert len(set(tops)) == 4, "18 cards, five in a row"
+    assert page.pdf().startswith(b"%PDF")
+
+
+def test_on_a_phone_nothing_is_wider_than_the_screen(page: Any, gallery: Path) -> None:
+    page.set_viewport_size({"width": 375, "height": 740})
+    opened(page, gallery / "kouzan-gyosho")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 375
+    page.locator(".card:has(b:text-is('g'))").click()
+    page.wait_for_selector("[data-part=picture] .result")
+    assert page.locator(".stage").bounding_box()["height"] > 200
+    assert page.locator("#detail").evaluate("d => d.scrollWidth <= d.clientWidth")

@@ -1,0 +1,132 @@
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+RESULT = "#picture .result"
+
+
+@pytest.fixture
+def shown(page: Any, viewer: str) -> Any:
+    """The viewer's page with the first glyph drawn, and waiting for nothing."""
+    page.goto(viewer)
+    page.wait_for_selector(RESULT, state="attached")
+    page.wait_for_load_state("networkidle")
+    return page
+
+
+def path(page: Any) -> str:
+    return str(page.locator(RESULT).get_attribute("d"))
+
+
+def changes(page: Any, act: Any) -> str:
+    """The curve after something that has to change it."""
+    before = path(page)
+    act()
+    page.wait_for_function("d => document.querySelector('#picture .result')?.getAttribute('d') !== d", arg=before)
+    page.wait_for_load_state("networkidle")
+    return path(page)
+
+
+def test_opens_on_the_dragon_with_its_measures_and_command(shown: Any) -> None:
+    assert "uni9F8D" in shown.locator("#title").inner_text()
+    assert shown.locator("#measures tr").count() > 5
+    assert shown.locator("#chart .line").count() == shown.locator("#measures tr:first-child th").count() - 1
+    words = shlex.split(shown.locator("#command").inner_text())
+    assert words[:2] == ["glyphspline", "convert"]
+    assert "--variant" in words
+
+
+def test_the_curve_follows_the_sliders(shown: Any) -> None:
+    changes(shown, lambda: shown.locator("#amount").fill("80"))
+    changes(shown, lambda: shown.locator("[name=variant][value='3']").check(force=True))
+    assert "--variant 3" in shown.locator("#command").inner_text()
+    changes(shown, lambda: shown.locator("[name=variant][value='2']").check(force=True))
+    changes(shown, lambda: shown.locator("#margin").fill("0.15"))
+    assert shown.locator("#margin-out").inner_text() == "0.150"
+    changes(shown, lambda: shown.locator("[name=sampling][value=count]").check(force=True))
+    assert "--count" in shown.locator("#command").inner_text()
+
+
+def test_another_glyph_by_search_and_by_arrow_keys(shown: Any) -> None:
+    changes(shown, lambda: shown.locator("#words").fill("O"))
+    assert shown.locator("#title").inner_text() == "O O"
+    shown.locator("#words").fill("")
+    shown.locator("#glyphs [role=option]").nth(15).wait_for()
+    shown.locator("#glyphs").focus()
+    changes(shown, lambda: shown.keyboard.press("ArrowRight"))
+    assert shown.locator("#glyphs [aria-selected=true]").get_attribute("data-name") != "O"
+
+
+def test_variants_side_by_side(shown: Any) -> None:
+    shown.locator("#compare").check()
+    shown.locator("#compared figure").nth(2).wait_for()
+    captions = shown.locator("#compared figcaption b").all_inner_texts()
+    assert captions == ["variant 1", "variant 2", "variant 3"]
+    drawn = [shown.locator("#compared .result").nth(i).get_attribute("d") for i in range(3)]
+    assert drawn[1] == path(shown)
+    assert drawn[2] not in drawn[:2], "variants 1 and 2 are close to each other, 3 is not"
+
+
+def test_the_iteration_is_played_from_the_polygon_to_the_result(shown: Any) -> None:
+    final = path(shown)
+    changes(shown, lambda: shown.locator("#play").click())
+    first = path(shown)
+    assert "error" in shown.locator("#step-out").inner_text()
+    assert shown.locator("#picture .ties").get_attribute("d") != "", "vertices are tied to their footpoints"
+    assert changes(shown, lambda: None) != first
+    shown.wait_for_function("() => document.getElementById('step-out').textContent === 'result'", timeout=15_000)
+    assert path(shown) == final
+
+
+def test_a_vertex_is_dragged_and_put_back(shown: Any) -> None:
+    before = path(shown)
+    start = shown.evaluate(
+        """() => { const svg = document.getElementById('picture'), m = svg.getScreenCTM();
+             const [x, y] = svg.querySelector('.vertices').getAttribute('d').match(/-?[\\d.]+/g).map(Number);
+             return [m.a * x + m.e, m.d * y + m.f]; }"""
+    )
+
+    def drag() -> None:
+        shown.mouse.move(*start)
+        shown.mouse.down()
+        shown.mouse.move(start[0] + 30, start[1] - 20, steps=4)
+        shown.mouse.up()
+
+    changes(shown, drag)
+    assert shown.locator("#moved-note").is_visible()
+    shown.wait_for_load_state("networkidle")
+    changes(shown, lambda: shown.locator("#restore").click())
+    assert path(shown) == before
+
+
+def test_saves_the_drawing(shown: Any, tmp_path: Path) -> None:
+    with shown.expect_download() as waiting:
+        shown.locator("#save").click()
+    waiting.value.save_as(tmp_path / "saved.svg")
+    assert f'd="{path(shown)}"' in (tmp_path / "saved.svg").read_text()
+
+
+def test_an_ordinary_glyph_answers_within_a_tenth_of_a_second(shown: Any) -> None:
+    shown.locator("#words").fill("g")
+    shown.wait_for_load_state("networkidle")
+    shown.wait_for_timeout(500)
+    times = shown.evaluate(
+        """async () => { const times = [];
+           for (let i = 0; i < 8; i++) { const from = performance.now();
+             const body = JSON.stringify({ glyph: 'g', sampling: 'step', amount: 40 + i, variant: 2, margin: 0.02 });
+             const headers = { 'content-type': 'application/json' };
+             await (await fetch('/api/glyph', { method: 'POST', headers, body })).json();
+             times.push(performance.now() - from); }
+           return times.sort((a, b) => a - b); }"""
+    )
+    assert times[len(times) // 2] < 100
+
+
+def test_on_a_phone_nothing_is_wider_than_the_screen(shown: Any) -> None:
+    shown.set_viewport_size({"width": 375, "height": 740})
+    assert shown.evaluate("document.documentElement.scrollWidth") <= 375
+    assert shown.locator(".stage").bounding_box()["y"] < 300

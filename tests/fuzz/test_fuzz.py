@@ -1,0 +1,55 @@
+"""A minute of damaged fonts; hours of them with ``python -m tests.fuzz.batch``."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from glyphspline import Font, Options, convert, open_font, to_svg
+from glyphspline.errors import GlyphsplineError
+from glyphspline.express.lane import Drawn, draw_chunk
+from glyphspline.express.reading import BulkReader
+
+from .batch import round_of
+from .mutants import mutant
+
+
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(seed=st.integers(0, 2**32))
+def test_a_damaged_font_raises_nothing_but_our_own_errors(seed: int, tmp_path_factory: object) -> None:
+    name, data = mutant(random.Random(seed))
+    path = Path(tmp_path_factory.mktemp("fuzz")) / name  # type: ignore[attr-defined]
+    path.write_bytes(data)
+    options = Options(step=60.0)
+    short = draw_chunk(BulkReader(path, 0), range(20), options)
+    try:
+        font = open_font(path)
+    except GlyphsplineError as error:
+        blamed = error.font
+    else:
+        look_at_glyphs(font, short, options)
+        return
+    assert blamed == str(path)
+
+
+def look_at_glyphs(font: Font, short: list[Drawn | None], options: Options) -> None:
+    """Convert some glyphs; those that fail say which they are."""
+    for glyph, drawn in zip(font.glyph_names[:20], short, strict=False):
+        blamed = None
+        try:
+            document = to_svg(convert(font.outline(glyph), options))
+        except GlyphsplineError as error:
+            document, blamed = "", error.glyph
+        assert "nan" not in document
+        assert blamed in (None, glyph)
+        assert drawn is None or "n" not in drawn.path
+
+
+def test_damaged_fonts_through_the_batch_script() -> None:
+    outcome, broken = round_of(12, 1, ["--step", "80", "--format", "svg", "--jobs", "2", "--quiet"])
+    assert not broken
+    assert outcome["ok"] > 0
+    assert outcome["readable"] < outcome["fonts"]

@@ -1,0 +1,241 @@
+"""Runs over many glyphs: what is in the folder, and that it does not depend on workers or interruptions."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from glyphspline.batch import OutputError, RunSpec, convert_font, entries_of, find_fonts, folders_for
+from glyphspline.batch.files import LONGEST_NAME, file_names, write_whole
+from glyphspline.batch.manifest import JOURNAL
+from glyphspline.errors import GlyphsplineError
+from glyphspline.glyph import Options
+from glyphspline.readers import Font, open_font
+
+FONTS = Path(__file__).parents[1] / "fonts_test"
+SPEC = RunSpec(Options(step=80))
+MANIFEST_KEYS = ["glyph", "gid", "unicodes", "advance", "status", "files", "contours", "error"]
+
+
+@pytest.fixture(scope="module")
+def font() -> Font:
+    return open_font(FONTS / "kouzan-gyosho.otf")
+
+
+@pytest.fixture(scope="module")
+def finished(font: Font, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("runs") / "finished"
+    convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0)
+    return out
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_every_glyph_is_in_the_manifest_once_in_gid_order_with_its_files(finished: Path) -> None:
+    entries = list(entries_of(finished))
+    assert [entry["glyph"] for entry in entries] == ["space", "eight", "B", "O"]
+    assert all(list(entry) == MANIFEST_KEYS for entry in entries)
+    assert [entry["status"] for entry in entries] == ["empty", "ok", "ok", "ok"]
+    written = {path for entry in entries for path in entry["files"].values()}
+    data = {f"gallery/{name}.js" for name in ("run", "table-00000", "glyphs-00000")}
+    pages = {"index.html", "manifest.jsonl", "run.json"} | data
+    assert written | pages == content(finished).keys()
+    assert entries[2]["unicodes"] == ["U+0042"]
+    assert all(contour["converged"] is True for entry in entries for contour in entry["contours"])
+
+
+def test_run_json_says_what_was_run_and_nothing_of_the_machine(finished: Path, font: Font) -> None:
+    text = (finished / "run.json").read_text()
+    run = json.loads(text)
+    assert run["font"]["sha256"] == font.sha256
+    assert run["options"]["step"] == 80
+    assert run["curvature_scale"] > 0
+    assert str(FONTS) not in text
+    assert "jobs" not in text
+
+
+def test_worker_processes_write_the_same_bytes(finished: Path, font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.select(text="O8 B"), tmp_path / "out", SPEC, jobs=2)
+    assert content(tmp_path / "out") == content(finished)
+
+
+def test_a_finished_folder_is_left_as_it_is(finished: Path, font: Font) -> None:
+    before = {path: path.stat().st_mtime_ns for path in finished.rglob("*")}
+    summary = convert_font(font, font.select(text="O8 B"), finished, SPEC, jobs=0)
+    assert summary.done == 0
+    assert summary.statuses == {"ok": 3, "empty": 1}
+    assert {path: path.stat().st_mtime_ns for path in finished.rglob("*")} == before
+
+
+def interrupt(done: int, total: int, failed: int) -> None:
+    if done == 2:
+        raise KeyboardInterrupt
+
+
+def test_an_interrupted_run_goes_on_and_ends_the_same(finished: Path, font: Font, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    names = font.select(text="O8 B")
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, names, out, SPEC, jobs=0, observer=interrupt)
+    assert not (out / "manifest.jsonl").exists()
+    (out / "svg" / ".B_.svg-1.part").write_text("half a fi")
+    with open(out / JOURNAL, "ab") as journal:
+        journal.write(b'7,9\t{"glyph":"O"')
+    assert convert_font(font, names, out, SPEC, jobs=0).done == 2
+    assert content(out) == content(finished)
+
+
+def test_a_file_lost_or_cut_after_its_journal_line_is_written_again(finished: Path, font: Font, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0, observer=interrupt)
+    (out / "svg" / "eight.svg").write_bytes(b"")
+    assert convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0).done == 3
+    assert content(out) == content(finished)
+
+
+def test_a_wider_selection_adds_to_the_folder(font: Font, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    convert_font(font, font.select(text="O"), out, SPEC, jobs=0)
+    assert convert_font(font, font.select(text="8O"), out, SPEC, jobs=0).done == 1
+    assert [entry["glyph"] for entry in entries_of(out)] == ["eight", "O"]
+
+
+def test_other_options_are_refused_with_the_difference(finished: Path, font: Font) -> None:
+    other = replace(SPEC, options=Options(step=81))
+    with pytest.raises(OutputError, match=r"options\.step: 80 in the folder, 81 now"):
+        convert_font(font, font.select(text="O"), finished, other, jobs=0)
+
+
+def test_restart_does_it_anew(font: Font, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    convert_font(font, font.select(text="O "), out, SPEC, jobs=0)
+    convert_font(font, font.select(text=" "), out, replace(SPEC, view_box="ink"), jobs=0, restart=True)
+    assert [entry["glyph"] for entry in entries_of(out)] == ["space"]
+
+
+def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
+    class Damaged(Font):
+        """A font one of whose glyphs cannot be drawn."""
+
+        def outline(self, name: str) -> Any:
+            if name == "B":
+                raise GlyphsplineError("broken", font=str(self.path), glyph=name, contour=3)
+            return super().outline(name)
+
+    font = open_font(FONTS / "kouzan-gyosho.otf")
+    font.__class__ = Damaged
+    with opened_as(font):
+        summary = convert_font(font, font.select(text="OB "), tmp_path / "out", SPEC, jobs=0)
+    assert summary.statuses == {"ok": 1, "empty": 1, "failed": 1}
+    assert summary.failures == [("B", "contour 3: broken")]
+    failed = next(entry for entry in entries_of(tmp_path / "out") if entry["glyph"] == "B")
+    assert (failed["unicodes"], failed["advance"], failed["files"]) == (["U+0042"], None, {})
+
+
+def opened_as(font: Font) -> Any:
+    """Workers of this process find this font where they would open it."""
+    patch = pytest.MonkeyPatch()
+    patch.setattr("glyphspline.batch.work.source_of", lambda *key: font)
+
+    class Undo:
+        def __enter__(self) -> None: ...
+
+        def __exit__(self, *what: object) -> None:
+            patch.undo()
+
+    return Undo()
+
+
+def test_file_names_differ_without_regard_to_case_and_stay_in_their_folder() -> None:
+    nasty = ["a", "A", "a_", "../../etc/passwd", "CON", "con", "x" * 10_000, "x" * 10_001, "龍" * 300, "\ud800"]
+    nasty += ["", ".", "..", "a\0b", "a\x1bb", "<&>", "nul.alt", " ", "a/b", "a\\b", "-rf", "~", ".notdef"]
+    stems = file_names(nasty)
+    assert len({stem.lower() for stem in stems}) == len(nasty)
+    for stem in stems:
+        assert len(stem.encode()) <= 2 * LONGEST_NAME
+        assert Path(stem).name == stem
+        assert stem not in (".", "..")
+        assert not stem.startswith(".")
+
+
+def test_a_write_leaves_nothing_half_done(tmp_path: Path) -> None:
+    assert write_whole(f"{tmp_path}/a.svg", "é") == 2
+    with pytest.raises(OutputError):
+        write_whole(f"{tmp_path}/no such folder/a.svg", "b")
+    (tmp_path / "folder.svg").mkdir()
+    with pytest.raises(OutputError):
+        write_whole(f"{tmp_path}/folder.svg", "b")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.svg", "folder.svg"]
+
+
+def test_a_linked_folder_is_refused(font: Font, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "svg").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(OutputError, match="symbolic link"):
+        convert_font(font, font.select(text="O"), tmp_path / "out", SPEC, jobs=0)
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    for name in ("a/x.ttf", "a/b/y.OTF", "a/notes.txt", "z.woff2"):
+        (tmp_path / name).write_bytes(b"")
+    (tmp_path / "list.txt").write_text(f"# fonts\n{tmp_path / 'a'}\n\n{tmp_path}/*.woff2\n")
+    return tmp_path
+
+
+def test_fonts_are_found_in_folders_globs_and_lists(tree: Path) -> None:
+    assert find_fonts([str(tree / "a")]) == [tree / "a/b/y.OTF", tree / "a/x.ttf"]
+    assert find_fonts([str(tree / "**" / "*.ttf"), str(tree / "a" / "x.ttf")]) == [tree / "a/x.ttf"]
+    assert len(find_fonts([f"@{tree / 'list.txt'}"])) == 3
+    with pytest.raises(GlyphsplineError, match="no such file"):
+        find_fonts([str(tree / "missing.ttf")])
+
+
+KILL_ME = """
+import os, signal, sys
+from pathlib import Path
+from glyphspline.batch import RunSpec, convert_font
+from glyphspline.glyph import Options
+from glyphspline.readers import open_font
+
+def observe(done, total, failed):
+    if done >= int(sys.argv[3]):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    font = open_font(sys.argv[1])
+    names = font.select(text="O8 B")
+    convert_font(font, names, Path(sys.argv[2]), RunSpec(Options(step=80)), jobs=2, observer=observe)
+"""
+
+
+@pytest.mark.parametrize("moment", [1, 3])
+def test_a_killed_run_goes_on_and_ends_the_same(moment: int, finished: Path, font: Font, tmp_path: Path) -> None:
+    script, out = tmp_path / "run.py", tmp_path / "out"
+    script.write_text(KILL_ME)
+    killed = subprocess.run([sys.executable, script, font.path, out, str(moment)], cwd=FONTS.parent, timeout=120,
+                            env={**os.environ, "PYTHONPATH": str(FONTS.parent)})  # fmt: skip
+    assert killed.returncode == -signal.SIGKILL
+    assert not (out / "manifest.jsonl").exists()
+    summary = convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0)
+    assert summary.done <= 4 - moment
+    assert content(out) == content(finished)
+
+
+def test_fonts_of_one_name_get_folders_of_their_own() -> None:
+    fonts = [Path("a/Fine.ttf"), Path("b/fine.ttf"), Path("c/CON"), Path("d/...."), Path("Fine.otf")]
+    assert folders_for(fonts) == ["Fine-ttf", "fine-ttf-2", "CON-2", "font", "Fine-otf"]

@@ -1,0 +1,169 @@
+from __future__ import annotations
+
+import io
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import glyphspline as gs
+from glyphspline.arrays import FloatArray
+from glyphspline.writers.colours import SIDES, class_colour, colour_classes
+from glyphspline.writers.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
+from glyphspline.writers.raster import to_pdf, to_png
+
+from .drawings import L_SHAPE, circle, polygon_contour, result
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def disc(radius: float = 200.0, turn: int = 1) -> gs.GlyphResult:
+    return result(gs.Contour.from_segments(list(circle(radius, centre=(300, 300), turn=turn))))
+
+
+@cache
+def random_glyph(n: int = 20, seed: int = 0) -> gs.GlyphResult:
+    points = np.random.default_rng(seed).uniform(0, 1000, (n, 2))
+    r = gs.interpolate(points, 2, fallback="peak", margin=0.02, residual_tolerance=0.01)
+    bare = result(gs.Contour.from_segments(list(r.spline.to_bezier())), name=f"random{seed}", gid=seed)
+    contour = gs.ContourResult(bare.contours[0].source, points, (r,), bare.contours[0].curve, bare.contours[0].measures)
+    return gs.GlyphResult(bare.outline, bare.options, (contour,))
+
+
+def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
+    """Colour to its teeth (k, 2, 2), foot and tip, y up, as they are written."""
+    root = ElementTree.fromstring(svg)
+    comb = next(g for g in root.iter(f"{SVG}g") if g.get("class") == group)
+    found = {}
+    for path in comb.findall(f"{SVG}path"):
+        if path.attrib["stroke"].startswith("#"):
+            numbers = [float(word) for word in re.findall(r"-?[\d.]+", path.attrib["d"])]
+            pairs = np.array(numbers).reshape(-1, 2, 2) * (1, -1)
+            pairs[:, 1] += pairs[:, 0]
+            found[path.attrib["stroke"]] = pairs
+    return found
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_teeth_of_a_circle_are_as_long_as_its_curvature_and_point_outwards(turn: int) -> None:
+    written = strokes(to_curvature_svg(disc(200, turn), scale=SIDES / 3 / 200))
+    assert list(written) == [class_colour(3 * turn)]
+    (pairs,) = written.values()
+    radii = np.hypot(*(pairs - 300).transpose(2, 0, 1))
+    assert radii[:, 0] == pytest.approx(200, abs=0.1)
+    assert radii[:, 1] == pytest.approx(200 + TOOTH * 1000 * 3 / SIDES, abs=0.2)
+
+
+def test_long_teeth_are_cut_and_marked() -> None:
+    glyph = disc(200)
+    svg = to_curvature_svg(glyph, scale=1 / 1000)  # five times the scale
+    (pairs,) = strokes(svg).values()
+    assert np.hypot(*(pairs[:, 1] - pairs[:, 0]).T) == pytest.approx(LONGEST * TOOTH * 1000, abs=0.2)
+    assert all(part.cut.all() for part in teeth(glyph, 1 / 1000))
+    assert 'class="cut"' in svg
+    assert 'class="cut"' not in to_curvature_svg(glyph, scale=1 / 200)
+
+
+def test_scale_is_shared_and_in_the_legend() -> None:
+    glyphs = [disc(100), disc(400)]
+    scale = curvature_scale(glyphs)
+    assert scale == pytest.approx(1 / 400, rel=1e-3) or scale == pytest.approx(1 / 100, rel=1e-3)
+    svg = to_curvature_svg(disc(100), scale=1 / 400)
+    words = [t.text for t in ElementTree.fromstring(svg).iter(f"{SVG}text")]
+    assert words[:3] == ["\N{MINUS SIGN}2.5", "0", "2.5"]  # 1/400 per unit is 2.5 per em
+    assert ElementTree.fromstring(svg).attrib["data-scale"] == "0.0025"
+
+
+def test_nothing_is_clipped() -> None:
+    for seed in range(4):
+        glyph = random_glyph(seed=seed)
+        svg = to_curvature_svg(glyph, control_polygon=True)
+        left, top, width, height = (float(w) for w in ElementTree.fromstring(svg).attrib["viewBox"].split())
+        controls = glyph.contours[0].interpolations[0].spline.control_points
+        drawn = np.concatenate(
+            [*(p.reshape(-1, 2) for p in strokes(svg).values()), controls, glyph.contours[0].polygon]
+        )
+        drawn = np.concatenate([drawn, *(p.reshape(-1, 2) for p in strokes(svg, "legend").values())])
+        assert drawn[:, 0].min() >= left
+        assert drawn[:, 0].max() <= left + width
+        assert (-drawn[:, 1]).min() >= top
+        assert (-drawn[:, 1]).max() <= top + height
+
+
+def test_vertices_and_control_polygon_are_optional() -> None:
+    glyph = random_glyph()
+    for vertices in (True, False):
+        for control_polygon in (True, False):
+            svg = to_curvature_svg(glyph, vertices=vertices, control_polygon=control_polygon)
+            classes = {e.get("class") for e in ElementTree.fromstring(svg).iter()}
+            assert ("vertices" in classes) == vertices
+            assert ("control-polygon" in classes) == control_polygon
+
+
+def test_size_of_a_large_glyph_is_sensible() -> None:
+    turns = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    wave = (300 + 40 * np.sin(12 * turns))[:, None] * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    r = gs.interpolate(wave, 2)
+    svg = to_curvature_svg(result(gs.Contour.from_segments(list(r.spline.to_bezier()))))
+    assert len(svg) < 150_000
+
+
+def test_an_endless_outline_gets_no_endless_comb() -> None:
+    zigzag = np.array([[30000 * (i % 2), i] for i in range(2000)], dtype=float)
+    assert len(teeth(result(polygon_contour(zigzag)), 1.0)[0].feet) < 15_000
+
+
+@pytest.mark.parametrize("curves", [(), (polygon_contour(L_SHAPE),)], ids=["empty", "straight"])
+def test_without_curvature_there_is_still_a_map(curves: tuple[gs.Contour, ...]) -> None:
+    glyph = result(*curves, name="<&>", advance=0)
+    svg = to_curvature_svg(glyph)
+    assert strokes(svg) == {}
+    assert "nan" not in svg
+    assert to_png(glyph).startswith(b"\x89PNG")
+
+
+def test_same_input_gives_the_same_bytes() -> None:
+    assert to_curvature_svg(random_glyph()) == to_curvature_svg(random_glyph())
+    assert to_png(random_glyph()) == to_png(random_glyph())
+    pdf = to_pdf(random_glyph())
+    assert pdf == to_pdf(random_glyph())
+    assert b"Date" not in pdf
+
+
+def test_png_shows_the_comb_in_its_colours() -> None:
+    pixels = np.round(imread(io.BytesIO(to_png(disc(200, 1), scale=1 / 200, vertices=False)))[..., :3] * 255)
+    violet = np.array([int(class_colour(SIDES)[i : i + 2], 16) for i in (1, 3, 5)])
+    body = pixels[100:-250]  # without the title and the colour bar, which shows every colour
+    assert (np.abs(body - violet).max(axis=2) < 40).sum() > 500
+    red = np.array([int(class_colour(-SIDES)[i : i + 2], 16) for i in (1, 3, 5)])
+    assert (np.abs(body - red).max(axis=2) < 40).sum() == 0
+
+
+def test_writing_svg_does_not_import_matplotlib() -> None:
+    modules = "glyphspline.writers.curvature_map, glyphspline.writers.raster, glyphspline.report"
+    code = f"import sys, {modules}; sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def luminance(colour: str) -> float:
+    channels = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_every_colour_is_seen_on_white_and_on_black() -> None:
+    colours = [class_colour(index) for index in range(-SIDES, SIDES + 1)]
+    assert len(set(colours)) == 2 * SIDES + 1
+    for colour in colours:
+        assert 1.05 / (luminance(colour) + 0.05) > 2.5  # contrast with white, as WCAG defines it
+        assert (luminance(colour) + 0.05) / 0.05 > 4.5  # and with black
+
+
+def test_colour_classes_are_symmetric_and_saturate() -> None:
+    values = np.array([-9.0, -1.0, -0.5, 0.0, 0.02, 0.5, 1.0, 9.0])
+    assert colour_classes(values).tolist() == [-SIDES, -SIDES, -4, 0, 0, 4, SIDES, SIDES]

@@ -1,0 +1,105 @@
+"""The short way gives what the long way gives."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from glyphspline.batch import RunSpec, convert_font, entries_of, work
+from glyphspline.express.contours import cubics_of
+from glyphspline.express.curves import number
+from glyphspline.express.lane import draw_chunk, suits
+from glyphspline.express.reading import BulkReader
+from glyphspline.express.stepping import stepped_points
+from glyphspline.glyph import Options
+from glyphspline.readers import open_font
+from glyphspline.sampling import sample
+
+FONTS = Path(__file__).parents[1] / "fonts_test"
+STATIC = ["kouzan-gyosho.ttf", "kouzan-gyosho.otf", "kouzan-kaisho.ttf", "edge-cases.ttf"]
+
+
+@pytest.mark.parametrize("view_box", ["em", "ink"])
+@pytest.mark.parametrize("name", STATIC)
+def test_both_ways_write_the_same_files(
+    name: str, view_box: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    font = open_font(FONTS / name)
+    spec = RunSpec(Options(step=31.0, precision=1), ("svg",), view_box)  # type: ignore[arg-type]
+    names = font.select(all_glyphs=True)
+    convert_font(font, names, tmp_path / "short", spec, jobs=0)
+    monkeypatch.setattr(work, "short_way", lambda job: False)
+    convert_font(font, names, tmp_path / "long", spec, jobs=0)
+    short, long = (tmp_path / way for way in ("short", "long"))
+    assert (short / "run.json").read_bytes() == (long / "run.json").read_bytes()
+    assert without_rates(short) == without_rates(long)
+    drawings = sorted(path.name for path in long.glob("svg/*"))
+    assert sorted(path.name for path in short.glob("svg/*")) == drawings
+    for drawing in drawings:
+        assert alike(*((way / "svg" / drawing).read_text() for way in (short, long))), drawing
+
+
+def without_rates(folder: Path) -> list[Any]:
+    """The manifest, but for the measures in which rounding errors show."""
+    entries = list(entries_of(folder))
+    for entry in entries:
+        for contour in entry["contours"]:
+            del contour["residual"], contour["rate_bound"]
+    return entries
+
+
+def alike(a: str, b: str) -> bool:
+    """Whether two drawings are the same, but for a few numbers within a unit of their last digit."""
+    figures = re.compile(r"-?\d+(?:\.\d+)?")
+    if figures.sub("#", a) != figures.sub("#", b):
+        return False
+    x, y = (np.array(figures.findall(text), dtype=np.float64) for text in (a, b))
+    return bool((np.abs(x - y) <= 0.1000001).all() and (np.abs(x - y) > 1e-9).mean() < 1e-2)
+
+
+@pytest.mark.parametrize("name", STATIC)
+def test_no_usual_glyph_is_left_to_the_long_way(name: str) -> None:
+    font = open_font(FONTS / name)
+    drawn = draw_chunk(BulkReader(font.path, 0), range(font.num_glyphs), Options(step=25.0))
+    empty = [len(font.outline(glyph).contours) == 0 for glyph in font.glyph_names]
+    assert [glyph is None for glyph in drawn] == empty
+
+
+@pytest.mark.parametrize("step", [7.0, 20.0, 50.0, 1000.0])
+def test_vertices_are_those_of_the_sampling(step: float) -> None:
+    font = open_font(FONTS / "kouzan-gyosho.otf")
+    reader = BulkReader(font.path, 0)
+    gid = font.glyph_names.index("uni9F8D")
+    buffer, starts, _, _ = reader.read([gid])
+    cubics, contours, _, _ = cubics_of(buffer, starts)
+    points, offsets, odd = stepped_points(cubics, contours, step, 4.0, 10_000)
+    assert not odd.any()
+    for k, contour in enumerate(font.outline("uni9F8D").contours):
+        expected = sample(contour, step=step)
+        assert points[offsets[k] : offsets[k + 1]] == pytest.approx(expected, abs=1e-6)
+
+
+def test_too_many_vertices_are_left_to_the_long_way() -> None:
+    reader = BulkReader(FONTS / "kouzan-gyosho.otf", 0)
+    assert draw_chunk(reader, [5, 6], Options(step=1e-3)) == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("value", "precision", "text"),
+    [(0, 2, "0"), (5, 2, "0.05"), (-5, 2, "-0.05"), (120, 2, "1.2"), (-100, 2, "-1"), (12345, 0, "12345"),
+     (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, "0.000000007")],
+)  # fmt: skip
+def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
+    room = np.zeros(40, dtype=np.uint8)
+    end = number(room, 0, value, precision, 10**precision)
+    assert room[:end].tobytes().decode() == text
+
+
+def test_only_plain_stepping_takes_the_short_way() -> None:
+    assert suits(Options(step=20.0))
+    for options in (Options(), Options(count=30), Options(step=20.0, measure=True), Options(step=20.0, variant=4)):
+        assert not suits(options)

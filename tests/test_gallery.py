@@ -1,0 +1,164 @@
+"""The gallery's page and data files: complete, streamed, the same bytes each time, and safe whatever a font says."""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64encode
+from collections.abc import Iterator
+from hashlib import sha256
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.report import write_index, write_report
+from glyphspline.report.drawings import read_drawing
+from glyphspline.report.measures import glyph_measures
+from glyphspline.writers.curvature_map import to_curvature_svg
+from glyphspline.writers.source import to_source_svg
+from glyphspline.writers.svg import to_svg
+
+from .drawings import METRICS, circle
+
+HOSTILE = "\"'></script><script>alert(1)</script><!--<img src=x onerror=alert(1)>\u2028"
+CONTOUR = {"vertices": 6, "iterations": 7, "converged": True, "deviation": 0.5, "within_tolerance": True}
+RUN = {"font": {"family": "Tests", "style": "Regular", "metrics": {"units_per_em": 1000.0}}, "curvature_scale": 0.004}
+
+
+def entry(gid: int, name: str = "", **changes: Any) -> dict[str, Any]:
+    return {
+        "glyph": name or f"glyph{gid}", "gid": gid, "unicodes": ["U+0041"], "advance": 600, "status": "ok",
+        "files": {}, "contours": [CONTOUR], "error": None,
+    } | changes  # fmt: skip
+
+
+def data(path: Path) -> Any:
+    found = re.fullmatch(r"glyphsplineData\((.*)\);\n", path.read_text(encoding="ascii"), re.DOTALL)
+    assert found, "a data file is one call, in ASCII"
+    return json.loads(found[1])
+
+
+def tables(folder: Path) -> list[Any]:
+    return [data(path) for path in sorted((folder / "gallery").glob("table-*.js"))]
+
+
+def glyphs(folder: Path) -> list[Any]:
+    return [glyph for path in sorted((folder / "gallery").glob("glyphs-*.js")) for glyph in data(path)]
+
+
+def test_drawings_are_those_of_the_files(tmp_path: Path) -> None:
+    outline = gs.Outline("odd #%?name", 3, (65,), 600.0, (gs.Contour.from_segments(circle(200.0, 8)),), METRICS)
+    result = gs.convert(outline, gs.Options(count=12))
+    drawn = {"source": to_source_svg(result), "svg": to_svg(result), "curvature": to_curvature_svg(result)}
+    files = {}
+    for kind, svg in drawn.items():
+        (tmp_path / kind).mkdir()
+        files[kind] = f"{kind}/odd #%?name.svg"
+        (tmp_path / files[kind]).write_text(svg, encoding="utf-8")
+    write_report(tmp_path, [entry(3, files=files)], RUN)
+    (glyph,) = glyphs(tmp_path)
+    assert glyph["source"].count("C") == 8
+    assert glyph["result"].count("C") == 12
+    for kind, points in [("polygon", result.contours[0].polygon),
+                         ("control", result.contours[0].interpolations[0].spline.control_points)]:  # fmt: skip
+        numbers = np.array(re.findall(r"-?[\d.]+", glyph[kind]), dtype=float).reshape(-1, 2)
+        np.testing.assert_allclose(numbers * (1, -1), points, atol=0.051)
+    without_svg = read_drawing(tmp_path, {"curvature": files["curvature"]})
+    assert without_svg["result"] == glyph["result"]
+
+
+def test_measures_of_contours_are_taken_together() -> None:
+    worse = CONTOUR | {"iterations": 9, "deviation": 2.0, "within_tolerance": False, "area_change": -3.0}
+    found = glyph_measures([CONTOUR | {"area_change": 1.0}, worse])
+    assert (found["contours"], found["vertices"], found["iterations"], found["deviation"]) == (2, 12, 9, 2.0)
+    assert found["converged"] is True
+    assert found["within_tolerance"] is False
+    assert found["area_change"] == -3.0
+    assert glyph_measures([])["deviation"] is None
+
+
+class Scripts(HTMLParser):
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.scripts: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.inside = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        self.inside = tag == "script"
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.scripts.append(data)
+            self.inside = False
+
+
+def test_hostile_text_stays_text(tmp_path: Path) -> None:
+    files = {"svg": "../../etc/passwd", "curvature": "/etc/passwd", "source": HOSTILE, HOSTILE: "a"}
+    bad = entry(1, HOSTILE, unicodes=[HOSTILE], status="failed", error=HOSTILE + "\x00", files=files)
+    write_report(tmp_path, [bad], RUN | {"font": RUN["font"] | {"family": HOSTILE}})  # type: ignore[operator]
+    page = Scripts((tmp_path / "index.html").read_text(encoding="utf-8"))
+    assert len(page.scripts) == 2, "the setup and the script"
+    assert not [attrs for _, attrs in page.tags if any(name.startswith("on") for name in attrs)]
+    for path in (tmp_path / "gallery").iterdir():
+        assert "<" not in path.read_text(encoding="ascii")
+    assert data(tmp_path / "gallery" / "run.js")["family"] == HOSTILE
+    assert set(glyphs(tmp_path)[0]["files"]) == {"source", HOSTILE}
+
+
+def test_a_file_that_is_no_drawing_of_ours_gives_nothing(tmp_path: Path) -> None:
+    (tmp_path / "a.svg").write_text(
+        '<path id="g1-a-outline" d="M0 0Z&quot;onload"/><g id="g1-a-source"><path d="url(x)"/></g>'
+    )
+    assert set(read_drawing(tmp_path, {"svg": "a.svg", "source": "a.svg"}).values()) == {""}
+
+
+def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:
+    write_report(tmp_path, [entry(1)], RUN)
+    page = Scripts((tmp_path / "index.html").read_text(encoding="utf-8"))
+    policy = next(
+        str(attrs["content"]) for _, attrs in page.tags if attrs.get("http-equiv") == "Content-Security-Policy"
+    )
+    digest = b64encode(sha256(page.scripts[1].encode()).digest()).decode()
+    assert f"'sha256-{digest}'" in policy
+    assert "default-src 'none'" in policy
+    assert "http" not in policy
+
+
+@pytest.mark.parametrize("count", [0, 1, 40, 41, 5001])
+def test_every_glyph_is_there_once_in_order(tmp_path: Path, count: int) -> None:
+    write_report(tmp_path, (entry(gid) for gid in range(count)), RUN)
+    assert [gid for table in tables(tmp_path) for gid in table["gid"]] == list(range(count))
+    assert len(glyphs(tmp_path)) == count
+    assert data(tmp_path / "gallery" / "run.js")["glyphs"] == count
+
+
+def test_entries_are_streamed(tmp_path: Path) -> None:
+    def entries() -> Iterator[dict[str, Any]]:
+        for gid in range(12_000):
+            yield entry(gid)
+            assert gid <= 5000 * (1 + len(list((tmp_path / "gallery").glob("table-*.js")))), "more than a table ahead"
+
+    write_report(tmp_path, entries(), RUN)
+    assert len(tables(tmp_path)) == 3
+
+
+def test_the_same_run_gives_the_same_bytes_and_a_smaller_one_leaves_no_old_files(tmp_path: Path) -> None:
+    for folder, counts in (("a", [100, 50]), ("b", [50])):
+        for count in counts:
+            (tmp_path / folder).mkdir(exist_ok=True)
+            write_report(tmp_path / folder, (entry(gid) for gid in range(count)), RUN)
+    a, b = ({path.name: path.read_bytes() for path in (tmp_path / name).rglob("*") if path.is_file()} for name in "ab")
+    assert a == b
+
+
+def test_several_runs_share_an_index(tmp_path: Path) -> None:
+    write_index(tmp_path, ["one", "two/face-1"], "2 fonts")
+    page = Scripts((tmp_path / "index.html").read_text(encoding="utf-8"))
+    assert json.loads(page.scripts[0])["runs"] == ["one", "two/face-1"]

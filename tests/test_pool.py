@@ -1,0 +1,66 @@
+"""Worker processes that die, hang and raise."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures import wait
+
+import pytest
+
+from glyphspline.batch.pool import TimeLimitError, WorkerLostError, WorkerPool, sign_of_life
+
+
+def die(after: float) -> None:
+    time.sleep(after)
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def parts(number: int, each: float) -> int:
+    for _ in range(number):
+        sign_of_life()
+        time.sleep(each)
+    return number
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[WorkerPool]:
+    with WorkerPool(2, seconds=0.6) as made:
+        yield made
+
+
+def test_results_and_errors_come_back(pool: WorkerPool) -> None:
+    futures = [pool.submit(pow, 2, k) for k in range(100)]
+    assert [future.result(timeout=30) for future in futures] == [2**k for k in range(100)]
+    assert isinstance(pool.submit(pow, "a", 1).exception(timeout=30), TypeError)
+
+
+def test_a_dead_worker_costs_one_call_and_is_replaced(pool: WorkerPool) -> None:
+    lost = pool.submit(die, 0.05)
+    kept = [pool.submit(pow, 3, k) for k in range(20)]
+    assert isinstance(lost.exception(timeout=30), WorkerLostError)
+    assert [future.result(timeout=30) for future in kept] == [3**k for k in range(20)]
+    assert len({pool.submit(os.getpid).result(timeout=30) for _ in range(8)}) <= 2
+
+
+def test_a_hung_worker_is_killed_and_others_go_on(pool: WorkerPool) -> None:
+    started = time.monotonic()
+    hung, quick = pool.submit(time.sleep, 600), pool.submit(pow, 2, 2)
+    assert quick.result(timeout=30) == 4
+    assert isinstance(hung.exception(timeout=30), TimeLimitError)
+    assert time.monotonic() - started < 20
+    assert pool.submit(pow, 2, 3).result(timeout=30) == 8
+
+
+def test_the_limit_is_for_each_part_of_a_long_call(pool: WorkerPool) -> None:
+    assert pool.submit(parts, 5, 0.3).result(timeout=30) == 5
+
+
+def test_closing_ends_what_is_running_and_queued() -> None:
+    with WorkerPool(1, seconds=600) as pool:
+        futures = [pool.submit(time.sleep, 600) for _ in range(3)]
+        time.sleep(0.1)
+    assert not wait(futures, timeout=5).not_done
+    assert all(future.exception() is not None for future in futures)

@@ -1,0 +1,189 @@
+"""The viewer's answers, and whom it answers."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from starlette.testclient import TestClient
+from typer.testing import CliRunner
+
+import glyphspline as gs
+from glyphspline.cli import app as shell
+from glyphspline.viewer import make_app
+from glyphspline.viewer.work import shown_steps
+
+FONTS = Path(__file__).parent.parent / "fonts_test"
+HOST = "127.0.0.1:8642"
+STATE = {"glyph": "O", "sampling": "count", "amount": 24, "variant": 2, "margin": 0.02, "corners": "smooth"}
+
+
+@pytest.fixture(scope="module")
+def client() -> TestClient:
+    app = make_app(FONTS / "kouzan-gyosho.ttf", hosts=(HOST,))
+    return TestClient(app, base_url=f"http://{HOST}")
+
+
+@pytest.fixture(scope="module")
+def variable() -> TestClient:
+    return TestClient(make_app(FONTS / "variable.ttf", hosts=(HOST,)), base_url=f"http://{HOST}")
+
+
+def ask(client: TestClient, path: str = "glyph", **changes: Any) -> Any:
+    answer = client.post(f"/api/{path}", json=STATE | changes)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_a_glyph_is_what_convert_gives(client: TestClient) -> None:
+    found = ask(client)
+    outline = gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O")
+    result = gs.convert(outline, gs.Options(count=24))
+    polygon = np.array(found["polygons"][0]) * (1, -1)
+    np.testing.assert_allclose(polygon, result.contours[0].polygon, atol=0.006)
+    assert f'd="{found["result"]}"' in gs.to_svg(result)
+    assert found["measures"][0]["iterations"] == result.contours[0].measures.iterations
+    assert ask(client, "svg")["svg"] == gs.to_svg(result)
+
+
+def test_the_command_gives_the_drawing_that_was_seen(client: TestClient, tmp_path: Path) -> None:
+    words = shlex.split(ask(client, variant=3, margin=0.1)["command"])
+    assert words[:2] == ["glyphspline", "convert"]
+    words[words.index("--out") + 1] = str(tmp_path)
+    run = CliRunner().invoke(shell, [*words[1:], "--jobs", "0", "--quiet", "--format", "svg,curvature"])
+    assert run.exit_code == 0, run.output
+    (drawing,) = (tmp_path / "svg").iterdir()
+    assert drawing.read_text() == ask(client, "svg", variant=3, margin=0.1)["svg"]
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_by_tolerance_the_result_is_within_it(client: TestClient, corners: str) -> None:
+    found = ask(client, glyph="O", sampling="tolerance", amount=4, corners=corners)
+    assert all(measures["within_tolerance"] for measures in found["measures"])
+    assert len(found["residuals"]) >= len(found["polygons"])
+    assert found["movable"] == [corners == "smooth"] * 2
+
+
+def test_sliding_and_resting_draw_the_same(client: TestClient) -> None:
+    for sampling, amount in (("step", 60), ("count", 30)):
+        sliding = ask(client, glyph="uni597D", sampling=sampling, amount=amount)
+        resting = ask(client, glyph="uni597D", sampling=sampling, amount=amount, measure=True)
+        assert sliding["result"] == resting["result"]
+        assert sliding["polygons"] == resting["polygons"]
+        assert sliding["measures"][0]["deviation"] is None
+        assert resting["measures"][0]["deviation"] > 0
+
+
+def test_other_variants_interpolate_the_same_polygon(client: TestClient) -> None:
+    results = ask(client, "compare", sampling="tolerance", amount=4)["results"]
+    assert [result["variant"] for result in results] == [1, 2, 3]
+    assert results[0]["polygons"] == results[1]["polygons"] == results[2]["polygons"]
+    assert results[1]["result"] != results[2]["result"]
+    assert results[1]["intervals"]
+    assert not results[2]["intervals"], "variant 3 searches nothing"
+
+
+def test_steps_go_from_the_polygon_to_the_result(client: TestClient) -> None:
+    found, steps = ask(client), ask(client, "steps")["steps"]
+    assert [step["step"] for step in steps] == list(range(len(steps)))
+    vertices = [point for polygon in found["polygons"] for point in polygon]
+    assert steps[0]["controls"] == vertices, "the polygon is the first control polygon"
+    assert steps[-1]["result"] == found["result"]
+    np.testing.assert_allclose(steps[-1]["feet"], vertices, atol=0.02)
+    assert steps[-1]["error"] < 0.005 < steps[-2]["error"]
+    assert [step["error"] for step in steps] == pytest.approx(
+        [max(r[min(m, len(r) - 1)] for r in found["residuals"]) for m in range(len(steps))]
+    )
+
+
+def test_long_iterations_are_thinned_out() -> None:
+    assert shown_steps(10) == list(range(11))
+    assert len(shown_steps(1000)) <= 61
+    assert {0, 1000} < set(shown_steps(1000))
+
+
+def test_the_curve_follows_a_moved_vertex(client: TestClient) -> None:
+    before = ask(client)
+    x, y = before["polygons"][0][5]
+    after = ask(client, moved=[[0, 5, x + 30, -y + 10]])
+    assert after["polygons"][0][5] == pytest.approx([x + 30, y - 10])
+    assert after["polygons"][1] == before["polygons"][1]
+    np.testing.assert_allclose(after["feet"][5], [x + 30, y - 10], atol=0.02)
+    assert ask(client, moved=[[99, 0, 0, 0], [0, 9999, 0, 0]])["polygons"] == before["polygons"]
+
+
+def test_axes_of_a_variable_font_change_the_source(variable: TestClient) -> None:
+    axis = variable.get("/api/font").json()["axes"][0]
+    ends = [ask(variable, glyph="o", location={axis["tag"]: axis[end]})["source"] for end in ("minimum", "maximum")]
+    assert ends[0] != ends[1]
+    found = ask(variable, glyph="o", location={axis["tag"]: axis["maximum"]})
+    assert f"{axis['tag']}={axis['maximum']:g}" in found["command"]
+
+
+def test_glyphs_are_found_by_character_code_index_and_name(client: TestClient) -> None:
+    for words in ("龍", "U+9F8D", "uni9F8D", "17"):
+        names = [glyph["name"] for glyph in client.get("/api/glyphs", params={"words": words}).json()["glyphs"]]
+        assert names[0] == "uni9F8D", words
+    assert client.get("/api/glyphs", params={"words": "no such"}).json() == {"glyphs": [], "more": False}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"glyph": "nothing"}, {"glyph": 3}, {"variant": 7}, {"variant": True}, {"margin": "x"}, {"margin": 1e999},
+        {"sampling": "eval"}, {"amount": None}, {"corners": []}, {"location": [1]}, {"location": {"wght": 3}},
+        {"corners": "sharp"}, {"moved": [[1, 2, 3]]}, {"moved": [[0, 0, 1e999, 0]]}, {"moved": [[0, 0, 0, 0]] * 1001},
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_and_not_computed(client: TestClient, change: dict[str, Any]) -> None:
+    body = json.dumps(STATE | change).encode()
+    answer = client.post("/api/glyph", content=body, headers={"content-type": "application/json"})
+    assert answer.status_code == 400
+    assert answer.json()["error"]
+
+
+def test_amounts_without_end_are_bounded(client: TestClient) -> None:
+    assert ask(client, amount=1e12)["measures"][0]["vertices"] <= 1000
+    assert ask(client, sampling="step", amount=1e-12)["command"].count("--step 1.024")
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({}, 200),
+        ({"host": "evil.example"}, 403),
+        ({"host": "127.0.0.1:1"}, 403),
+        ({"origin": f"http://{HOST}"}, 200),
+        ({"origin": "http://evil.example"}, 403),
+        ({"origin": "null"}, 403),
+        ({"sec-fetch-site": "cross-site"}, 403),
+        ({"sec-fetch-site": "same-origin"}, 200),
+    ],
+)
+def test_only_its_own_pages_are_answered(client: TestClient, headers: dict[str, str], status: int) -> None:
+    for path in ("/", "/api/font", "/static/viewer.js"):
+        assert client.get(path, headers=headers).status_code == status
+    assert client.post("/api/glyph", json=STATE, headers=headers).status_code == status
+
+
+def test_every_answer_carries_the_policy(client: TestClient) -> None:
+    for path in ("/", "/static/viewer.css", "/static/none", "/api/font", "/nowhere"):
+        policy = client.get(path).headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "unsafe" not in policy
+    page = client.get("/").text
+    assert not re.search(r"\son\w+=|style=|<script>", page), "nothing inline, which the policy would refuse"
+
+
+def test_nothing_outside_the_page_is_served(client: TestClient) -> None:
+    for name in ("work.py", "..%2Fapp.py", "%2Fetc%2Fpasswd", "../state.py"):
+        assert client.get(f"/static/{name}").status_code == 404
+    plain = client.post("/api/glyph", content=b"{}", headers={"content-type": "text/plain"})
+    assert plain.status_code == 403, "what a form of another page could send"
+    long = client.post("/api/glyph", content=b" " * 300_000, headers={"content-type": "application/json"})
+    assert long.status_code == 413
