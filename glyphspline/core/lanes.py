@@ -45,6 +45,7 @@ NEWTON_PASSES = 8
 SETTLED_STEP = 1e-6
 """A step this small (share of the side's length) is the last: third-order convergence leaves its cube."""
 
+
 @inlined
 def least_quartic(c0, c1, c2, c3, c4, L):
     """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""

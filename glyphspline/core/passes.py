@@ -10,8 +10,8 @@ import numpy as np
 
 from . import fields
 from .fields import HALO, LANES
-from .footpoint import compiled
 from .flagged import flagged
+from .footpoint import compiled
 from .lanes import errors_at, seek, whole_vectors
 from .select import select
 from .solve import solve

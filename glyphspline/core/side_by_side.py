@@ -13,7 +13,7 @@ from . import fields
 from .fields import FIELDS, HALO, LESS_SHORT, SHORT, STRIDE
 from .flagged import SEARCHED, flagged
 from .footpoint import compiled
-from .lanes import BAD, errors_at, seek, whole_vectors
+from .lanes import BAD, WIDTH, errors_at, seek, whole_vectors
 from .layout import PAD
 from .select import select
 
@@ -50,6 +50,8 @@ def take_out(block, step, k, n, alone, everything):
         for field in range(0, FIELDS * STRIDE, STRIDE):
             for row in range(n + 2 * HALO):
                 alone[field + row] = block[field + row * step + k]
+            for row in range(n + 2 * HALO, n + 2 * HALO + WIDTH):  # loops of whole vectors go that far
+                alone[field + row] = 0.0
 
 
 @compiled
@@ -103,7 +105,7 @@ def _largest(block, step, counts, largest):
     for i in range(least):
         for k in range(step):
             D = block[DD + np.uint64((HALO + i) * step + k)]
-            largest[k] = select(D > largest[k], D, largest[k])
+            largest[k] = select(largest[k] < D, D, largest[k])
     for k in range(step):
         for i in range(least, counts[k]):
             largest[k] = max(largest[k], block[DD + np.uint64((HALO + i) * step + k)])
