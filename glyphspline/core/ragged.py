@@ -28,6 +28,7 @@ from .layout import (
     power_of_two,
 )
 from .lemma2 import fill_intervals, fill_intervals_side_by_side
+from .lend import lend
 from .passes import freeze, grown, iterate
 from .side_by_side import INTERVALS, iterate_together, place, places
 from .solve import ROW
@@ -325,41 +326,8 @@ def _in_order(residuals, at, iterations):
 
 
 @compiled
-def run(
-    k0, k1, points, offsets, own_knots, tangents, closed, variant, margin, exponent, peak_share, tolerances,
-    max_iterations, solve, blocks, knots, controls, parameters, bounds, kept, whole, rates,
-):  # fmt: skip
-    """Interpolate polygons k0 to k1 - 1.
-
-    Args:
-        points: (N, 2); offsets: (K + 1,).
-        own_knots: () or all polygons' own parameters one after another, n + 1 each if closed, n if open.
-        tangents: (K, 2, 2) end tangents of open arcs, NaN for natural ends; (0, 2, 2) if closed.
-        exponent: of the chord length in the knots; negative for ``own_knots``.
-        tolerances: (K,) residual tolerances.
-        blocks: room for the largest polygon; a smaller array will do, and is then not used.
-        knots, controls, parameters, bounds, kept, whole, rates: results. A polygon's knots begin at its offset, plus k
-            if closed; its control points at its offset, plus 2 k if open.
-
-    Returns:
-        The residuals of all polygons one after another.
-    """
-    given = Given(
-        points, offsets, own_knots, tangents, tolerances, closed, variant, margin, exponent, peak_share, max_iterations,
-        solve,
-    )  # fmt: skip
-    found = Found(knots, controls, parameters, bounds, kept, whole, rates)
-    most = 0
-    for k in range(k0, k1):
-        most = max(most, offsets[k + 1] - offsets[k])
-    needed = (most + LANES - 1) // LANES
-    if blocks.shape[0] < needed:
-        blocks = np.empty((needed, BLOCK))
-    room = Room(
-        blocks, np.zeros(SCRATCH * STRIDE), np.zeros(most + 2 * PAD + 16), np.empty((most if solve else 0, ROW)),
-        np.zeros(2), np.zeros((2, 2)),
-    )  # fmt: skip
-    company = _company(8 if closed and k1 - k0 > FEW[8] else 0)
+def _all(k0, k1, given, found, room, company):
+    """Polygons k0 to k1 - 1, alone or side by side; see :func:`run`."""
     gathered = np.zeros(2, dtype=np.int64)
     counts, units, at = np.zeros(k1 - k0, dtype=np.int64), np.empty((k1 - k0, 2)), np.zeros(k1 - k0, dtype=np.int64)
     residuals, used = np.empty(64), np.int64(0)  # a plain 0 would have ``iterate`` compiled for 0, and again for others
@@ -380,4 +348,47 @@ def run(
                 given, found, room, company, gathered[kind], 4 + 4 * kind, k0, counts, units, at, residuals, used
             )
             gathered[kind] = 0
-    return _in_order(residuals[:used], at, whole[k0:k1, ITERATIONS])
+    return _in_order(residuals[:used], at, found.whole[k0:k1, ITERATIONS])
+
+
+@compiled
+def run(
+    k0, k1, points, offsets, own_knots, tangents, closed, variant, margin, exponent, peak_share, tolerances,
+    max_iterations, solve, blocks, knots, controls, parameters, bounds, kept, whole, rates,
+):  # fmt: skip
+    """Interpolate polygons k0 to k1 - 1.
+
+    Args:
+        points: (N, 2); offsets: (K + 1,).
+        own_knots: () or all polygons' own parameters one after another, n + 1 each if closed, n if open.
+        tangents: (K, 2, 2) end tangents of open arcs, NaN for natural ends; (0, 2, 2) if closed.
+        exponent: of the chord length in the knots; negative for ``own_knots``.
+        tolerances: (K,) residual tolerances.
+        blocks: room for the largest polygon; a smaller array will do, and is then not used.
+        knots, controls, parameters, bounds, kept, whole, rates: results. A polygon's knots begin at its offset, plus k
+            if closed; its control points at its offset, plus 2 k if open.
+
+    Returns:
+        The residuals of all polygons one after another.
+    """
+    given = Given(
+        lend(points), lend(offsets), lend(own_knots), lend(tangents), lend(tolerances), closed, variant, margin, exponent,
+        peak_share, max_iterations, solve,
+    )  # fmt: skip
+    found = Found(lend(knots), lend(controls), lend(parameters), lend(bounds), lend(kept), lend(whole), lend(rates))
+    most = 0
+    for k in range(k0, k1):
+        most = max(most, offsets[k + 1] - offsets[k])
+    needed = (most + LANES - 1) // LANES
+    if blocks.shape[0] < needed:
+        blocks = np.empty((needed, BLOCK))
+    scratch, h, rows = np.zeros(SCRATCH * STRIDE), np.zeros(most + 2 * PAD + 16), np.empty((most if solve else 0, ROW))
+    natural, base, own = np.zeros(2), np.zeros((2, 2)), _company(8 if closed and k1 - k0 > FEW[8] else 0)
+    room = Room(lend(blocks), lend(scratch), lend(h), lend(rows), lend(natural), lend(base))
+    company = Company(
+        lend(own.block), lend(own.alone), lend(own.H), lend(own.who), lend(own.sizes), lend(own.fallbacks),
+        lend(own.passes), lend(own.searched), lend(own.limits), lend(own.least),
+    )  # fmt: skip
+    residuals = _all(k0, k1, given, found, room, company)
+    held = (blocks, scratch, h, rows, natural, base, own)  # until here: what was lent is not counted
+    return residuals if len(held) > 0 else residuals
