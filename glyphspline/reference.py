@@ -52,7 +52,7 @@ def footpoint(spline: Spline, point: FloatArray, interval: FloatArray, centre: f
     squared distance on every piece. A tie goes to the candidate nearest ``centre``.
     """
     low, high = interval
-    candidates = np.clip([low, high, *_stationary(spline, point, low, high)], low, high)
+    candidates = np.minimum(np.maximum([low, high, *_stationary(spline, point, low, high)], low), high)
     distance = ((spline(candidates) - point) ** 2).sum(axis=1)
     zero = (TIE_DISTANCE * np.ptp(spline.control_points, axis=0).max()) ** 2
     tied = candidates[distance <= distance.min() * (1 + TIE) + zero]
@@ -75,8 +75,9 @@ def _stationary(spline: Spline, point: FloatArray, low: float, high: float) -> l
         powers = np.arange(spline.degree, 0, -1)
         slope = np.convolve(x, powers * x[:-1]) + np.convolve(y, powers * y[:-1])
         zeros = np.roots(slope)
-        real = zeros.real[(np.abs(zeros.imag) < NEARLY_REAL) & (np.abs(zeros.real - 0.5) < 0.5 + NEARLY_REAL)]
-        found += [start, *(start + h * np.clip(_newton(slope, real), 0, 1))]
+        likely = (np.abs(zeros.imag) < NEARLY_REAL) & (np.abs(zeros.real - 0.5) < 0.5 + NEARLY_REAL)
+        polished = [_newton(slope.tolist(), y) for y in zeros.real[likely].tolist()]
+        found += [start, *(start + h * y for y in polished if 0 <= y <= 1)]
     return found
 
 
@@ -101,21 +102,29 @@ def _power_basis(degree: int) -> FloatArray:
     return np.array(rows[::-1])
 
 
-def _newton(polynomial: FloatArray, x: FloatArray, steps: int = 12) -> FloatArray:
-    """Polish zeros that ``numpy.roots`` leaves a few digits short; keep them where that fails.
+def _newton(polynomial: list[float], x: float, steps: int = 12) -> float:
+    """Polish a zero that ``numpy.roots`` leaves a few digits short, until nothing improves; keep it if nothing does.
 
-    It goes on until nothing improves: a start that is on its way to a zero but has not arrived would tie with it.
+    One that is on its way to a zero but has not arrived would tie with it.
     """
-    slope, value = np.polyder(polynomial), np.polyval(polynomial, x)
+    value, slope = _horner(polynomial, x)
     for _ in range(steps):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            better = x - value / np.polyval(slope, x)
-        left = np.polyval(polynomial, better)
-        closer = np.abs(left) < np.abs(value)  # false where better is not finite
-        if not closer.any():
+        if slope == 0:
             break
-        x, value = np.where(closer, better, x), np.where(closer, left, value)
+        better = x - value / slope
+        left, slope = _horner(polynomial, better)
+        if not abs(left) < abs(value):
+            break
+        x, value = better, left
     return x
+
+
+def _horner(polynomial: list[float], x: float) -> tuple[float, float]:
+    """Value and derivative of a polynomial (coefficients by descending powers)."""
+    value, slope = 0.0, 0.0
+    for coefficient in polynomial:
+        value, slope = value * x + coefficient, slope * x + value
+    return value, slope
 
 
 @dataclass(frozen=True, eq=False)
