@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -257,7 +257,8 @@ def interpolate_one(
     given, exponent = (NO_KNOTS, CHORD_EXPONENT[knots]) if isinstance(knots, str) else (knots, GIVEN)
     residuals = _compiled()(
         0, 1, points, np.array((0, n)), given, tangents, closed, variant, margin, exponent,
-        PEAK_SHARE if fallback == "peak" else 0.0, np.array((tolerance,)), max_iterations, finish == "solve", _room(n), *out,
+        PEAK_SHARE if fallback == "peak" else 0.0, np.array((tolerance,)), max_iterations, finish == "solve", _room(n),
+        *out,
     )  # fmt: skip
     if out[WHOLE][0, 0]:
         return None
@@ -273,10 +274,29 @@ def _compiled() -> Any:
 
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:
-    """``work`` of each item, in order; worth it where work lets go of the interpreter's lock."""
-    if len(items) == 1 or _threads(threads) == 1:
+    """``work`` of each item, in order; worth it where work lets go of the interpreter's lock.
+
+    The caller's thread works too, which saves waking another one; each takes the next item when it is done with one.
+    """
+    helpers = min(_threads(threads), len(items)) - 1
+    if helpers < 1:
         return [work(item) for item in items]
-    return list(_pool(_threads(threads)).map(work, items))
+    results: list[Any] = [None] * len(items)
+    left = iter(range(len(items)))
+
+    def take() -> None:
+        for i in left:
+            results[i] = work(items[i])
+
+    running = [_pool(_threads(threads)).submit(take) for _ in range(helpers)]
+    try:
+        take()
+    finally:
+        wait([helper for helper in running if not helper.cancel()])
+    for helper in running:
+        if not helper.cancelled():
+            helper.result()
+    return results
 
 
 @cache

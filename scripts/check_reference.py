@@ -1,11 +1,10 @@
 """The compiled core against the plain reference, polygon by polygon: iteration counts and control points.
 
-Where they may differ: both round, each in its own way, and a run that does not converge carries rounding errors on from
-step to step instead of shrinking them. Counts may differ where an error falls within rounding of the tolerance. Whether
-a difference is of this kind is asked of the reference alone: its polygon is changed in the last bits of its coordinates,
-eight times, and the difference counts as rounding if it is at most ``SMALL`` times the largest that this makes, with
-passes that differ by no more than they do there. For nearly all polygons that is 1e-14 of the extent or so, far below
-the 1e-9 that is asked, so that the rule excuses nothing of a polygon which is well conditioned.
+Where they may differ: both round, each in its own way, and a run that does not converge carries rounding errors on
+from step to step instead of shrinking them. Counts may differ where an error falls within rounding of the tolerance.
+Whether a difference is of this kind is asked of the reference alone: its polygon is changed in the last bits of its
+coordinates, eight times, and the difference counts as rounding if it is at most ``SMALL`` times the largest that this
+makes, with passes that differ by no more than they do there.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def _taylor_8(B, S, m):
 
 @compiled
 def taylor(B, S, first, m):
-    """Derivatives at the knots, the step being a constant in each case: with a variable one loops do not become SIMD."""
+    """Derivatives at the knots. The step is a constant in each case: with a variable one loops do not become SIMD."""
     if first == TWO:
         _taylor_1(B, S, m)
     elif first == EIGHT:

@@ -24,4 +24,14 @@ def _lend(typing_context: Any, array: Any) -> Any:
     return (array(array), code) if isinstance(array, types.Array) else None
 
 
+def _hold(typing_context: Any, lenders: Any) -> Any:
+    """Nothing, but a use of the arrays: until here they are kept."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return context.get_dummy_value()
+
+    return types.none(lenders), code
+
+
 lend: Any = intrinsic(_lend)
+hold: Any = intrinsic(_hold)

@@ -126,6 +126,7 @@ def _one_pass(blocks, scratch, n, closed, natural, base, moves, search, tie):
 
 @compiled
 def grown(array, size):
+    """The array, or one twice as large as need be that begins with it."""
     if array.shape[0] >= size:
         return array
     larger = np.empty(2 * size)

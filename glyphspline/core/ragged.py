@@ -28,7 +28,7 @@ from .layout import (
     power_of_two,
 )
 from .lemma2 import fill_intervals, fill_intervals_side_by_side
-from .lend import lend
+from .lend import hold, lend
 from .passes import freeze, grown, iterate
 from .side_by_side import INTERVALS, iterate_together, place, places
 from .solve import ROW
@@ -200,6 +200,7 @@ def _prepare(given, found, k, units):
     start, stop = given.offsets[k], given.offsets[k + 1]
     here = found.kept[start:stop]
     found.whole[k, STATUS], found.whole[k, ITERATIONS] = BAD_POLYGON, -1
+    found.whole[k, FALLBACKS] = found.whole[k, SEARCHED] = 0
     n, extent = merge(given.points[start:stop], given.closed, here)
     found.whole[k, COUNT] = n
     if n < 0:
@@ -308,7 +309,7 @@ def _together(given, found, room, company, count, step, first, counts, units, at
 def _company(size):
     """Room for ``size`` polygons side by side, 8 or none."""
     return Company(
-        np.empty(BLOCK if size else 0), np.zeros((size, BLOCK)), np.empty(INTERVALS if size else 0),
+        np.empty(BLOCK if size else 0), np.empty((size, BLOCK)), np.empty(INTERVALS if size else 0),
         np.empty((2, size), dtype=np.int64), np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64),
         np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64), np.zeros(size), np.zeros(size),
     )  # fmt: skip
@@ -372,8 +373,8 @@ def run(
         The residuals of all polygons one after another.
     """
     given = Given(
-        lend(points), lend(offsets), lend(own_knots), lend(tangents), lend(tolerances), closed, variant, margin, exponent,
-        peak_share, max_iterations, solve,
+        lend(points), lend(offsets), lend(own_knots), lend(tangents), lend(tolerances), closed, variant, margin,
+        exponent, peak_share, max_iterations, solve,
     )  # fmt: skip
     found = Found(lend(knots), lend(controls), lend(parameters), lend(bounds), lend(kept), lend(whole), lend(rates))
     most = 0
@@ -390,5 +391,5 @@ def run(
         lend(own.passes), lend(own.searched), lend(own.limits), lend(own.least),
     )  # fmt: skip
     residuals = _all(k0, k1, given, found, room, company)
-    held = (blocks, scratch, h, rows, natural, base, own)  # until here: what was lent is not counted
-    return residuals if len(held) > 0 else residuals
+    hold((blocks, scratch, h, rows, natural, base, own))  # as what was lent is not counted
+    return residuals

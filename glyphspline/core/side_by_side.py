@@ -92,9 +92,9 @@ def _move(block, step, counts):
         block[PY + lane] += block[EY + lane]
     for k in range(step):
         for i in range(least, counts[k]):
-            lane = np.uint64((HALO + i) * step + k)
-            block[PX + lane] += block[EX + lane]
-            block[PY + lane] += block[EY + lane]
+            at = np.uint64((HALO + i) * step + k)
+            block[PX + at] += block[EX + at]
+            block[PY + at] += block[EY + at]
 
 
 @compiled
