@@ -142,16 +142,16 @@ def _pair_all(
     for k in range(n):
         a, s = anchors[k]
         a_end, s_end = anchors[k + 1]
-        bounds[k], gaps[k] = _pair(result, a, a_end, source, s, s_end, sharpness)
+        bounds[k], gaps[k] = pair(result, a, a_end, source, s, s_end, sharpness)
         if bounds[k] > limit:
-            bound, gap = _pair(source, s, s_end, result, a, a_end, sharpness)
+            bound, gap = pair(source, s, s_end, result, a, a_end, sharpness)
             if bound < bounds[k]:
                 bounds[k], gaps[k] = bound, gap
     return bounds, gaps
 
 
 @jit
-def _pair(
+def pair(
     result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float
 ) -> tuple[float, float]:
     """Bound and gap between two stretches, cut where segments of the first end, at the second's nearest points."""
