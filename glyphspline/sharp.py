@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -84,10 +85,16 @@ class _SingleSpans:
         knots = np.array([0.0, chord])
         controls = np.array([p0, p0 + chord / 3 * tangent0, p1 - chord / 3 * tangent1, p1])
         return {
-            "spline": Spline.trusted(controls, knots, 3, False), "parameters": knots,
-            "intervals": np.stack([knots, knots], axis=1), "iterations": 0, "residuals": np.zeros(1), "converged": True, "fallbacks": 0, "rate_bound": 0.0,
+            "spline": Spline.trusted(controls, knots, 3, False),
+            "parameters": knots,
+            "intervals": np.stack([knots, knots], axis=1),
+            "iterations": 0,
+            "residuals": np.zeros(1),
+            "converged": True,
+            "fallbacks": 0,
+            "rate_bound": 0.0,
             "merged": np.empty(0, dtype=np.int64),
-        }  # fmt: skip
+        }
 
 
 def flattened(contours: Sequence[Contour]) -> Flat:
@@ -97,6 +104,12 @@ def flattened(contours: Sequence[Contour]) -> Flat:
     np.cumsum([len(contour.points) for contour in contours], out=starts[1:])
     points = np.concatenate([contour.points for contour in contours])
     return Flat(points, np.concatenate([contour.degrees for contour in contours]), offsets, starts)
+
+
+def unflattened(flat: Flat) -> list[Contour]:
+    """The contours one by one."""
+    ends = zip(pairwise(flat.starts.tolist()), pairwise(flat.offsets.tolist()), strict=True)
+    return [Contour(flat.points[a:b], flat.degrees[i:j]) for (a, b), (i, j) in ends]
 
 
 def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:

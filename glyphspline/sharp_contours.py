@@ -12,7 +12,7 @@ from .errors import GlyphsplineError
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .polygon import LARGEST, clean_polygon
-from .sharp import SharpFit, fit_sharp, flattened
+from .sharp import SharpFit, fit_sharp, flattened, unflattened
 from .survey import Survey, survey
 
 
@@ -48,18 +48,12 @@ def _contour_results(
     # Where two pieces meet, the vertex belongs to the second one.
     polygons = np.delete(vertices, starts[1:] - 1, axis=0)
     offsets = starts[fit.offsets] - fit.offsets
-    curve = fit.curve
-    measures = _measures(fit, survey(curve, source, polygons, offsets), tolerance)
+    curves = unflattened(fit.curve)
+    measures = _measures(fit, survey(fit.curve, source, polygons, offsets), tolerance)
     return [
-        ContourResult(
-            contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c),
-            Contour(
-                curve.points[curve.starts[c] : curve.starts[c + 1]], curve.degrees[curve.offsets[c] : curve.offsets[c + 1]]
-            ),
-            measures[c],
-        )
+        ContourResult(contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c), curves[c], measures[c])
         for c, contour in enumerate(contours)
-    ]  # fmt: skip
+    ]
 
 
 def _refuse(contours: Sequence[Contour]) -> None:

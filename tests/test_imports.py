@@ -41,6 +41,7 @@ ROOMS = [
         "frugal",
         "chains",
         "pieces",
+        "selfcrossings",
         "survey",
     },
     {"glyph"},
