@@ -48,10 +48,12 @@ def fit_cubic(
     for j in range(1, n):
         x[j] = x[j - 1] + np.hypot(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
     reach = x[n - 1]
-    x /= reach
+    for j in range(n):
+        x[j] /= reach
     # Handles in chords: the first inner point less the first end, the last end less the last inner point.
-    handles = np.empty(4)
-    handles[:2], handles[2:] = d0 * min(reach / chord, 3.0) / 3, d1 * min(reach / chord, 3.0) / 3
+    handles, third = np.empty(4), min(reach / chord, 3.0) / 3
+    for axis in range(2):
+        handles[axis], handles[2 + axis] = d0[axis] * third, d1[axis] * third
     c = np.empty((3, 2))
     best = np.inf
     step = max(1, n // (ENOUGH + 1))
@@ -60,11 +62,13 @@ def fit_cubic(
         error = _project(Q, c, step, x, e)
         if step > 1 and error <= tolerance:
             step, best = 1, np.inf
-            weight[:] = 1.0
+            for j in range(n):
+                weight[j] = 1.0
             error = _project(Q, c, step, x, e)
         if error < best:
             best = error
-            start[:], end[:] = handles[:2] * 3, handles[2:] * 3
+            for axis in range(2):
+                start[axis], end[axis] = handles[axis] * 3, handles[2 + axis] * 3
         if best <= tolerance or best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance or m == rounds - 1:
             break
         if m >= 1:
@@ -203,11 +207,9 @@ def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: boo
     old = np.hypot(handle[0], handle[1])
     x, y = handle[0] + x, handle[1] + y
     new = np.hypot(x, y)
-    if x * handle[0] + y * handle[1] <= 0.1 * old * new:
-        handle *= max(0.5, SHORTEST / 3 / old)
-        return
     length = min(max(new, SHORTEST / 3), LONGEST / 3)
-    if free:
-        handle[0], handle[1] = x / new * length, y / new * length
-    else:
-        handle[:] = d * length
+    if x * handle[0] + y * handle[1] <= 0.1 * old * new:
+        x, y, new, length = handle[0], handle[1], old, max(old / 2, SHORTEST / 3)
+    elif not free:
+        x, y, new = d[0], d[1], 1.0
+    handle[0], handle[1] = x / new * length, y / new * length

@@ -165,20 +165,21 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     The one free vertex of two spans peaks at 1/2, for which Lemma 2 has no interval: see arcs.PEAK_SHARE.
     """
     where, starts, vertices, tangents = pieces
-    arcs: dict[int, Interpolation] = dict.fromkeys(np.flatnonzero(where[:, 3] > 1).tolist())  # type: ignore[arg-type]
-    for fallback, chosen in (
-        ("knot", [q for q in arcs if where[q, 3] > 2]), ("peak", [q for q in arcs if where[q, 3] == 2])
-    ):  # fmt: skip
+    spans = where[:, 3]
+    arcs: dict[int, Interpolation] = {}
+    for fallback, which in (("knot", spans > 2), ("peak", spans == 2)):
+        chosen = np.flatnonzero(which).tolist()
         if not chosen:
             continue
         try:
-            arcs |= zip(chosen, interpolate_many(
+            found = interpolate_many(
                 [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
                 end_tangents=[(t[0], t[1]) for t in tangents[chosen]], threads=1, margin=options.margin,
                 fallback=fallback, residual_tolerance=options.residual_tolerance,
                 max_iterations=options.max_iterations, closed=False,
-            ), strict=True)  # fmt: skip
+            )  # fmt: skip
         except PolygonError as error:
             error.contour = int(where[chosen[error.contour or 0], 0])
             raise
-    return arcs
+        arcs |= zip(chosen, found, strict=True)
+    return dict(sorted(arcs.items()))
