@@ -11,7 +11,7 @@ import numpy as np
 
 from .arcs import jit, raised
 from .arrays import BoolArray, FloatArray, IntArray
-from .joints import Joints, find_joints
+from .joints import Joints, begun_at, find_joints
 from .orientation import farthest_joint, flip, runs_backwards
 
 
@@ -125,5 +125,5 @@ def laid_out(
     k = first_joint(joints)
     if k > 0:
         cubics, degrees = np.concatenate((cubics[k:], cubics[:k])), np.concatenate((degrees[k:], degrees[:k]))
-        joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line)
+        joints = begun_at(joints, k)
     return cubics, degrees, flipped, joints
