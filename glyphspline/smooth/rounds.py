@@ -1,0 +1,225 @@
+"""The steps of a fit for all contours of a glyph that are not done yet, on ragged arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from .chains import compiled, vertices
+from .near import check, sharpened
+from .places import MOST_VERTICES, graded, with_more
+from .prune import put_back, sparse
+from .spacing import seeds
+
+GROWTH = 0.97
+"""Share of the ratio allowed that chords at first have away from a corner."""
+
+ROUGHLY = 0.1
+"""While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
+
+
+@compiled
+def first_places(
+    cubics: FloatArray, starts: IntArray, lengths: FloatArray, turns: FloatArray, which: IntArray,
+    corner_angle: float, ratio: float, near: FloatArray,
+) -> tuple[FloatArray, IntArray]:  # fmt: skip
+    """Ragged places to begin with, of the contours ``which``."""
+    parts = [np.empty(0)]
+    for k in which:
+        a, b = starts[k], starts[k + 1]
+        some = seeds(cubics[a:b], lengths[a:b], turns[a:b], corner_angle, GROWTH * ratio, near[k])
+        parts.append(graded(cubics[a:b], lengths[a:b], some, ratio))
+    return _joined(parts)
+
+
+@compiled
+def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
+    """All but the first of some arrays as one, and where each begins."""
+    offsets = np.zeros(len(parts), dtype=np.int64)
+    for k in range(1, len(parts)):
+        offsets[k] = offsets[k - 1] + len(parts[k])
+    values = np.empty(offsets[-1])
+    for k in range(1, len(parts)):
+        values[offsets[k - 1] : offsets[k]] = parts[k]
+    return values, offsets
+
+
+@compiled
+def polygons(
+    cubics: FloatArray, starts: IntArray, which: IntArray, places: FloatArray, offsets: IntArray
+) -> FloatArray:
+    """Ragged points of the outline at the places."""
+    points = np.empty((len(places), 2))
+    for i in range(len(which)):
+        k = which[i]
+        points[offsets[i] : offsets[i + 1]] = vertices(
+            cubics[starts[k] : starts[k + 1]], places[offsets[i] : offsets[i + 1]]
+        )
+    return points
+
+
+@compiled
+def written(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> FloatArray:
+    """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, rounded to multiples of 1/unit if that is not 0.
+
+    Knots of part k begin at ``offsets[k] + k``.
+    """
+    pieces = np.empty((len(controls), 4, 2))
+    for k in range(len(offsets) - 1):
+        a, n = offsets[k], offsets[k + 1] - offsets[k]
+        u = knots[a + k :]
+        for i in range(n):
+            j = (i + 1) % n
+            before = u[i] - u[i - 1] if i > 0 else u[n] - u[n - 1]
+            here = u[i + 1] - u[i]
+            after = u[j + 1] - u[j]
+            whole = before + here + after
+            for c in range(2):
+                p, q = controls[a + i, c], controls[a + j, c]
+                pieces[a + i, 1, c] = p + before / whole * (q - p)
+                pieces[a + i, 2, c] = p + (before + here) / whole * (q - p)
+        for i in range(n):
+            j = i - 1 if i > 0 else n - 1
+            before = u[j + 1] - u[j]
+            share = before / (before + u[i + 1] - u[i])
+            for c in range(2):
+                p, q = pieces[a + j, 2, c], pieces[a + i, 1, c]
+                pieces[a + i, 0, c] = pieces[a + j, 3, c] = p + share * (q - p)
+    if unit > 0:
+        for i in range(len(pieces)):
+            for j in range(4):
+                for c in range(2):
+                    pieces[i, j, c] = np.rint(pieces[i, j, c] * unit) / unit
+    return pieces
+
+
+@compiled
+def examined(
+    cubics: FloatArray, starts: IntArray, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray,
+    near: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Ragged bounds, gaps, worst places and stretches of all spans; see :func:`.near.check`.
+
+    Stretches of part i begin at ``offsets[i] + i``.
+    """
+    n = len(places)
+    bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
+    for i in range(len(which)):
+        k, a, b = which[i], offsets[i], offsets[i + 1]
+        check(
+            pieces[a:b], cubics[starts[k] : starts[k + 1]], places[a:b], near[k], ROUGHLY * near[k], bounds[a:b],
+            gaps[a:b], worst[a:b], ends[a + i :],
+        )  # fmt: skip
+    return bounds, gaps, worst, ends
+
+
+@compiled
+def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> BoolArray:
+    """(n,) which vertices of a contour are at corners."""
+    corners = np.zeros(len(places), dtype=np.bool_)
+    for v in range(len(places)):
+        j = int(places[v])
+        corners[v] = places[v] == j and turns[j] >= corner_angle
+    return corners
+
+
+@compiled
+def changed(
+    cubics: FloatArray, starts: IntArray, lengths: FloatArray, turns: FloatArray, which: IntArray, places: FloatArray,
+    offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, worst: FloatArray, near: FloatArray,
+    more: BoolArray, fewer: BoolArray, corner_angle: float, ratio: float, power: float,
+) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
+    """The contours that change, and their ragged places.
+
+    Args:
+        more: (K,) whether to put vertices where a contour is too far off; fewer: (K,) whether to take out those that
+            seem not to be needed. Of all contours, by their numbers in ``which``.
+        power: of a span's length with which its error is taken to grow.
+    """
+    parts, those = [np.empty(0)], np.empty(len(which), dtype=np.int64)
+    for i in range(len(which)):
+        k, a, b = which[i], offsets[i], offsets[i + 1]
+        s, t = starts[k], starts[k + 1]
+        here, bound, at = places[a:b], bounds[a:b], worst[a:b]
+        if fewer[k]:
+            corners = _corners(here, turns[s:t], corner_angle)
+            keep = sparse(points[a:b], corners, np.zeros(b - a, dtype=np.bool_), gaps[a:b], near[k], ratio, power)
+            here, bound, at = here[keep], bound[keep], at[keep]
+        if more[k]:
+            here = with_more(lengths[s:t], here, bound, at, near[k])
+        if len(here) != b - a or (here != places[a:b]).any():
+            here = graded(cubics[s:t], lengths[s:t], here, ratio)
+            if len(here) <= MOST_VERTICES:
+                those[len(parts) - 1] = k
+                parts.append(here)
+    values, new = _joined(parts)
+    return those[: len(parts) - 1].copy(), values, new
+
+
+@compiled
+def certificates(
+    cubics: FloatArray, starts: IntArray, which: IntArray, offsets: IntArray, pieces: FloatArray, bounds: FloatArray,
+    gaps: FloatArray, ends: FloatArray, sharpness: float,
+) -> FloatArray:  # fmt: skip
+    """(K, 2) bound and gap of each contour."""
+    found = np.empty((len(which), 2))
+    for i in range(len(which)):
+        k, a, b = which[i], offsets[i], offsets[i + 1]
+        found[i] = sharpened(
+            pieces[a:b], cubics[starts[k] : starts[k + 1]], bounds[a:b], gaps[a:b], ends[a + i : b + i + 1], sharpness
+        )
+    return found
+
+
+
+
+@compiled
+def thinned(
+    starts: IntArray, turns: FloatArray, near: FloatArray, corner_angle: float, ratio: float, power: float,
+    which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray,
+    good: FloatArray, good_offsets: IntArray, good_points: FloatArray, good_gaps: FloatArray, keep: BoolArray,
+    needed: BoolArray,
+) -> tuple[IntArray, FloatArray, IntArray, FloatArray, FloatArray, BoolArray, BoolArray]:  # fmt: skip
+    """What to try next, to find the vertices that are needed.
+
+    A trial that passes takes the place of the good polygon, and vertices of it that look spare are left out of the
+    next trial. Of one that fails, those are put back that were beside the failure, and are needed from then on.
+
+    Args:
+        places, offsets, points, bounds, gaps: of the trial, ragged, of the contours ``which``.
+        good, good_offsets, good_points, good_gaps: of the best polygons that passed.
+        keep: which of their vertices the trial had; needed: which cannot go.
+
+    Returns:
+        The same of the contours that are not finished: which, good, good_offsets, good_points, good_gaps, keep, needed.
+    """
+    n = len(good)
+    those, count, at = np.empty_like(which), 0, 0
+    new, new_points, new_gaps = np.empty(n), np.empty((n, 2)), np.empty(n)
+    new_keep, new_needed = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_)
+    new_offsets = np.zeros(len(which) + 1, dtype=np.int64)
+    for i in range(len(which)):
+        k, a, b, c, d = which[i], offsets[i], offsets[i + 1], good_offsets[i], good_offsets[i + 1]
+        here, p, e, mask, stay = good[c:d], good_points[c:d], good_gaps[c:d], keep[c:d], needed[c:d]
+        if bounds[a:b].max() <= near[k]:
+            here, p, e, stay = places[a:b], points[a:b], gaps[a:b], stay[mask]
+            mask = np.ones(b - a, dtype=np.bool_)
+        else:
+            back = put_back(p, mask, bounds[a:b], near[k], ratio)
+            stay = stay | (back & ~mask)
+            mask = back
+        if mask.all():
+            corners = _corners(here, turns[starts[k] : starts[k + 1]], corner_angle)
+            mask = sparse(p, corners, stay, e, near[k], ratio, power)
+        if mask.all():
+            continue
+        those[count] = k
+        stop = at + len(here)
+        new[at:stop], new_points[at:stop], new_gaps[at:stop] = here, p, e
+        new_keep[at:stop], new_needed[at:stop] = mask, stay
+        count, at = count + 1, stop
+        new_offsets[count] = stop
+    return (
+        those[:count].copy(), new[:at].copy(), new_offsets[: count + 1].copy(), new_points[:at].copy(),
+        new_gaps[:at].copy(), new_keep[:at].copy(), new_needed[:at].copy(),
+    )  # fmt: skip
