@@ -11,29 +11,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .engine import Ragged, explain, interpolate_ragged
+from .closed import interpolated
+from .engine import Ragged
+from .errors import GlyphsplineError
 from .glyph import Options
 from .smooth import rounds
 from .smooth.chains import Chains
 
-ROUNDS = 60
+ROUNDS = 80
 """Rounds before giving up."""
 
-EARLY = 1
+EARLY = 2
 """Rounds in which vertices that seem not to be needed go while others come."""
 
-PRUNINGS = {"fast": 0, "best": 0}
-THIN=40; POW=0.
-"""How often vertices are taken out of a contour that passed, to see whether it passes with fewer."""
+PRUNINGS = {"fast": 0, "best": 12}
+"""How often a contour that passed loses such vertices, and gets others until it passes again."""
 
 POWERS = (3.0, 2.0, 1.5, 1.0)
-"""In turn: the power of a span's length with which its error is taken to grow when a vertex goes."""
+"""In turn: with what power of a span's length its error is taken to grow when a vertex goes."""
 
-SHARE = 0.9
-"""Share of the tolerance below which the error has to be expected to stay."""
+THINNINGS = {"fast": 0, "best": 30}
+"""Trials, at the end, to do without vertices one by one: none comes, those that are needed are put back."""
 
-SHARPNESS = 0.02
-"""The certified bound may exceed the distances seen by this share of the tolerance."""
+THIN_POWER = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,8 @@ class Round:
 
     Attributes:
         which: (k,) numbers of the contours.
-        places, offsets, points: ragged vertices. found: the curves. pieces: ragged (n, 4, 2), rounded as written.
+        places, offsets, points: ragged vertices. found: the curves through them.
+        pieces: ragged (n, 4, 2), the curves as Béziers; written: the same, rounded as they are written.
         bounds, gaps, worst, ends: ragged, of the spans; see :func:`.smooth.rounds.examined`.
         most: (k,) the largest bound of each contour.
     """
@@ -53,86 +54,123 @@ class Round:
     points: FloatArray
     found: Ragged
     pieces: FloatArray
+    written: FloatArray
     bounds: FloatArray
     gaps: FloatArray
     worst: FloatArray
     ends: FloatArray
     most: FloatArray
 
+    def part(self, values: FloatArray, i: int) -> FloatArray:
+        """Part i of a ragged array."""
+        return values[self.offsets[i] : self.offsets[i + 1]]
 
-class Refinement:
+
+Kept = dict[int, tuple[Round, int]]
+"""By contour: a round, and which part of it."""
+
+
+def refined(chains: Chains, which: IntArray, options: Options, near: FloatArray) -> Kept:
+    """Fit contours.
+
+    Args:
+        chains: all contours. which: numbers of those to fit.
+        near: (K,) by contour, how near the written curve has to be, in font units.
+
+    Returns:
+        The round with the fewest vertices that are near enough; if none is, that with the smallest bound.
+    """
+    search = _Search(chains, options, near)
+    search.refine(which)
+    if THINNINGS[options.effort]:
+        search.thin(which)
+    return search.kept
+
+
+class _Search:
     """The search for the vertices of a glyph's contours."""
 
     def __init__(self, chains: Chains, options: Options, near: FloatArray) -> None:
         self.chains, self.options, self.near = chains, options, near
         self.angle = float(np.radians(options.corner_angle))
-        self.kept: dict[int, tuple[Round, int]] = {}
-        """By contour: the round, and the part of it, with the fewest vertices that pass, or with the smallest bound."""
+        self.kept: Kept = {}
 
-    def run(self) -> None:
-        """Fill ``kept``."""
-        chains, near = self.chains, self.near
-        which = np.arange(len(near))
-        prunings = np.full(len(near), PRUNINGS[self.options.effort])
+    def refine(self, which: IntArray) -> None:
+        """Begin with what is known of the outline; add vertices, and take out others, until all contours pass."""
+        chains, options, near = self.chains, self.options, self.near
+        left = np.full(len(near), PRUNINGS[options.effort])
+        passed = np.zeros(len(near), dtype=np.bool_)
+        every = np.ones(len(near), dtype=np.bool_)
         places, offsets = rounds.first_places(
-            chains.cubics, chains.offsets, chains.lengths, chains.turns, which, self.angle, self.options.max_ratio, near
-        )
+            chains.cubics, chains.offsets, chains.lengths, chains.turns, which, self.angle, options.max_ratio, near,
+            options.variant,
+        )  # fmt: skip
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
-            passed = np.ones(len(near), dtype=np.bool_)
+            which, places, offsets = done.which, done.places, done.offsets
             passed[which] = done.most <= near[which]
-            self._keep(done)
-            fewer = passed & (prunings > 0) if turn >= EARLY else np.ones(len(near), dtype=np.bool_)
-            prunings[which] -= passed[which]
+            fewer = every if turn < EARLY else passed & (left > 0)
+            left[which] -= passed[which]
             which, places, offsets = rounds.changed(
                 chains.cubics, chains.offsets, chains.lengths, chains.turns, which, places, offsets, done.points,
-                done.bounds, done.gaps, done.worst, near, ~passed, fewer, self.angle, self.options.max_ratio, POWERS[turn % len(POWERS)],
+                done.bounds, done.gaps, done.worst, near, ~passed, fewer, self.angle, options.max_ratio,
+                POWERS[turn % len(POWERS)],
             )  # fmt: skip
             if len(which) == 0:
                 break
 
-    def thin(self) -> None:
-        """Take out vertices of the contours that pass, as long as they do; what that leaves goes to ``kept``."""
-        chains, near, ratio = self.chains, self.near, self.options.max_ratio
-        which = np.array([k for k, (r, i) in self.kept.items() if r.most[i] <= near[k]], dtype=np.int64)
+    def thin(self, which: IntArray) -> None:
+        """Take out vertices of the contours that passed, as long as they still do."""
+        chains, near = self.chains, self.near
+        which = np.array([k for k in which.tolist() if _passes(self.kept[k], near[k])], dtype=np.int64)
+        if len(which) == 0:
+            return
         parts = [self.kept[k] for k in which.tolist()]
-        good = [r.places[r.offsets[i] : r.offsets[i + 1]] for r, i in parts]
-        places, offsets = np.concatenate(good), np.cumsum([0] + [len(p) for p in good])
-        done = self.attempt(which, places, offsets)
-        state = (places, offsets, done.points, done.gaps, np.ones(len(places), bool), np.zeros(len(places), bool))
-        for turn in range(THIN):
+        places = [found.part(found.places, i) for found, i in parts]
+        done = self.attempt(which, np.concatenate(places), np.cumsum([0] + [len(part) for part in places]))
+        keep = np.ones(len(done.places), dtype=np.bool_)
+        state = done.places, done.offsets, done.points, done.gaps, keep, ~keep
+        for _ in range(THINNINGS[self.options.effort]):
             which, *state = rounds.thinned(
-                chains.offsets, chains.turns, near, self.angle, ratio, POW, which, done.places,
-                done.offsets, done.points, done.bounds, done.gaps, *state,
+                chains.offsets, chains.turns, near, self.angle, self.options.max_ratio, THIN_POWER, done.which,
+                done.places, done.offsets, done.points, done.bounds, done.gaps, *state,
             )  # fmt: skip
             if len(which) == 0:
                 break
-            keep = state[4]
-            counts = np.add.reduceat(keep, state[1][:-1])
-            done = self.attempt(which, state[0][keep], np.concatenate([[0], np.cumsum(counts)]))
-            self._keep(done)
+            good, offsets, _, _, keep, _ = state
+            done = self.attempt(which, good[keep], np.concatenate([[0], np.cumsum(keep)[offsets[1:] - 1]]))
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
-        """Interpolate and measure."""
+        """Interpolate contours through their points at places, measure, and keep what is better than before."""
         chains, options = self.chains, self.options
         points = rounds.polygons(chains.cubics, chains.offsets, which, places, offsets)
-        found = interpolate_ragged(
-            points, offsets, options.variant, margin=options.margin, fallback="knot",
-            residual_tolerance=options.residual_tolerance, max_iterations=options.max_iterations, threads=1,
-        )  # fmt: skip
-        pieces = rounds.written(found.controls, found.knots, offsets, 10.0**options.precision)
+        try:
+            found = interpolated(points, offsets, options)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else int(which[error.contour])
+            raise
+        if found.whole[:, 1].sum() < len(places):  # duplicates were merged
+            kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
+            return self.attempt(which, places[np.concatenate(kept)], np.cumsum([0] + [len(part) for part in kept]))
+        pieces, written = rounds.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
         bounds, gaps, worst, ends = rounds.examined(
-            chains.cubics, chains.offsets, which, places, offsets, pieces, self.near
+            chains.cubics, chains.offsets, which, places, offsets, written, self.near
         )
         most = np.maximum.reduceat(bounds, offsets[:-1])
-        return Round(which, places, offsets, points, found, pieces, bounds, gaps, worst, ends, most)
+        done = Round(which, places, offsets, points, found, pieces, written, bounds, gaps, worst, ends, most)
+        for i, k in enumerate(which.tolist()):
+            if k not in self.kept or _better((done, i), self.kept[k], self.near[k]):
+                self.kept[k] = done, i
+        return done
 
-    def _keep(self, done: Round) -> None:
-        for i, k in enumerate(done.which.tolist()):
-            if k in self.kept:
-                before, j = self.kept[k]
-                counts = [int(r.offsets[p + 1] - r.offsets[p]) for r, p in ((done, i), (before, j))]
-                passes = [bool(r.most[p] <= self.near[k]) for r, p in ((done, i), (before, j))]
-                if passes[1] and not (passes[0] and counts[0] < counts[1]):
-                    continue
-            self.kept[k] = done, i
+
+def _passes(found: tuple[Round, int], near: float) -> bool:
+    return bool(found[0].most[found[1]] <= near)
+
+
+def _better(new: tuple[Round, int], old: tuple[Round, int], near: float) -> bool:
+    """Whether a part of a round is to be kept in place of another one."""
+    if _passes(old, near):
+        counts = [found.offsets[i + 1] - found.offsets[i] for found, i in (new, old)]
+        return _passes(new, near) and bool(counts[0] < counts[1])
+    return bool(new[0].most[new[1]] < old[0].most[old[1]])

@@ -12,14 +12,12 @@ import numpy as np
 
 from ..arcs import jet
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..orientation import farthest_joint, flip, runs_backwards
 
 compiled = nb.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 
 TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
-
-TIE = 1e-6
-"""Joints whose distances from the middle differ by less, in font units, are equally far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +61,8 @@ def _canonical(given: FloatArray, offsets: IntArray) -> tuple[FloatArray, IntArr
         chain = chain[:m]
         flipped[k] = runs_backwards(chain)
         if flipped[k]:
-            chain = np.ascontiguousarray(chain[::-1, ::-1])
-        first = farthest_joint(chain)
+            chain = flip(chain)
+        first = farthest_joint(chain[:, 0])
         starts[k + 1] = starts[k] + m
         for j in range(m):
             cubics[starts[k] + j] = chain[(first + j) % m]
@@ -75,37 +73,6 @@ def _canonical(given: FloatArray, offsets: IntArray) -> tuple[FloatArray, IntArr
         _turns(part, turns[starts[k] :])
         _lengths(part, lengths[starts[k] :])
     return cubics, starts, flipped, turns, lengths
-
-
-@compiled
-def runs_backwards(cubics: FloatArray) -> bool:
-    """As :func:`..orientation.runs_backwards`."""
-    m = len(cubics)
-    total = 0.0
-    for j in range(m):
-        after = (j + 1) % m
-        h = np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
-        g = np.hypot(cubics[after, 3, 0] - cubics[after, 0, 0], cubics[after, 3, 1] - cubics[after, 0, 1])
-        total += h * g * (h - g)
-    return total < 0
-
-
-@compiled
-def farthest_joint(cubics: FloatArray) -> int:
-    """As :func:`..orientation.farthest_joint`: of several, the one farthest right, then up."""
-    m = len(cubics)
-    x0 = y0 = 0.0
-    for j in range(m):
-        x0 += cubics[j, 0, 0] / m
-        y0 += cubics[j, 0, 1] / m
-    best, reach = 0, -1.0
-    for j in range(m):
-        x, y = cubics[j, 0]
-        d = np.rint(np.hypot(x - x0, y - y0) / TIE)
-        bx, by = cubics[best, 0]
-        if d > reach or (d == reach and (x > bx or (x == bx and y > by))):
-            best, reach = j, d
-    return best
 
 
 @compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from .chains import TABLE, compiled, length_at, place_at, vertices
 
 MOST_VERTICES = 2000
@@ -76,11 +76,7 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
     total = lengths[-1, TABLE]
     while True:
         n = len(places)
-        points = vertices(cubics, places)
-        chords = np.empty(n)
-        for i in range(n):
-            j = (i + 1) % n
-            chords[i] = np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+        chords = _chords(vertices(cubics, places))
         if n > MOST_VERTICES or not _uneven(chords, ratio):
             return places
         at, h = spans_of(lengths, places)
@@ -107,3 +103,23 @@ def _uneven(chords: FloatArray, ratio: float) -> bool:
         if a > ratio * b or b > ratio * a:
             return True
     return False
+
+
+@compiled
+def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
+    """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
+    even = np.ones(len(offsets) - 1, dtype=np.bool_)
+    for k in range(len(offsets) - 1):
+        even[k] = not _uneven(_chords(points[offsets[k] : offsets[k + 1]]), ratio)
+    return even
+
+
+@compiled
+def _chords(points: FloatArray) -> FloatArray:
+    """(n,) distance from each vertex to the next, the last to the first."""
+    n = len(points)
+    chords = np.empty(n)
+    for i in range(n):
+        j = (i + 1) % n
+        chords[i] = np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+    return chords

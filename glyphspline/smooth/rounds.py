@@ -11,9 +11,6 @@ from .places import MOST_VERTICES, graded, with_more
 from .prune import put_back, sparse
 from .spacing import seeds
 
-GROWTH = 0.97
-"""Share of the ratio allowed that chords at first have away from a corner."""
-
 ROUGHLY = 0.1
 """While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
 
@@ -21,13 +18,13 @@ ROUGHLY = 0.1
 @compiled
 def first_places(
     cubics: FloatArray, starts: IntArray, lengths: FloatArray, turns: FloatArray, which: IntArray,
-    corner_angle: float, ratio: float, near: FloatArray,
+    corner_angle: float, ratio: float, near: FloatArray, variant: int,
 ) -> tuple[FloatArray, IntArray]:  # fmt: skip
     """Ragged places to begin with, of the contours ``which``."""
     parts = [np.empty(0)]
     for k in which:
         a, b = starts[k], starts[k + 1]
-        some = seeds(cubics[a:b], lengths[a:b], turns[a:b], corner_angle, GROWTH * ratio, near[k])
+        some = seeds(cubics[a:b], lengths[a:b], turns[a:b], corner_angle, ratio, near[k], variant)
         parts.append(graded(cubics[a:b], lengths[a:b], some, ratio))
     return _joined(parts)
 
@@ -59,8 +56,10 @@ def polygons(
 
 
 @compiled
-def written(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> FloatArray:
-    """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, rounded to multiples of 1/unit if that is not 0.
+def beziers(
+    controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float
+) -> tuple[FloatArray, FloatArray]:
+    """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
 
     Knots of part k begin at ``offsets[k] + k``.
     """
@@ -85,12 +84,12 @@ def written(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
             for c in range(2):
                 p, q = pieces[a + j, 2, c], pieces[a + i, 1, c]
                 pieces[a + i, 0, c] = pieces[a + j, 3, c] = p + share * (q - p)
-    if unit > 0:
-        for i in range(len(pieces)):
-            for j in range(4):
-                for c in range(2):
-                    pieces[i, j, c] = np.rint(pieces[i, j, c] * unit) / unit
-    return pieces
+    written = np.empty_like(pieces)
+    for i in range(len(pieces)):
+        for j in range(4):
+            for c in range(2):
+                written[i, j, c] = np.rint(pieces[i, j, c] * unit) / unit
+    return pieces, written
 
 
 @compiled
@@ -157,20 +156,12 @@ def changed(
 
 
 @compiled
-def certificates(
-    cubics: FloatArray, starts: IntArray, which: IntArray, offsets: IntArray, pieces: FloatArray, bounds: FloatArray,
-    gaps: FloatArray, ends: FloatArray, sharpness: float,
-) -> FloatArray:  # fmt: skip
-    """(K, 2) bound and gap of each contour."""
-    found = np.empty((len(which), 2))
-    for i in range(len(which)):
-        k, a, b = which[i], offsets[i], offsets[i + 1]
-        found[i] = sharpened(
-            pieces[a:b], cubics[starts[k] : starts[k + 1]], bounds[a:b], gaps[a:b], ends[a + i : b + i + 1], sharpness
-        )
-    return found
-
-
+def certificate(
+    cubics: FloatArray, starts: IntArray, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray,
+    ends: FloatArray, sharpness: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Bound and gap of contour k as it is written; see :func:`.near.sharpened`."""
+    return sharpened(written, cubics[starts[k] : starts[k + 1]], bounds, gaps, ends, sharpness)
 
 
 @compiled

@@ -1,15 +1,16 @@
 """First places for the vertices of a contour: how far apart they may lie, by what is known of the outline.
 
-A *field* says at every point how long a chord may be there. Three things bound it, each measured on the variant 2 curve
-of a model outline:
+A *field* says at every point how long a chord may be there. Three things bound it, each measured on the curve of a
+model outline:
 
-- a corner of angle θ between straight legs, chords growing by 4 away from it: the curve is off by 0.0575 sin θ times
-  the chord beside the corner, and by less further out;
-- a jump Δκ of curvature: off by up to 0.03 Δκ h², h the chord;
+- a corner of angle θ between straight legs, chords growing by 4 away from it: variant 2 is off by 0.0575 sin θ times
+  the chord beside the corner, and by less further out. Variant 3, whose spans further out would be worse, is off by
+  0.09 sin θ if chords grow by 2.5;
+- a jump Δκ of curvature: off by up to 0.03 Δκ h², h the chord, less if a vertex is there;
 - curvature κ itself: off by some 0.004 (κ³ + |κ''|) h⁴.
 
-Away from its bounds the field grows by ``log(ratio)`` a unit of length: chords laid end to end along such a field grow
-by the factor ``ratio``. Vertices lie at all corners and, between two, where the integral of 1/field is whole.
+Away from its bounds the field grows by ``log(growth)`` a unit of length: chords laid end to end along such a field grow
+by the factor ``growth``. Vertices lie at all corners and, between two, where the integral of 1/field is whole.
 """
 
 from __future__ import annotations
@@ -21,6 +22,13 @@ from ..arrays import FloatArray
 from .chains import TABLE, compiled
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.014, 0.004
+"""The three numbers, with something to spare at corners, where a span that just fails would be halved."""
+
+GROWTH = 0.97
+"""Share of the ratio allowed by which chords grow."""
+
+AT_CORNER_3, GROWTH_3 = 0.1, 2.5
+"""The same for variant 3."""
 
 FLATTEST = 0.1
 """Corners count as if the sine of their angle were at least this."""
@@ -37,8 +45,9 @@ FEWEST = 4
 
 @compiled
 def seeds(
-    cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float
-) -> FloatArray:
+    cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float,
+    variant: int,
+) -> FloatArray:  # fmt: skip
     """Places of the first vertices of a contour, increasing.
 
     Args:
@@ -46,8 +55,12 @@ def seeds(
         corner_angle: turn in radians from which a joint is a vertex. ratio: at most, of adjacent chords.
         near: distance allowed, in font units.
     """
-    growth = np.log(ratio)
-    field = _bounds(cubics, lengths, turns, growth / (ratio - 1), near)
+    factor, at_corner = GROWTH * ratio, AT_CORNER
+    if variant == 3:
+        factor, at_corner = min(factor, GROWTH_3), AT_CORNER_3
+    growth = np.log(factor)
+    first = growth / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
+    field = _bounds(cubics, lengths, turns, first / at_corner, near)
     corners = np.flatnonzero(turns >= corner_angle)
     if len(corners) == 0:
         corners = np.zeros(1, dtype=np.int64)
@@ -56,14 +69,14 @@ def seeds(
         a, b = corners[k], corners[(k + 1) % len(corners)]
         reach = lengths[b, 0] - lengths[a, 0] + (total if b <= a else 0.0)
         for j in (a, b):
-            field[j * TABLE] = min(field[j * TABLE], growth / (ratio - 1) * reach)
+            field[j * TABLE] = min(field[j * TABLE], first * reach)
     field[m * TABLE] = field[0] = min(field[0], field[m * TABLE])
     _limit_growth(field, lengths, growth)
     return _laid(field, lengths, corners)
 
 
 @compiled
-def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, first: float, near: float) -> FloatArray:
+def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float) -> FloatArray:
     """The field at all entries of ``lengths`` in turn, (m TABLE + 1,), before its growth is limited."""
     m = len(cubics)
     field = np.full(m * TABLE + 1, lengths[-1, TABLE] / FEWEST)
@@ -87,7 +100,7 @@ def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, first: f
             at = j * TABLE + k
             field[at] = min(field[at], max(h, near))
     for j in range(m):
-        h = first * near / (AT_CORNER * max(np.sin(turns[j]), FLATTEST)) if turns[j] > 0.01 else np.inf
+        h = at_corner * near / max(np.sin(turns[j]), FLATTEST) if turns[j] > 0.01 else np.inf
         jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
         if jump > 0:
             h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
