@@ -29,8 +29,8 @@ NO_POLYGONS = np.empty((0, 2))
 def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: float) -> list[ContourResult]:
     """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
 
-    Results that cross themselves where their source did not are fitted again more closely, and flagged if that is no
-    cure.
+    Results that cross themselves where their source did not are fitted again more closely; that with the fewest
+    crossings counts, and is flagged if it has any. Outlines that go back the way they came keep some.
 
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
@@ -47,12 +47,18 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
         near[left] = share * tolerance
         kept = refined(chains, left, options, near)
         own = _measured(chains, left, [kept[k] for k in left.tolist()], source, tolerance)
-        for k, (found, i), measures in zip(left.tolist(), [kept[k] for k in left.tolist()], own, strict=True):
-            results[k] = _result(contours[k], found, i, bool(chains.flipped[k]), measures)
+        for k, measures in zip(left.tolist(), own, strict=True):
+            if k not in results or _rank(measures) < _rank(results[k].measures):
+                results[k] = _result(contours[k], *kept[k], bool(chains.flipped[k]), measures)
         left = left[[bool(measures.new_crossings) for measures in own]]
         if len(left) == 0:
             break
     return [results[k] for k in range(len(contours))]
+
+
+def _rank(measures: Measures) -> tuple[bool, int]:
+    """The lower, the better: within the tolerance before all, then few crossings."""
+    return not measures.within_tolerance, measures.new_crossings or 0
 
 
 def _check(contours: Sequence[Contour]) -> None:
