@@ -21,7 +21,7 @@ from .smooth.chains import Chains
 ROUNDS = 80
 """Rounds before giving up."""
 
-EARLY = 2
+EARLY = {"fast": 1, "best": 2}
 """Rounds in which vertices that seem not to be needed go while others come."""
 
 PRUNINGS = {"fast": 0, "best": 12}
@@ -109,7 +109,7 @@ class _Search:
             done = self.attempt(which, places, offsets)
             which, places, offsets = done.which, done.places, done.offsets
             passed[which] = done.most <= near[which]
-            fewer = every if turn < EARLY else passed & (left > 0)
+            fewer = every if turn < EARLY[options.effort] else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = rounds.changed(
                 chains.cubics, chains.offsets, chains.lengths, chains.turns, which, places, offsets, done.points,
