@@ -101,10 +101,7 @@ class _Search:
         left = np.full(len(near), PRUNINGS[options.effort])
         passed = np.zeros(len(near), dtype=np.bool_)
         every = np.ones(len(near), dtype=np.bool_)
-        places, offsets = rounds.first_places(
-            chains.cubics, chains.offsets, chains.lengths, chains.turns, which, self.angle, options.max_ratio, near,
-            options.variant,
-        )  # fmt: skip
+        places, offsets = rounds.first_places(chains, which, self.angle, options.max_ratio, near, options.variant)
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
             which, places, offsets = done.which, done.places, done.offsets
@@ -112,9 +109,8 @@ class _Search:
             fewer = every if turn < EARLY[options.effort] else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = rounds.changed(
-                chains.cubics, chains.offsets, chains.lengths, chains.turns, which, places, offsets, done.points,
-                done.bounds, done.gaps, done.worst, near, ~passed, fewer, self.angle, options.max_ratio,
-                POWERS[turn % len(POWERS)],
+                chains, which, places, offsets, done.points, done.bounds, done.gaps, done.worst, near, ~passed, fewer,
+                self.angle, options.max_ratio, POWERS[turn % len(POWERS)],
             )  # fmt: skip
             if len(which) == 0:
                 break
@@ -129,21 +125,21 @@ class _Search:
         places = [found.part(found.places, i) for found, i in parts]
         done = self.attempt(which, np.concatenate(places), np.cumsum([0] + [len(part) for part in places]))
         keep = np.ones(len(done.places), dtype=np.bool_)
-        state = done.places, done.offsets, done.points, done.gaps, keep, ~keep
+        good = rounds.Good(done.places, done.offsets, done.points, done.gaps, keep, ~keep)
         for _ in range(THINNINGS[self.options.effort]):
-            which, *state = rounds.thinned(
-                chains.offsets, chains.turns, near, self.angle, self.options.max_ratio, THIN_POWER, done.which,
-                done.places, done.offsets, done.points, done.bounds, done.gaps, *state,
+            which, good = rounds.thinned(
+                chains, near, self.angle, self.options.max_ratio, THIN_POWER, done.which, done.places, done.offsets,
+                done.points, done.bounds, done.gaps, good,
             )  # fmt: skip
             if len(which) == 0:
                 break
-            good, offsets, _, _, keep, _ = state
-            done = self.attempt(which, good[keep], np.concatenate([[0], np.cumsum(keep)[offsets[1:] - 1]]))
+            counts = np.cumsum(good.keep)[good.offsets[1:] - 1]
+            done = self.attempt(which, good.places[good.keep], np.concatenate([[0], counts]))
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
         """Interpolate contours through their points at places, measure, and keep what is better than before."""
         chains, options = self.chains, self.options
-        points = rounds.polygons(chains.cubics, chains.offsets, which, places, offsets)
+        points = rounds.polygons(chains, which, places, offsets)
         try:
             found = interpolated(points, offsets, options)
         except GlyphsplineError as error:
@@ -153,9 +149,7 @@ class _Search:
             kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
             return self.attempt(which, places[np.concatenate(kept)], np.cumsum([0] + [len(part) for part in kept]))
         pieces, written = rounds.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
-        bounds, gaps, worst, ends = rounds.examined(
-            chains.cubics, chains.offsets, which, places, offsets, written, self.near
-        )
+        bounds, gaps, worst, ends = rounds.examined(chains, which, places, offsets, written, self.near)
         most = np.maximum.reduceat(bounds, offsets[:-1])
         done = Round(which, places, offsets, points, found, pieces, written, bounds, gaps, worst, ends, most)
         for i, k in enumerate(which.tolist()):

@@ -17,7 +17,7 @@ from .polygon import LARGEST, clean_polygon
 from .refine import Round, refined
 from .result import Interpolation
 from .smooth import rounds
-from .smooth.chains import Chains
+from .smooth.chains import Chains, chains_of
 from .smooth.forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT, forms
 
 SHARPNESS = 0.02
@@ -38,7 +38,7 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     if not contours:
         return []
     _check(contours)
-    chains = Chains.of([contour.cubics() for contour in contours])
+    chains = chains_of([contour.cubics() for contour in contours])
     source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}
@@ -129,9 +129,8 @@ def _certificate(chains: Chains, k: int, found: Round, i: int, tolerance: float)
     written, start = found.part(found.written, i), found.offsets[i] + i
     ends = found.ends[start : start + len(written) + 1]
     bound, gap = rounds.certificate(
-        chains.cubics, chains.offsets, k, written, found.part(found.bounds, i), found.part(found.gaps, i), ends,
-        SHARPNESS * tolerance,
-    )  # fmt: skip
+        chains, k, written, found.part(found.bounds, i), found.part(found.gaps, i), ends, SHARPNESS * tolerance
+    )
     if bound <= tolerance:
         return bound, gap
     # Pairing the other way round too is slow, and only seldom better.

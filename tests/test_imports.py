@@ -32,7 +32,6 @@ ROOMS = [
         "measure",
         "curvature",
         "distance",
-        "spans",
         "crossings",
         "continuity",
         "joints",

@@ -5,7 +5,7 @@ A *place* j + x on a contour is local parameter x of its segment j; places wrap 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -20,8 +20,7 @@ TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
 
 
-@dataclass(frozen=True, eq=False)
-class Chains:
+class Chains(NamedTuple):
     """The contours of a glyph.
 
     Attributes:
@@ -37,11 +36,10 @@ class Chains:
     turns: FloatArray
     lengths: FloatArray
 
-    @classmethod
-    def of(cls, parts: list[FloatArray]) -> Chains:
-        """Chains of contours given as cubics, (m, 4, 2) each."""
-        given = np.cumsum([0] + [len(part) for part in parts])
-        return cls(*_canonical(np.concatenate(parts), given))
+
+def chains_of(parts: list[FloatArray]) -> Chains:
+    """Chains of contours given as cubics, (m, 4, 2) each."""
+    return Chains(*_canonical(np.concatenate(parts), np.cumsum([0] + [len(part) for part in parts])))
 
 
 @compiled

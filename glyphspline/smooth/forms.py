@@ -149,9 +149,7 @@ def _crossings(pieces: FloatArray) -> int:
             if adjacent and n > 2 and _monotone(pieces, first, second):
                 continue
             ring = adjacent and first == (second + 1) % n
-            found += _crossed(
-                a, _chords(pieces, first, a), b, _chords(pieces, second, b), 1 if adjacent else 2, ring
-            )
+            found += _crossed(a, _chords(pieces, first, a), b, _chords(pieces, second, b), 1 if adjacent else 2, ring)
     return found
 
 

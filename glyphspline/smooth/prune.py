@@ -19,7 +19,8 @@ def sparse(
 
     Args:
         points: (n, 2). corners: (n,) vertices at corners, expected to be off by their height over the chord that
-            would take their place. stay: (n,) vertices that are kept in any case. errors: (n,) of the span after each vertex.
+            would take their place. stay: (n,) vertices that are kept in any case. errors: (n,) of the span after each
+            vertex.
     """
     n = len(points)
     keep = np.ones(n, dtype=np.bool_)

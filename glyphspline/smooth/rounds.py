@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from .chains import compiled, vertices
+from .chains import Chains, compiled, vertices
 from .near import check, sharpened
 from .places import MOST_VERTICES, graded, with_more
 from .prune import put_back, sparse
@@ -17,15 +19,15 @@ ROUGHLY = 0.1
 
 @compiled
 def first_places(
-    cubics: FloatArray, starts: IntArray, lengths: FloatArray, turns: FloatArray, which: IntArray,
-    corner_angle: float, ratio: float, near: FloatArray, variant: int,
-) -> tuple[FloatArray, IntArray]:  # fmt: skip
+    chains: Chains, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
+) -> tuple[FloatArray, IntArray]:
     """Ragged places to begin with, of the contours ``which``."""
     parts = [np.empty(0)]
     for k in which:
-        a, b = starts[k], starts[k + 1]
-        some = seeds(cubics[a:b], lengths[a:b], turns[a:b], corner_angle, ratio, near[k], variant)
-        parts.append(graded(cubics[a:b], lengths[a:b], some, ratio))
+        a, b = chains.offsets[k], chains.offsets[k + 1]
+        cubics, lengths = chains.cubics[a:b], chains.lengths[a:b]
+        some = seeds(cubics, lengths, chains.turns[a:b], corner_angle, ratio, near[k], variant)
+        parts.append(graded(cubics, lengths, some, ratio))
     return _joined(parts)
 
 
@@ -42,23 +44,18 @@ def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
 
 
 @compiled
-def polygons(
-    cubics: FloatArray, starts: IntArray, which: IntArray, places: FloatArray, offsets: IntArray
-) -> FloatArray:
+def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
     """Ragged points of the outline at the places."""
     points = np.empty((len(places), 2))
     for i in range(len(which)):
         k = which[i]
-        points[offsets[i] : offsets[i + 1]] = vertices(
-            cubics[starts[k] : starts[k + 1]], places[offsets[i] : offsets[i + 1]]
-        )
+        cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
+        points[offsets[i] : offsets[i + 1]] = vertices(cubics, places[offsets[i] : offsets[i + 1]])
     return points
 
 
 @compiled
-def beziers(
-    controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float
-) -> tuple[FloatArray, FloatArray]:
+def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
     """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
 
     Knots of part k begin at ``offsets[k] + k``.
@@ -94,9 +91,8 @@ def beziers(
 
 @compiled
 def examined(
-    cubics: FloatArray, starts: IntArray, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray,
-    near: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray, near: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Ragged bounds, gaps, worst places and stretches of all spans; see :func:`.near.check`.
 
     Stretches of part i begin at ``offsets[i] + i``.
@@ -105,9 +101,10 @@ def examined(
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
+        cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
         check(
-            pieces[a:b], cubics[starts[k] : starts[k + 1]], places[a:b], near[k], ROUGHLY * near[k], bounds[a:b],
-            gaps[a:b], worst[a:b], ends[a + i :],
+            pieces[a:b], cubics, places[a:b], near[k], ROUGHLY * near[k], bounds[a:b], gaps[a:b], worst[a:b],
+            ends[a + i :],
         )  # fmt: skip
     return bounds, gaps, worst, ends
 
@@ -124,9 +121,9 @@ def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> Bool
 
 @compiled
 def changed(
-    cubics: FloatArray, starts: IntArray, lengths: FloatArray, turns: FloatArray, which: IntArray, places: FloatArray,
-    offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, worst: FloatArray, near: FloatArray,
-    more: BoolArray, fewer: BoolArray, corner_angle: float, ratio: float, power: float,
+    chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray,
+    gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray, corner_angle: float,
+    ratio: float, power: float,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours that change, and their ragged places.
 
@@ -138,16 +135,17 @@ def changed(
     parts, those = [np.empty(0)], np.empty(len(which), dtype=np.int64)
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
-        s, t = starts[k], starts[k + 1]
+        s, t = chains.offsets[k], chains.offsets[k + 1]
+        cubics, lengths, turns = chains.cubics[s:t], chains.lengths[s:t], chains.turns[s:t]
         here, bound, at = places[a:b], bounds[a:b], worst[a:b]
         if fewer[k]:
-            corners = _corners(here, turns[s:t], corner_angle)
+            corners = _corners(here, turns, corner_angle)
             keep = sparse(points[a:b], corners, np.zeros(b - a, dtype=np.bool_), gaps[a:b], near[k], ratio, power)
             here, bound, at = here[keep], bound[keep], at[keep]
         if more[k]:
-            here = with_more(lengths[s:t], here, bound, at, near[k])
+            here = with_more(lengths, here, bound, at, near[k])
         if len(here) != b - a or (here != places[a:b]).any():
-            here = graded(cubics[s:t], lengths[s:t], here, ratio)
+            here = graded(cubics, lengths, here, ratio)
             if len(here) <= MOST_VERTICES:
                 those[len(parts) - 1] = k
                 parts.append(here)
@@ -157,20 +155,35 @@ def changed(
 
 @compiled
 def certificate(
-    cubics: FloatArray, starts: IntArray, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray,
-    ends: FloatArray, sharpness: float,
+    chains: Chains, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray,
+    sharpness: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Bound and gap of contour k as it is written; see :func:`.near.sharpened`."""
-    return sharpened(written, cubics[starts[k] : starts[k + 1]], bounds, gaps, ends, sharpness)
+    cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
+    return sharpened(written, cubics, bounds, gaps, ends, sharpness)
+
+
+class Good(NamedTuple):
+    """Polygons that passed, and what is to be tried next; all ragged, with ``offsets``.
+
+    Attributes:
+        places, points, gaps: of the polygons and their spans.
+        keep: the vertices that the next trial has. needed: those that no trial leaves out any more.
+    """
+
+    places: FloatArray
+    offsets: IntArray
+    points: FloatArray
+    gaps: FloatArray
+    keep: BoolArray
+    needed: BoolArray
 
 
 @compiled
 def thinned(
-    starts: IntArray, turns: FloatArray, near: FloatArray, corner_angle: float, ratio: float, power: float,
-    which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray,
-    good: FloatArray, good_offsets: IntArray, good_points: FloatArray, good_gaps: FloatArray, keep: BoolArray,
-    needed: BoolArray,
-) -> tuple[IntArray, FloatArray, IntArray, FloatArray, FloatArray, BoolArray, BoolArray]:  # fmt: skip
+    chains: Chains, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
+    places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, good: Good,
+) -> tuple[IntArray, Good]:  # fmt: skip
     """What to try next, to find the vertices that are needed.
 
     A trial that passes takes the place of the good polygon, and vertices of it that look spare are left out of the
@@ -178,39 +191,39 @@ def thinned(
 
     Args:
         places, offsets, points, bounds, gaps: of the trial, ragged, of the contours ``which``.
-        good, good_offsets, good_points, good_gaps: of the best polygons that passed.
-        keep: which of their vertices the trial had; needed: which cannot go.
+        good: the polygons that passed, of the same contours.
 
     Returns:
-        The same of the contours that are not finished: which, good, good_offsets, good_points, good_gaps, keep, needed.
+        Numbers and polygons of the contours that are not finished.
     """
-    n = len(good)
+    n = len(good.places)
     those, count, at = np.empty_like(which), 0, 0
-    new, new_points, new_gaps = np.empty(n), np.empty((n, 2)), np.empty(n)
-    new_keep, new_needed = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_)
-    new_offsets = np.zeros(len(which) + 1, dtype=np.int64)
+    new = Good(
+        np.empty(n), np.zeros(len(which) + 1, dtype=np.int64), np.empty((n, 2)), np.empty(n),
+        np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_),
+    )  # fmt: skip
     for i in range(len(which)):
-        k, a, b, c, d = which[i], offsets[i], offsets[i + 1], good_offsets[i], good_offsets[i + 1]
-        here, p, e, mask, stay = good[c:d], good_points[c:d], good_gaps[c:d], keep[c:d], needed[c:d]
+        k, a, b, c, d = which[i], offsets[i], offsets[i + 1], good.offsets[i], good.offsets[i + 1]
+        here, p, e, keep, needed = good.places[c:d], good.points[c:d], good.gaps[c:d], good.keep[c:d], good.needed[c:d]
         if bounds[a:b].max() <= near[k]:
-            here, p, e, stay = places[a:b], points[a:b], gaps[a:b], stay[mask]
-            mask = np.ones(b - a, dtype=np.bool_)
+            here, p, e, needed = places[a:b], points[a:b], gaps[a:b], needed[keep]
+            keep = np.ones(b - a, dtype=np.bool_)
         else:
-            back = put_back(p, mask, bounds[a:b], near[k], ratio)
-            stay = stay | (back & ~mask)
-            mask = back
-        if mask.all():
-            corners = _corners(here, turns[starts[k] : starts[k + 1]], corner_angle)
-            mask = sparse(p, corners, stay, e, near[k], ratio, power)
-        if mask.all():
+            back = put_back(p, keep, bounds[a:b], near[k], ratio)
+            needed = needed | (back & ~keep)
+            keep = back
+        if keep.all():
+            corners = _corners(here, chains.turns[chains.offsets[k] : chains.offsets[k + 1]], corner_angle)
+            keep = sparse(p, corners, needed, e, near[k], ratio, power)
+        if keep.all():
             continue
         those[count] = k
         stop = at + len(here)
-        new[at:stop], new_points[at:stop], new_gaps[at:stop] = here, p, e
-        new_keep[at:stop], new_needed[at:stop] = mask, stay
+        new.places[at:stop], new.points[at:stop], new.gaps[at:stop] = here, p, e
+        new.keep[at:stop], new.needed[at:stop] = keep, needed
         count, at = count + 1, stop
-        new_offsets[count] = stop
-    return (
-        those[:count].copy(), new[:at].copy(), new_offsets[: count + 1].copy(), new_points[:at].copy(),
-        new_gaps[:at].copy(), new_keep[:at].copy(), new_needed[:at].copy(),
+        new.offsets[count] = stop
+    return those[:count].copy(), Good(
+        new.places[:at].copy(), new.offsets[: count + 1].copy(), new.points[:at].copy(), new.gaps[:at].copy(),
+        new.keep[:at].copy(), new.needed[:at].copy(),
     )  # fmt: skip

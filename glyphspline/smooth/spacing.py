@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arcs import jet
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from .chains import TABLE, compiled
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.014, 0.004
@@ -147,7 +147,7 @@ def _parts(a: float, b: float, length: float) -> float:
 
 
 @compiled
-def _laid(field: FloatArray, lengths: FloatArray, corners: FloatArray) -> FloatArray:
+def _laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
     """Places at the corners and, evenly by the field, between them."""
     m = len(lengths)
     n = m * TABLE
