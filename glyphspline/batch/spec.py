@@ -6,15 +6,17 @@ import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import GlyphsplineError
 from ..glyph import Options
 from ..readers import Source
 from ..version import __version__
-from ..writers.font_glyphs import Flavour, fitting_tolerance
 from ..writers.svg import VIEW_BOXES, ViewBox
 from .files import OutputError, write_whole
+
+if TYPE_CHECKING:
+    from ..writers.font_glyphs import Flavour
 
 RUN_FILE = "run.json"
 
@@ -83,6 +85,8 @@ class RunSpec:
         flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
         if not flavours or self.options.step is not None or self.options.count is not None:
             return self.options
+        from ..writers.font_glyphs import fitting_tolerance
+
         tolerance = self.options.tolerance_for(units_per_em)
         return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))
 
