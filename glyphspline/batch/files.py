@@ -36,14 +36,22 @@ def file_names(glyph_names: Iterable[str]) -> list[str]:
 
     They depend on all names of the font in order, not on which glyphs are selected.
     """
+    names = list(glyph_names)
     taken: set[str] = set()
-    found = []
-    for name in glyph_names:
-        plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
-        stem = name if plain else userNameToFileName(_tame(name), taken)
-        taken.add(stem.lower())
-        found.append(stem)
-    return found
+    first = [_stem(name, taken) for name in names[:1]]  # .notdef in most fonts, which is not plain
+    rest = names[1:]
+    others = {*taken, *reservedFileNames}
+    if all(map(_PLAIN.fullmatch, rest)) and len(others.union(rest)) == len(others) + len(rest):
+        return first + rest
+    return first + [_stem(name, taken) for name in rest]
+
+
+def _stem(name: str, taken: set[str]) -> str:
+    """A name's file name, which joins those that are taken."""
+    plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
+    stem = name if plain else userNameToFileName(_tame(name), taken)
+    taken.add(stem.lower())
+    return stem
 
 
 def _tame(name: str) -> str:

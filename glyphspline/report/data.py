@@ -20,6 +20,8 @@ CHUNK = 40
 COLUMNS = ("glyph", "gid", "unicodes", "advance", "status", "contours", *MEASURES)
 """What a row of the table has, in order."""
 
+STATUS = COLUMNS.index("status")
+
 ALWAYS = COLUMNS.index("contours")
 """How many columns are there in any case; the others only if a glyph has something in them."""
 
