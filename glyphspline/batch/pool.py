@@ -7,6 +7,7 @@ another process takes the place.
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -16,7 +17,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from multiprocessing import connection, resource_tracker
+from multiprocessing import connection, forkserver, resource_tracker
 from typing import Any
 
 from ..errors import GlyphsplineError
@@ -46,11 +47,27 @@ def sign_of_life() -> None:
         _last_sign.value = time.monotonic()
 
 
+def start_forkserver(preload: Sequence[str]) -> None:
+    """Start the process from which workers are forked, if it is not there yet; nobody waits for its imports.
+
+    Ctrl-C is for this process, and while it still imports the other would tell of it at length: it is started, and so
+    remains, and its workers, with that signal blocked.
+    """
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.set_forkserver_preload(list(preload))
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _serve(calls: Any, sign: Any) -> None:
     """The life of a worker process: calls in, results out, until the other end is closed."""
     global _last_sign
     _last_sign = sign
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent ends its workers
+    gc.freeze()  # what was imported stays: it need not be looked through again and again, nor its pages copied
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:
@@ -99,8 +116,7 @@ class WorkerPool(Executor):
         self._seconds = seconds
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         if os.name != "nt":
-            resource_tracker.ensure_running()
-            self._context.set_forkserver_preload(list(preload))
+            start_forkserver(preload)
         self._queue: deque[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]] = deque()
         self._wake, self._woken = self._context.Pipe()
         self._closing = False

@@ -14,7 +14,7 @@ from typing import Any
 
 from ..curvature import robust_scale
 from ..readers import Font, Source
-from ..report.data import FOLDER, STATUS
+from ..report.data import FOLDER, STATUS, as_json
 from ..report.gallery import Gallery, row_of, shown
 from .files import OutputError, file_names, make_folder, remove_partials
 from .manifest import JOURNAL, MANIFEST, Journal, Record, finish, read_record, remove_written
@@ -120,12 +120,12 @@ def tasks_of(source: Source, glyphs: Sequence[str], there: Iterable[int]) -> lis
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     stems = file_names(source.glyph_names)
     unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
-    for code, name in sorted(source.cmap.items()):
+    for code, name in source.cmap.items():
         if name in unicodes:
             unicodes[name].append(code)
-    chosen = {index[name]: name for name in unicodes}
-    places = {gid: place for place, gid in enumerate(sorted({*chosen, *there}))}
-    return [Task(gid, chosen[gid], stems[gid], tuple(unicodes[chosen[gid]]), places[gid]) for gid in sorted(chosen)]
+    chosen = sorted((index[name], name, tuple(sorted(codes))) for name, codes in unicodes.items())
+    places = {gid: place for place, gid in enumerate(sorted({*(gid for gid, _, _ in chosen), *there}))}
+    return [Task(gid, name, stems[gid], codes, places[gid]) for gid, name, codes in chosen]
 
 
 def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
@@ -181,7 +181,7 @@ def conclude(out: Path, record: Record, summary: Summary) -> None:
 
 def _noted(entry: dict[str, Any]) -> tuple[str, Facts]:
     """Of a glyph that an earlier run has done, what is noted of those done now."""
-    return json.dumps(row_of(entry)), facts_of(entry["contours"])
+    return as_json(row_of(entry)), facts_of(entry["contours"])
 
 
 def _shown(out: Path, line: bytes) -> str:

@@ -7,13 +7,15 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..glyph import Options
 from ..report.data import CHUNK
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for
-from .work import Job, Task
+
+if TYPE_CHECKING:
+    from .work import Job, Task
 
 LARGEST_CHUNK = CHUNK
 """Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar. As many

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import GlyphsplineError
 from ..glyph import Options
-from ..readers import Source
 from ..version import __version__
 from ..writers.svg import VIEW_BOXES, ViewBox
 from .files import OutputError, write_whole
 
 if TYPE_CHECKING:
+    from ..readers import Source
     from ..writers.font_glyphs import Flavour
 
 RUN_FILE = "run.json"

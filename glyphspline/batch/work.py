@@ -22,7 +22,7 @@ from ..errors import GlyphsplineError
 from ..glyph import GlyphResult
 from ..outline import FontMetrics, Outline
 from ..readers import Source, open_source
-from ..report.data import CHUNK, glyph_text, page_file, page_text, table_row
+from ..report.data import CHUNK, as_json, glyph_text, page_file, page_text, table_row
 from ..report.drawings import drawing, drawing_of
 from ..writers.curvature_map import combs, to_curvature_svg
 from ..writers.source import to_source_svg
@@ -201,7 +201,7 @@ def finished(
     entry = json.loads(line)
     row = table_row(task.name, task.gid, entry["unicodes"], entry["advance"], status, entry["contours"])
     return Done(
-        task.gid, task.name, status, line, sizes, seconds, json.dumps(row, separators=(",", ":")),
+        task.gid, task.name, status, line, sizes, seconds, as_json(row),
         facts_of(entry["contours"]),
     )  # fmt: skip
 

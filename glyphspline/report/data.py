@@ -27,6 +27,8 @@ ALWAYS = COLUMNS.index("contours")
 
 Row = list[Any]
 
+_encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
+
 
 def page_file(number: int) -> str:
     """Where a page is, relative to the run's folder."""
@@ -100,7 +102,7 @@ def script(data: Any) -> str:
 
 def as_json(data: Any) -> str:
     """JSON that can stand in a script and in a page: ASCII, and no "<" that could end either."""
-    return escaped(json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":")))
+    return escaped(_encoded(data))
 
 
 def escaped(text: str) -> str:
