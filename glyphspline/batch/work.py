@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -56,8 +56,7 @@ class Job:
     curvature_scale: float | None = None
 
 
-@dataclass(frozen=True)
-class Task:
+class Task(NamedTuple):
     """One glyph: its name, index and code points, its file name without suffix, and its place in the manifest."""
 
     gid: int
@@ -67,8 +66,7 @@ class Task:
     place: int
 
 
-@dataclass(frozen=True)
-class Done:
+class Done(NamedTuple):
     """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took.
 
     What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
