@@ -60,8 +60,10 @@ def _tame(name: str) -> str:
     return clipped.decode(errors="ignore").rstrip(". ") or "_"
 
 
-def write_whole(path: str, content: str | bytes) -> int:
+def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
+
+    Durable is one that is on the disk before it has its name, which takes some milliseconds.
 
     Raises:
         OutputError: it cannot be written; nothing is left under the final name but what was there.
@@ -77,6 +79,8 @@ def write_whole(path: str, content: str | bytes) -> int:
                 written = os.write(handle, data)
                 while written < len(data):
                     written += os.write(handle, data[written:])
+                if durable:
+                    os.fsync(handle)
             finally:
                 os.close(handle)
             os.replace(partial, path)

@@ -4,9 +4,9 @@ While a run is under way, each finished glyph is a line of the journal, in any o
 its manifest line. At the end the manifest is written whole, in glyph index order, and the journal goes. A line that
 was cut off, or whose files are not there in those sizes, counts as not written.
 
-Nothing waits for the disk but the manifest at its end, so a power cut may take what the system had not stored yet. Of a
-run under way the sizes tell; of a finished one, that a file is empty, as files are that were given their names and no
-content.
+Nothing waits for the disk but ``run.json`` and the manifest at the end, so a power cut may take what the system had not
+stored yet. Of a run under way the sizes tell; of a finished one, that a file is empty, as files are that were given
+their names and no content.
 """
 
 from __future__ import annotations

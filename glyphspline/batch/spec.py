@@ -113,8 +113,8 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
 
 
 def write_run(out: Path, run: dict[str, Any]) -> None:
-    """Write ``run.json``."""
-    write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n")
+    """Write ``run.json``, without which nothing that a run leaves can be gone on with."""
+    write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n", durable=True)
 
 
 def read_run(out: Path) -> dict[str, Any] | None:
