@@ -1,23 +1,29 @@
-"""What a worker does: open the font once, then glyph after glyph from outline to files and a manifest line."""
+"""What a worker does: glyph after glyph from outline to files and a manifest line.
+
+The font is opened by the first glyph that needs more of it than HarfBuzz draws. The compiled short way is imported in
+workers alone; the process that started them has no use for it.
+"""
 
 from __future__ import annotations
 
+import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
-from ..express.lane import Drawn, draw_chunk, drawn_svg, suits
-from ..express.reading import BulkReader
 from ..glyph import GlyphResult
-from ..outline import Outline
-from ..readers import Font, Source, open_source
+from ..outline import FontMetrics, Outline
+from ..readers import Source, open_source
+from ..report.data import CHUNK, as_json, glyph_text, page_file, page_text, table_row
+from ..report.drawings import drawing, drawing_of
 from ..writers.curvature_map import combs, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
@@ -26,32 +32,45 @@ from .files import write_whole
 from .pool import sign_of_life
 from .spec import RESULTS, SUFFIXES, RunSpec
 from .store import to_text
+from .summary import Facts, facts_of
+
+if TYPE_CHECKING:
+    from ..express.lane import Drawn
+    from ..express.reading import BulkReader
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs."""
+    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs.
+
+    ``static`` says that it is a font file, and does not vary.
+    """
 
     path: Path
     face_index: int
     location: tuple[tuple[str, float], ...]
     out: Path
     spec: RunSpec
+    metrics: FontMetrics
+    static: bool
     curvature_scale: float | None = None
 
 
-@dataclass(frozen=True)
-class Task:
-    """One glyph: its name and index, and its file name without suffix."""
+class Task(NamedTuple):
+    """One glyph: its name, index and code points, its file name without suffix, and its place in the manifest."""
 
     gid: int
     name: str
     stem: str
+    unicodes: tuple[int, ...]
+    place: int
 
 
-@dataclass(frozen=True)
-class Done:
-    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took."""
+class Done(NamedTuple):
+    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took.
+
+    What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
+    """
 
     gid: int
     name: str
@@ -59,6 +78,8 @@ class Done:
     line: str
     sizes: tuple[int, ...]
     seconds: float
+    row: str
+    facts: Facts
 
 
 @lru_cache(maxsize=1)
@@ -68,62 +89,76 @@ def source_of(path: Path, face_index: int, location: tuple[tuple[str, float], ..
 
 
 @lru_cache(maxsize=1)
-def unicodes_of(path: Path, face_index: int, location: tuple[tuple[str, float], ...]) -> dict[str, list[int]]:
-    """The code points of each glyph that has any."""
-    found: dict[str, list[int]] = {}
-    for code, name in sorted(source_of(path, face_index, location).cmap.items()):
-        found.setdefault(name, []).append(code)
-    return found
-
-
-@lru_cache(maxsize=1)
 def bulk_reader(path: Path, face_index: int) -> BulkReader:
     """The short way's reader, made once a process."""
+    from ..express.reading import BulkReader
+
     return BulkReader(path, face_index)
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     """Convert and write glyphs, the short way where there is one. A glyph that cannot be converted fails alone.
 
+    Glyphs that are just a page of the gallery are written to it, too: now their drawings are in memory.
+
     Raises:
         OutputError: the output folder cannot be written to, which no other glyph would survive either.
     """
-    found = []
     started = time.perf_counter()
-    drawn = (
-        draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
-        if short_way(job)
-        else [None] * len(tasks)
-    )
+    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
     share = (time.perf_counter() - started) / len(tasks)
+    found, shown = [], []
     for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
-        found.append(work_one(job, task) if short is None else write_drawn(job, task, short, share))
+        done, glyph = work_one(job, task) if short is None else write_drawn(job, task, short, share)
+        found.append(done)
+        shown.append(glyph)
+    page = page_of(tasks)
+    if page is not None:
+        write_whole(f"{job.out}/{page_file(page)}", page_text(shown))
     return found
+
+
+def page_of(tasks: Sequence[Task]) -> int | None:
+    """The number of the gallery's page that shows just these glyphs, if one does."""
+    first = tasks[0].place
+    whole = len(tasks) == CHUNK and tasks[-1].place == first + CHUNK - 1 and first % CHUNK == 0
+    return first // CHUNK if whole else None
 
 
 def short_way(job: Job) -> bool:
     """Whether a run's glyphs can be converted in compiled chunks: plain drawings of a font that does not vary."""
-    source = source_of(job.path, job.face_index, job.location)
-    return job.spec.formats == ("svg",) and suits(job.spec.options) and isinstance(source, Font) and not source.axes
+    if job.spec.formats != ("svg",) or not job.static:
+        return False
+    from ..express.lane import suits
+
+    return suits(job.spec.options)
 
 
-def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> Done:
-    """Write what the short way has drawn."""
+def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
+    """Glyphs the short way."""
+    from ..express.lane import draw_chunk
+
+    return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
+
+
+def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
+    """Write what the short way has drawn; and the glyph as the gallery shows it."""
+    from ..express.lane import drawn_svg
+
     started = time.perf_counter()
-    source, options = source_of(job.path, job.face_index, job.location), job.spec.options
-    unicodes = unicodes_of(job.path, job.face_index, job.location).get(task.name, [])
-    outline = Outline(task.name, task.gid, tuple(unicodes), drawn.advance, (), source.metrics)
+    options = job.spec.options
+    outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
     document = drawn_svg(outline, drawn, options.precision, job.spec.view_box)
-    file = f"svg/{task.stem}.svg"
-    size = write_whole(f"{job.out}/{file}", document)
+    files = {"svg": f"svg/{task.stem}.svg"}
+    sizes = (write_whole(f"{job.out}/{files['svg']}", document),)
     contours = contours_text(drawn.measures, options)
-    line = manifest_line(task.name, task.gid, unicodes, drawn.advance, "ok", {"svg": file}, contours)
-    return Done(task.gid, task.name, "ok", line, (size,), seconds + time.perf_counter() - started)
+    done = finished(task, "ok", drawn.advance, files, sizes, contours, None, seconds + time.perf_counter() - started)
+    return done, glyph_text(drawing(drawn.path), files, contours, None)
 
 
-def work_one(job: Job, task: Task) -> Done:
-    """Convert and write one glyph."""
+def work_one(job: Job, task: Task) -> tuple[Done, str]:
+    """Convert and write one glyph; and the glyph as the gallery shows it."""
     started = time.perf_counter()
     files, written = {}, []
     try:
@@ -131,21 +166,42 @@ def work_one(job: Job, task: Task) -> Done:
         result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
         documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
     except Exception as error:
-        return failed(job, task, reason(error), time.perf_counter() - started)
+        why = reason(error)
+        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), {}, "", why)
     for name, document in documents.items():
         files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
         written.append(write_whole(f"{job.out}/{files[name]}", document))
     contours = contours_text((contour.measures for contour in result.contours), job.spec.options)
     status = "ok" if files else "empty"
-    line = manifest_line(task.name, task.gid, outline.unicodes, outline.advance, status, files, contours)
-    return Done(task.gid, task.name, status, line, tuple(written), time.perf_counter() - started)
+    seconds = time.perf_counter() - started
+    done = finished(task, status, outline.advance, files, tuple(written), contours, None, seconds)
+    texts = {name: document for name, document in documents.items() if isinstance(document, str)}
+    return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
 
 
-def failed(job: Job, task: Task, error: str, seconds: float = 0.0) -> Done:
+def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
     """A glyph that could not be converted, or that no worker lived to tell of."""
-    unicodes = unicodes_of(job.path, job.face_index, job.location).get(task.name, [])
-    line = manifest_line(task.name, task.gid, unicodes, None, "failed", {}, "", error)
-    return Done(task.gid, task.name, "failed", line, (), seconds)
+    return finished(task, "failed", None, {}, (), "", error, seconds)
+
+
+def finished(
+    task: Task,
+    status: str,
+    advance: float | None,
+    files: Mapping[str, str],
+    sizes: tuple[int, ...],
+    contours: str,
+    error: str | None,
+    seconds: float,
+) -> Done:
+    """What is told of a glyph; ``contours`` is what :func:`.entry.contours_text` gave."""
+    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
+    entry = json.loads(line)
+    row = table_row(task.name, task.gid, entry["unicodes"], entry["advance"], status, entry["contours"])
+    return Done(
+        task.gid, task.name, status, line, sizes, seconds, as_json(row),
+        facts_of(entry["contours"]),
+    )  # fmt: skip
 
 
 def read(job: Job, task: Task) -> Outline:
