@@ -1,7 +1,7 @@
 """The method in its plainest form: NumPy, ``numpy.roots`` for the footpoints as in the paper, one vertex at a time.
 
-This is what the compiled code has to agree with, and the place to read the algorithms. It is slow: some
-100 µs a footpoint.
+This is what the compiled code has to agree with, and the place to read the algorithms. It is slow: some 0.3 ms a
+footpoint.
 """
 
 from __future__ import annotations

@@ -23,3 +23,5 @@ SHORT, LESS_SHORT = STRIDE // 8 - 2 * HALO, STRIDE // 4 - 2 * HALO
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (k * STRIDE for k in range(16))
 FIELDS = 16
 BLOCK = FIELDS * STRIDE
+SCRATCH = 21
+"""Fields of the scratch block, of which ``lemma2`` needs the most."""

@@ -30,11 +30,10 @@ from .select import select
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
     np.uint64(k * STRIDE) for k in range(FIELDS)
 )
-# Fields of the scratch block: derivatives by control points; E, V, W, Z and y on the main side; the other side.
-DX, DY, WX, WY, SEX, SEY, SVX, SVY, SWX, SWY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
-    np.uint64(k * STRIDE) for k in range(21)
+# Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
+DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
+    np.uint64(k * STRIDE) for k in range(19)
 )
-SCRATCH = 21
 SIXTH = 1 / 6
 ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
 
@@ -85,28 +84,19 @@ def _taylor(B, S, m, step):
         S[DY + j] = r * (B[PY + j] - B[PY + j - step])
     for j in range(step, np.uint64(m) + THREE * step):
         s = B[HALF + j]
-        S[WX + j] = s * (S[DX + j + step] - S[DX + j])
-        S[WY + j] = s * (S[DY + j + step] - S[DY + j])
+        S[SWX + j] = s * (S[DX + j + step] - S[DX + j])
+        S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
     for j in range(TWO * step, np.uint64(m) + TWO * step):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
         ex = B[PX + j] - B[QX + j] + (a * S[DX + j + step] - b * S[DX + j])
         ey = B[PY + j] - B[QY + j] + (a * S[DY + j + step] - b * S[DY + j])
         vx = (1.0 - lam) * S[DX + j] + lam * S[DX + j + step]
         vy = (1.0 - lam) * S[DY + j] + lam * S[DY + j + step]
-        wx, wy = S[WX + j], S[WY + j]
-        right, left = B[THIRD + j], B[THIRD + j - step]
-        rx, ry = (S[WX + j + step] - wx) * right, (S[WY + j + step] - wy) * right
-        lx, ly = (S[WX + j - step] - wx) * left, (S[WY + j - step] - wy) * left
         low, high = B[LOW + j], B[HIGH + j]
         falling = ex * vx + ey * vy <= 0.0
         forward = (low >= 0.0) | ((high > 0.0) & falling)
         side = select(forward, 1.0, -1.0)
         S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j] = ex, ey, side * vx, side * vy
-        S[SWX + j], S[SWY + j] = wx, wy
-        S[SZX + j] = select(forward, rx, lx)
-        S[SZY + j] = select(forward, ry, ly)
-        S[OZX + j] = select(forward, lx, rx)
-        S[OZY + j] = select(forward, ly, ry)
         near = select(forward, low, -high)
         far = select(forward, high, -low)
         near0 = select(near > 0.0, near, 0.0)
@@ -116,6 +106,16 @@ def _taylor(B, S, m, step):
         y = select(y > near0, y, near0)
         S[SY + j] = select(y < far, y, far)
         S[DONE + j] = select(far <= near0, 1.0, 0.0)
+    for j in range(TWO * step, np.uint64(m) + TWO * step):  # one loop with the above would not become SIMD
+        wx, wy = S[SWX + j], S[SWY + j]
+        right, left = B[THIRD + j], B[THIRD + j - step]
+        rx, ry = (S[SWX + j + step] - wx) * right, (S[SWY + j + step] - wy) * right
+        lx, ly = (S[SWX + j - step] - wx) * left, (S[SWY + j - step] - wy) * left
+        forward = S[SIDE + j] > 0.0
+        S[SZX + j] = select(forward, rx, lx)
+        S[SZY + j] = select(forward, ry, ly)
+        S[OZX + j] = select(forward, lx, rx)
+        S[OZY + j] = select(forward, ly, ry)
 
 
 @compiled

@@ -11,9 +11,8 @@ import numpy as np
 
 from ..reference import SETTLED, TIE_DISTANCE
 from . import fields
-from .fields import BLOCK, HALO, LANES, STRIDE
+from .fields import BLOCK, HALO, LANES, SCRATCH, STRIDE
 from .footpoint import compiled
-from .lanes import SCRATCH
 from .layout import (
     BAD_KNOTS,
     BAD_POLYGON,
