@@ -13,7 +13,7 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .bspline import Spline
 
-jit = nb.njit(cache=True, error_model="numpy", fastmath={"contract"})
+jit = nb.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 
 PEAK_SHARE = 0.9
 """As in :mod:`.intervals`. It is asked of arcs of two spans, whose one free vertex has a peak of 1/2 at most.

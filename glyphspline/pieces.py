@@ -6,6 +6,7 @@ get theirs from :func:`glyphspline.interpolate_many`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -129,18 +130,21 @@ def cut_contours(flat: Flat, settings: Settings) -> tuple[Chains, Pieces]:
     )
 
 
-def cut_closer(chains: Chains, pieces: Pieces, poor: BoolArray, extra: int, rounds: int, settings: Settings) -> Pieces:
-    """Pieces with others in the place of poor ones: an arc of ``extra`` spans more, or the source's own segments.
+def cut_closer(
+    chains: Chains, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
+) -> Pieces:
+    """Pieces with others in the place of poor ones: arcs fitted more closely, or else the source's own segments.
 
     Few pieces are poor, so that this is the one part that is not compiled.
 
     Args:
         poor: (P,) which pieces have failed.
-        extra: spans to add; 0 to take the source's segments at once. rounds: most Gauss-Newton steps.
+        tries: what is tried until it succeeds: how many spans to add, and the share of ``settings.near`` allowed.
+        rounds: most Gauss-Newton steps.
     """
     parts, done = [], 0
     for q in np.flatnonzero(poor).tolist():
-        parts += [_part(pieces, done, q), _closer(chains, pieces.where[q], extra, rounds, settings)]
+        parts += [_part(pieces, done, q), _closer(chains, pieces.where[q], tries, rounds, settings)]
         done = q + 1
     parts.append(_part(pieces, done, len(poor)))
     where, vertices, tangents = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3))
@@ -154,18 +158,22 @@ def _part(pieces: Pieces, a: int, b: int) -> Pieces:
     return Pieces(where[a:b], starts[a : b + 1], vertices[starts[a] : starts[b]], tangents[a:b])
 
 
-def _closer(chains: Chains, row: IntArray, extra: int, rounds: int, settings: Settings) -> Pieces:
+def _closer(
+    chains: Chains, row: IntArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
+) -> Pieces:  # fmt: skip
     """What takes the place of one piece."""
-    c, i, j, k = row.tolist()
+    c, i, j, spans = row.tolist()
     a, b = chains.offsets[c : c + 2].tolist()
     cubics, degrees = chains.cubics[a:b], chains.degrees[a:b]
-    k = max(k, 1) + extra
-    if extra and k <= FINEST:
-        flipped, near = b - a if chains.flipped[c] else 0, 0.9 * settings.near
-        i_there, j_there = (flipped - j, flipped - i) if flipped else (i, j)
-        there = (flip(cubics), degrees[::-1].copy()) if flipped else (cubics, degrees)
-        joints = find_joints(*there, settings.near, settings.angle, settings.line)
-        p, tangents = np.empty((k + 1, 2)), np.empty((2, 2))
+    flipped = b - a if chains.flipped[c] else 0
+    i_there, j_there = (flipped - j, flipped - i) if flipped else (i, j)
+    there = (flip(cubics), degrees[::-1].copy()) if flipped else (cubics, degrees)
+    joints = find_joints(*there, settings.near, settings.angle, settings.line)
+    p, tangents = np.empty((FINEST + 1, 2)), np.empty((2, 2))
+    for extra, share in tries:
+        k, near = max(spans, 1) + extra, share * settings.near
+        if k > FINEST:
+            break
         error = fit_between(
             joints, i_there, j_there, k, near, settings.margin, settings.residual, rounds, p, tangents[0], tangents[1]
         )

@@ -39,8 +39,11 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps an arc."""
 
-ATTEMPTS = 3
-"""Refinements of arcs that fail the certificate; the last one takes the source's own segments."""
+TRIES = ((0, 0.8), (1, 0.9), (2, 0.9))
+"""What is tried for arcs that fail the certificate: spans to add, and the share of the samples' tolerance they may use.
+
+In the end the source's own segments take their place.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +118,8 @@ def unflattened(flat: Flat) -> list[Contour]:
 def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:
     """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
 
-    Arcs that miss it although their samples were near enough get more spans, and in the end the source's own
-    segments, of which each is an arc of one span.
+    Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end
+    become the source's own segments, of which each is an arc of one span.
     """
     check_options(
         options.variant, 3, options.margin, options.fallback, options.residual_tolerance, options.max_iterations,
@@ -130,12 +133,11 @@ def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> 
     )  # fmt: skip
     chains, pieces = cut_contours(contours, settings)
     fit = _certified(chains, pieces, options, tolerance)
-    for attempt in range(1, ATTEMPTS + 1):
+    for attempt in range(len(TRIES) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        extra = attempt if attempt < ATTEMPTS else 0
-        pieces = cut_closer(chains, fit.pieces, poor, extra, ROUNDS["best"], settings)
+        pieces = cut_closer(chains, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
         fit = _certified(chains, pieces, options, tolerance)
     return fit
 

@@ -131,7 +131,7 @@ SETTINGS = Settings(0.9, np.radians(12.0), 20.0, 0.02, 0.005, 4, 1, 2)
 def test_pieces_that_all_fail_become_the_source_itself() -> None:
     contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
     chains, pieces = cut_contours(flattened(contours), SETTINGS)
-    exact = cut_closer(chains, pieces, np.ones(len(pieces.where), dtype=np.bool_), 0, 6, SETTINGS)
+    exact = cut_closer(chains, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), 6, SETTINGS)
     curve = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
     bounds, _ = certify(chains, exact, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
@@ -145,7 +145,7 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     chains, pieces = cut_contours(flattened(contours), SETTINGS)
     q = int((pieces.where[:, 2] - pieces.where[:, 1]).argmax())
     poor = np.arange(len(pieces.where)) == q
-    closer = cut_closer(chains, pieces, poor, 2, 6, SETTINGS)
+    closer = cut_closer(chains, pieces, poor, [(2, 0.9)], 6, SETTINGS)
     assert len(closer.where) == len(pieces.where)
     assert closer.where[q].tolist() == [*pieces.where[q, :3], pieces.where[q, 3] + 2]
     for k in np.flatnonzero(~poor):
