@@ -70,7 +70,7 @@ def convert_font(
     tasks = tasks_of(source, glyphs, record.where)
     job = Job(
         source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
-        source.metrics, isinstance(source, Font) and not source.axes,
+        source.metrics, type(source) is Font and not source.axes,
     )  # fmt: skip
     finished = record.finished()
     left = [task for task in tasks if task.gid not in finished]
