@@ -103,3 +103,13 @@ def test_a_gallery_that_could_not_be_written_is_made_up_for(finished: Path, font
     (tmp_path / "index.html").rmdir()
     assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == 0
     assert content(tmp_path) == content(finished)
+
+
+def test_a_page_that_cannot_be_written_ends_a_run_that_can_go_on(finished: Path, font: Font, tmp_path: Path) -> None:
+    blocked = tmp_path / page_file(2)
+    blocked.mkdir(parents=True)
+    with pytest.raises(OutputError, match=blocked.name):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2)
+    blocked.rmdir()
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2).done >= CHUNK
+    assert content(tmp_path) == content(finished)

@@ -18,8 +18,8 @@ from typing import Any
 from ..errors import GlyphsplineError
 from ..report.data import FOLDER
 from .files import write_whole
+from .job import Job, Task
 from .pool import WorkerLostError
-from .work import Job, Task
 
 Files = dict[str, bytes]
 

@@ -41,10 +41,10 @@ def manifest_line(
     """One glyph's line, without the line end; ``contours`` is what :func:`contours_text` gave."""
     codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
     paths = ",".join([f'"{name}":{quoted(path)}' for name, path in files.items()])
-    why = "null" if error is None else quoted(error)
+    said = "null" if error is None else quoted(error)
     return (
         f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{paths}}},"contours":[{contours}],"error":{why}}}'
+        f'"status":"{status}","files":{{{paths}}},"contours":[{contours}],"error":{said}}}'
     )
 
 
@@ -52,13 +52,16 @@ def contours_text(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
         return ",".join([_TEMPLATE % tuple(map(number, _ALL(item))) for item in measures])
-    return ",".join(map(_few, measures))
+    return solved_text(map(_FEW, measures))
 
 
-def _few(item: Measures) -> str:
-    """What the interpolation itself knows of a contour."""
-    values = _FEW(item)
-    *counts, residual, converged, rate, fallbacks = values
+def solved_text(rows: Iterable[Sequence[float]]) -> str:
+    """The same of what the interpolation itself knows: the first ``SOLVERS`` measures of each contour."""
+    return ",".join(map(_solved, rows))
+
+
+def _solved(row: Sequence[float]) -> str:
+    *counts, residual, converged, rate, fallbacks = row
     if isfinite(residual) and isfinite(rate):
         return _QUICK % (*counts, residual, "true" if converged else "false", rate, fallbacks)
-    return _TEMPLATE % (*map(number, values), *["null"] * (len(NAMES) - SOLVERS))
+    return _TEMPLATE % (*map(number, row), *["null"] * (len(NAMES) - SOLVERS))

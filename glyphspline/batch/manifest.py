@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from .files import PARTIAL, OutputError, sizes
+from .job import Done
 from .spec import SUFFIXES
 from .summary import Facts, Summary
-from .work import Done
 
 MANIFEST = "manifest.jsonl"
 JOURNAL = ".journal.jsonl"

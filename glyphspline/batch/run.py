@@ -17,12 +17,12 @@ from ..readers import Font, Source
 from ..report.data import FOLDER, STATUS, as_json
 from ..report.gallery import Gallery, row_of, shown
 from .files import OutputError, file_names, make_folder, remove_partials
+from .job import Job, Task, failed, page_of, survey, work
 from .manifest import JOURNAL, MANIFEST, Journal, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
 from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
 from .summary import Facts, Summary, facts_of
 from .whole import check_possible, missing, write_fonts
-from .work import Job, Task, failed, page_of, survey, work
 
 SCALE_SAMPLE = 200
 """Glyphs from which the shared curvature scale is taken, evenly spread over those selected."""
@@ -70,7 +70,7 @@ def convert_font(
     tasks = tasks_of(source, glyphs, record.where)
     job = Job(
         source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
-        source.metrics, isinstance(source, Font) and not source.axes,
+        source.metrics, type(source) is Font and not source.axes,
     )  # fmt: skip
     finished = record.finished()
     left = [task for task in tasks if task.gid not in finished]

@@ -15,7 +15,7 @@ from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for
 
 if TYPE_CHECKING:
-    from .work import Job, Task
+    from .job import Job, Task
 
 LARGEST_CHUNK = CHUNK
 """Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar. As many

@@ -1,85 +1,36 @@
 """What a worker does: glyph after glyph from outline to files and a manifest line.
 
-The font is opened by the first glyph that needs more of it than HarfBuzz draws. The compiled short way is imported in
-workers alone; the process that started them has no use for it.
+The font is opened by the first glyph that needs more of it than HarfBuzz draws.
 """
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
+from ..express.lane import Drawn, draw_chunk, drawn_svg, suits
+from ..express.reading import BulkReader
 from ..glyph import GlyphResult
-from ..outline import FontMetrics, Outline
+from ..outline import Outline
 from ..readers import Source, open_source
-from ..report.data import CHUNK, as_json, glyph_text, page_file, page_text, table_row
+from ..report.data import glyph_text, page_file, page_text
 from ..report.drawings import drawing, drawing_of
 from ..writers.curvature_map import combs, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text, manifest_line
+from .entry import contours_text
 from .files import write_whole
+from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
 from .spec import RESULTS, SUFFIXES, RunSpec
 from .store import to_text
-from .summary import Facts, facts_of
-
-if TYPE_CHECKING:
-    from ..express.lane import Drawn
-    from ..express.reading import BulkReader
-
-
-@dataclass(frozen=True)
-class Job:
-    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs.
-
-    ``static`` says that it is a font file, and does not vary.
-    """
-
-    path: Path
-    face_index: int
-    location: tuple[tuple[str, float], ...]
-    out: Path
-    spec: RunSpec
-    metrics: FontMetrics
-    static: bool
-    curvature_scale: float | None = None
-
-
-class Task(NamedTuple):
-    """One glyph: its name, index and code points, its file name without suffix, and its place in the manifest."""
-
-    gid: int
-    name: str
-    stem: str
-    unicodes: tuple[int, ...]
-    place: int
-
-
-class Done(NamedTuple):
-    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took.
-
-    What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
-    """
-
-    gid: int
-    name: str
-    status: str
-    line: str
-    sizes: tuple[int, ...]
-    seconds: float
-    row: str
-    facts: Facts
 
 
 @lru_cache(maxsize=1)
@@ -91,8 +42,6 @@ def source_of(path: Path, face_index: int, location: tuple[tuple[str, float], ..
 @lru_cache(maxsize=1)
 def bulk_reader(path: Path, face_index: int) -> BulkReader:
     """The short way's reader, made once a process."""
-    from ..express.reading import BulkReader
-
     return BulkReader(path, face_index)
 
 
@@ -119,33 +68,18 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     return found
 
 
-def page_of(tasks: Sequence[Task]) -> int | None:
-    """The number of the gallery's page that shows just these glyphs, if one does."""
-    first = tasks[0].place
-    whole = len(tasks) == CHUNK and tasks[-1].place == first + CHUNK - 1 and first % CHUNK == 0
-    return first // CHUNK if whole else None
-
-
 def short_way(job: Job) -> bool:
     """Whether a run's glyphs can be converted in compiled chunks: plain drawings of a font that does not vary."""
-    if job.spec.formats != ("svg",) or not job.static:
-        return False
-    from ..express.lane import suits
-
-    return suits(job.spec.options)
+    return job.spec.formats == ("svg",) and job.static and suits(job.spec.options)
 
 
 def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
     """Glyphs the short way."""
-    from ..express.lane import draw_chunk
-
     return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
 
 
 def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
     """Write what the short way has drawn; and the glyph as the gallery shows it."""
-    from ..express.lane import drawn_svg
-
     started = time.perf_counter()
     options = job.spec.options
     outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
@@ -177,31 +111,6 @@ def work_one(job: Job, task: Task) -> tuple[Done, str]:
     done = finished(task, status, outline.advance, files, tuple(written), contours, None, seconds)
     texts = {name: document for name, document in documents.items() if isinstance(document, str)}
     return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
-
-
-def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
-    """A glyph that could not be converted, or that no worker lived to tell of."""
-    return finished(task, "failed", None, {}, (), "", error, seconds)
-
-
-def finished(
-    task: Task,
-    status: str,
-    advance: float | None,
-    files: Mapping[str, str],
-    sizes: tuple[int, ...],
-    contours: str,
-    error: str | None,
-    seconds: float,
-) -> Done:
-    """What is told of a glyph; ``contours`` is what :func:`.entry.contours_text` gave."""
-    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
-    entry = json.loads(line)
-    row = table_row(task.name, task.gid, entry["unicodes"], entry["advance"], status, entry["contours"])
-    return Done(
-        task.gid, task.name, status, line, sizes, seconds, as_json(row),
-        facts_of(entry["contours"]),
-    )  # fmt: skip
 
 
 def read(job: Job, task: Task) -> Outline:

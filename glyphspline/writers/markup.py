@@ -124,7 +124,7 @@ def union(a: Box, b: Box | None) -> Box:
 def view_box_value(box: Box, precision: int) -> str:
     """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
     unit = 10.0**precision
-    left, bottom = box[0] * unit // 1 / unit, box[1] * unit // 1 / unit
-    right, top = -(-box[2] * unit // 1) / unit, -(-box[3] * unit // 1) / unit
+    left, bottom = np.floor(box[0] * unit) / unit, np.floor(box[1] * unit) / unit
+    right, top = np.ceil(box[2] * unit) / unit, np.ceil(box[3] * unit) / unit
     values = (left, -top, max(right - left, 1.0), max(top - bottom, 1.0))
     return " ".join(number(value, precision) for value in values)

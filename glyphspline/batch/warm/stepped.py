@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...convert import convert
-from ...express import lane as lane
-from ...express import reading as reading
 from ...express.contours import cubics_of
 from ...express.curves import paths
 from ...express.stepping import stepped_points, uneven
