@@ -1,4 +1,4 @@
-"""One contour's way through the smooth mode: fitted, measured, and fitted again if it crosses itself."""
+"""One contour's way through the smooth mode by count or by step: sampled, interpolated, measured."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .crossings import overshoot, self_crossings
 from .errors import GlyphsplineError
-from .fit import Fit, fit_smooth
+from .fit import Fit, fit_even
 from .glyph import ContourResult, Measures, Options
 from .measure import shape
 from .outline import Contour
@@ -14,19 +14,12 @@ from .result import Interpolation
 
 
 def convert_contour(contour: Contour, options: Options, tolerance: float) -> ContourResult:
-    """Fit and measure one contour; ``tolerance`` is in font units.
-
-    A result that crosses itself where its source did not is fitted again more closely, and flagged if that is no cure.
-    """
+    """Interpolate and measure one contour; ``tolerance``, in font units, is what its distance is compared with."""
     if not np.isfinite(contour.points).all():
         raise GlyphsplineError("the outline has a coordinate that is not finite")
-    crossings = self_crossings(contour.cubics())
-    for share in CLOSER:
-        fit = fit_smooth(contour, options, share * tolerance)
-        curve = Contour.from_segments(fit.result.spline.to_bezier())
-        new = self_crossings(curve.cubics()) - crossings
-        if new <= 0 or options.step is not None or options.count is not None:
-            break
+    fit = fit_even(contour, options, tolerance)
+    curve = Contour.from_segments(fit.result.spline.to_bezier())
+    new = self_crossings(curve.cubics()) - self_crossings(contour.cubics())
     measures = _measures(contour, fit, curve, tolerance, max(new, 0))
     return ContourResult(contour, fit.polygon, (fit.result,), curve, measures)
 

@@ -52,6 +52,10 @@ def _converted(
         from .sharp_contours import convert_sharp
 
         return convert_sharp(contours, options, tolerance, outline.metrics.units_per_em)
+    if options.step is None and options.count is None:
+        from .smooth_contours import convert_smooth
+
+        return convert_smooth(contours, options, tolerance)
     from .contours import convert_contour
 
     results: list[ContourResult] = []

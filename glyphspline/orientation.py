@@ -6,7 +6,6 @@ import numpy as np
 
 from .arcs import jit
 from .arrays import FloatArray
-from .outline import Contour
 
 
 @jit
@@ -43,12 +42,3 @@ def runs_backwards(cubics: FloatArray) -> bool:
 def flip(cubics: FloatArray) -> FloatArray:
     """The same chain of cubics run the other way, beginning at the same point."""
     return cubics[::-1, ::-1].copy()
-
-
-def canonical(contour: Contour) -> tuple[Contour, bool]:
-    """The contour begun at its farthest joint and run in the direction of its shape, and whether that flipped it."""
-    flipped = runs_backwards(contour.cubics())
-    if flipped:
-        contour = contour.reversed()
-    k = int(farthest_joint(contour.points[contour.offsets]))
-    return Contour(np.roll(contour.points, -contour.offsets[k], axis=0), np.roll(contour.degrees, -k)), flipped
