@@ -28,8 +28,8 @@ def project(
 ) -> float:  # fmt: skip
     """Pair samples Q[:n] of the outline with points of the curve, in order; the largest distance.
 
-    ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends. If ``known``, they
-    hold the feet on a curve near this one, to begin from.
+    ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends. If
+    ``known``, they hold the feet on a curve near this one, to begin from.
     """
     s, at = 0, 0.0
     worst = 0.0
