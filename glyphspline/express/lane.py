@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
-from ..fit import CERTAIN_RATIO
 from ..glyph import Measures, Options
 from ..outline import Contour, Outline
 from ..writers.markup import Box, ink_bounds
