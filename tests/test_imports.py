@@ -28,7 +28,7 @@ ROOMS = [
         "arcs",
     },
     {"outline", "orientation", "sampling"},
-    {"measure", "curvature", "distance", "spans", "crossings", "continuity", "joints", "arcfit", "frugal"},
+    {"measure", "combing", "curvature", "distance", "spans", "crossings", "continuity", "joints", "arcfit", "frugal"},
     {"glyph"},
     {"fit", "sharp", "contours", "overlaps", "convert"},
     {"readers", "writers"},

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from json.encoder import encode_basestring_ascii as quoted
 from operator import attrgetter
 
 from ..glyph import Measures, Options
@@ -33,10 +33,11 @@ def manifest_line(
 ) -> str:
     """One glyph's line, without the line end; ``contours`` is what :func:`contours_text` gave."""
     codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
-    paths = ",".join([f'"{name}":{json.dumps(path)}' for name, path in files.items()])
+    paths = ",".join([f'"{name}":{quoted(path)}' for name, path in files.items()])
+    said = "null" if error is None else quoted(error)
     return (
-        f'{{"glyph":{json.dumps(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{paths}}},"contours":[{contours}],"error":{json.dumps(error)}}}'
+        f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
+        f'"status":"{status}","files":{{{paths}}},"contours":[{contours}],"error":{said}}}'
     )
 
 
@@ -44,7 +45,12 @@ def contours_text(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
         return ",".join([_TEMPLATE % tuple(map(number, _ALL(item))) for item in measures])
-    return ",".join([_FEW_TEMPLATE % tuple(map(number, _FEW(item))) for item in measures])
+    return solved_text(map(_FEW, measures))
+
+
+def solved_text(rows: Iterable[Sequence[float]]) -> str:
+    """The same of what the interpolation itself knows: the first ``SOLVERS`` measures of each contour."""
+    return ",".join([_FEW_TEMPLATE % tuple(map(number, row)) for row in rows])
 
 
 def number(value: float | None) -> str:

@@ -13,15 +13,15 @@ import numpy as np
 from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
-from ..express.lane import Drawn, draw_chunk, drawn_svg, suits
+from ..express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, suits
 from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
 from ..readers import Font, Source, open_source
-from ..writers.curvature_map import combs, to_curvature_svg
+from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text, manifest_line
+from .entry import contours_text, manifest_line, solved_text
 from .files import write_whole
 from .pool import sign_of_life
 from .spec import RESULTS, SUFFIXES, RunSpec
@@ -90,36 +90,43 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     """
     found = []
     started = time.perf_counter()
-    drawn = (
-        draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
-        if short_way(job)
-        else [None] * len(tasks)
-    )
+    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
     share = (time.perf_counter() - started) / len(tasks)
+    metrics = source_of(job.path, job.face_index, job.location).metrics
+    unicodes = unicodes_of(job.path, job.face_index, job.location)
     for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
-        found.append(work_one(job, task) if short is None else write_drawn(job, task, short, share))
+        if short is None:
+            found.append(work_one(job, task))
+        else:
+            outline = Outline(task.name, task.gid, tuple(unicodes.get(task.name, ())), short.advance, (), metrics)
+            found.append(write_drawn(job, task, outline, short, share))
     return found
 
 
 def short_way(job: Job) -> bool:
-    """Whether a run's glyphs can be converted in compiled chunks: plain drawings of a font that does not vary."""
+    """Whether a run's glyphs can be converted in compiled chunks: drawings of a font that does not vary."""
     source = source_of(job.path, job.face_index, job.location)
-    return job.spec.formats == ("svg",) and suits(job.spec.options) and isinstance(source, Font) and not source.axes
+    drawable = set(job.spec.folders) <= SHORT.keys()
+    return drawable and suits(job.spec.options) and isinstance(source, Font) and not source.axes
 
 
-def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> Done:
-    """Write what the short way has drawn."""
+def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
+    """Convert glyphs the short way, all at once."""
+    return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
+
+
+def write_drawn(job: Job, task: Task, outline: Outline, drawn: Drawn, seconds: float) -> Done:
+    """Write what the short way has drawn; of ``outline`` everything but its contours is needed."""
     started = time.perf_counter()
-    source, options = source_of(job.path, job.face_index, job.location), job.spec.options
-    unicodes = unicodes_of(job.path, job.face_index, job.location).get(task.name, [])
-    outline = Outline(task.name, task.gid, tuple(unicodes), drawn.advance, (), source.metrics)
-    document = drawn_svg(outline, drawn, options.precision, job.spec.view_box)
-    file = f"svg/{task.stem}.svg"
-    size = write_whole(f"{job.out}/{file}", document)
-    contours = contours_text(drawn.measures, options)
-    line = manifest_line(task.name, task.gid, unicodes, drawn.advance, "ok", {"svg": file}, contours)
-    return Done(task.gid, task.name, "ok", line, (size,), seconds + time.perf_counter() - started)
+    files, sizes = {}, []
+    for name in WRITERS:
+        if name in job.spec.folders:
+            files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
+            sizes.append(write_whole(f"{job.out}/{files[name]}", SHORT[name](job, outline, drawn)))
+    contours = solved_text(drawn.solved)
+    line = manifest_line(task.name, task.gid, outline.unicodes, outline.advance, "ok", files, contours)
+    return Done(task.gid, task.name, "ok", line, tuple(sizes), seconds + time.perf_counter() - started)
 
 
 def work_one(job: Job, task: Task) -> Done:
@@ -222,11 +229,36 @@ WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
 }
 
 
+def _drawn_source(job: Job, outline: Outline, drawn: Drawn) -> str:
+    return drawn_source(outline, drawn, job.spec.options.precision)
+
+
+def _drawn_svg(job: Job, outline: Outline, drawn: Drawn) -> str:
+    return drawn_svg(outline, drawn, job.spec.options.precision, job.spec.view_box)
+
+
+def _drawn_map(job: Job, outline: Outline, drawn: Drawn) -> str:
+    assert job.curvature_scale is not None
+    return drawn_map(outline, drawn, job.curvature_scale)
+
+
+SHORT: dict[str, Callable[[Job, Outline, Drawn], str]] = {
+    "source": _drawn_source,
+    "svg": _drawn_svg,
+    "curvature": _drawn_map,
+}
+
+
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
     """Combs of a few glyphs, for the scale that all curvature maps of the run share; what fails is left out."""
     found: list[Comb] = []
-    for task in tasks:
+    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
+    em = source_of(job.path, job.face_index, job.location).metrics.units_per_em
+    for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
+        if short is not None:
+            found += combs_of(*short.curves, em)
+            continue
         try:
             outline = read(job, task)
             found += combs(convert(outline, job.spec.fitting(outline.metrics.units_per_em)))

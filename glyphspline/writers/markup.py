@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
+from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..outline import Contour, Outline
+from .figures import figures
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top in font units, y up."""
@@ -60,23 +63,59 @@ def data_attributes(outline: Outline, precision: int) -> str:
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
     """All contours as one SVG path: absolute lines, quadratics and cubics, (x, y) written as (x, -y)."""
-    return "".join(_contour_data(contour, precision) for contour in contours if len(contour))
+    drawn = [contour for contour in contours if len(contour)]
+    if not drawn:
+        return ""
+    points, degrees = (np.concatenate(parts) for parts in zip(*((c.points, c.degrees) for c in drawn), strict=True))
+    return curves_data(points, degrees, np.cumsum([0, *map(len, drawn)], dtype=np.int64), precision)
+
+
+def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> str:
+    """The same of contours one after the other: points (N, 2), degrees (m,), and (c + 1,) where contours begin."""
+    # Here and not above, as it brings the compiler with it: the package opens without.
+    from .path_text import curves_text
+
+    text = curves_text(points, degrees, contours, *figures(precision))
+    if text is not None:
+        return str(text.tobytes().decode("ascii"))
+    ends = np.concatenate([[0], np.cumsum(degrees)])[contours]
+    parts = [Contour(points[ends[k] : ends[k + 1]], degrees[a:b]) for k, (a, b) in enumerate(pairwise(contours))]
+    return "".join(_contour_data(part, precision) for part in parts)
 
 
 def _contour_data(contour: Contour, precision: int) -> str:
+    """One contour with numbers of any size."""
     closed = np.concatenate([contour.points, contour.points[:1]])
     degrees = contour.degrees.tolist()
     if degrees[-1] == 1:  # Z draws the last line
         closed, degrees = closed[:-1], degrees[:-1]
     template = f"M{NUMBER} {NUMBER}" + "".join([_COMMANDS[d] for d in degrees]) + "Z"
-    # One % for the whole contour: number by number takes three times as long. Adding 0.0 turns -0.0 into 0.0.
     return template % tuple((np.round(closed * (1, -1), precision) + 0.0).ravel().tolist())
 
 
 def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
     """Points (k, 2) joined by straight lines, as SVG path data; y flipped."""
+    return polylines_data([points], precision, closed=[closed])
+
+
+def polylines_data(parts: Sequence[FloatArray], precision: int, *, closed: Sequence[bool]) -> str:
+    """The same of several chains of points, each closed or not."""
+    from .path_text import polylines_text
+
+    if not parts:
+        return ""
+    ends = np.cumsum([0, *map(len, parts)], dtype=np.int64)
+    text = polylines_text(np.concatenate(parts), ends, np.array(closed, dtype=np.bool_), *figures(precision))
+    if text is not None:
+        return str(text.tobytes().decode("ascii"))
+    texts = [_polyline_data(part, precision) + ("Z" if end else "") for part, end in zip(parts, closed, strict=True)]
+    return "".join(texts)
+
+
+def _polyline_data(points: FloatArray, precision: int) -> str:
+    """One chain with numbers of any size."""
     values = (np.round(points * (1, -1), precision) + 0.0).ravel().tolist()
-    return "M" + " ".join([NUMBER] * len(values)) % tuple(values) + ("Z" if closed else "")
+    return "M" + " ".join([NUMBER] * len(values)) % tuple(values)
 
 
 def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
@@ -92,28 +131,13 @@ def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
 
 def ink_bounds(contours: Iterable[Contour]) -> Box | None:
     """The tight box around all contours; None if there is nothing."""
-    points = [_extreme_points(contour.cubics()) for contour in contours if len(contour)]
-    if not points:
+    from .bounds import ink_box
+
+    pieces = [contour.cubics() for contour in contours if len(contour)]
+    if not pieces:
         return None
-    every = np.concatenate(points)
-    (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
-    return float(left), float(bottom), float(right), float(top)
-
-
-def _extreme_points(pieces: FloatArray) -> FloatArray:
-    """(4m, 2): for each cubic and each axis, its ends and the values where the derivative is zero."""
-    p0, p1, p2, p3 = np.moveaxis(pieces, 1, 0)
-    a, half_b, c = p3 - 3 * p2 + 3 * p1 - p0, p2 - 2 * p1 + p0, p1 - p0
-    root = np.sqrt(np.maximum(half_b * half_b - a * c, 0.0))
-    # The stable pair q/a and c/q: neither loses digits when a is small, as on a line or a quadratic raised.
-    q = -(half_b + np.where(half_b < 0, -root, root))
-    values = [p0, p3]
-    for numerator, denominator in ((q, a), (c, q)):
-        x = np.divide(numerator, denominator, out=np.zeros_like(q), where=np.abs(denominator) > np.abs(numerator))
-        x = np.clip(x, 0.0, 1.0)
-        y = 1 - x
-        values.append(y**3 * p0 + 3 * y * y * x * p1 + 3 * y * x * x * p2 + x**3 * p3)
-    return np.concatenate(values)
+    left, bottom, right, top = ink_box(np.concatenate(pieces)).tolist()
+    return left, bottom, right, top
 
 
 def union(a: Box, b: Box | None) -> Box:
@@ -124,7 +148,7 @@ def union(a: Box, b: Box | None) -> Box:
 def view_box_value(box: Box, precision: int) -> str:
     """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
     unit = 10.0**precision
-    left, bottom = np.floor(box[0] * unit) / unit, np.floor(box[1] * unit) / unit
-    right, top = np.ceil(box[2] * unit) / unit, np.ceil(box[3] * unit) / unit
+    left, bottom = math.floor(box[0] * unit) / unit, math.floor(box[1] * unit) / unit
+    right, top = math.ceil(box[2] * unit) / unit, math.ceil(box[3] * unit) / unit
     values = (left, -top, max(right - left, 1.0), max(top - bottom, 1.0))
     return " ".join(number(value, precision) for value in values)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..glyph import GlyphResult
-from .curvature_map import comb_precision
+from ..outline import Outline
+from .curvature_map import comb_precision, dots
 from .markup import (
+    Box,
     data_attributes,
     id_prefix,
     ink_bounds,
     number,
     path_data,
-    polyline_data,
-    segments_data,
+    polylines_data,
     union,
     view_box_value,
 )
@@ -28,14 +30,37 @@ def to_source_svg(glyph: GlyphResult) -> str:
     polygons of the result for whoever wants them; it is not displayed.
     """
     outline, precision = glyph.outline, glyph.options.precision
-    em = outline.metrics.units_per_em
-    box = union(
-        (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink_bounds(outline.contours)
-    )
     polygons = [contour.polygon for contour in glyph.contours if len(contour.polygon)]
-    edges = "".join(polyline_data(polygon, precision, closed=True) for polygon in polygons)
     splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    control = "".join(polyline_data(s.control_points, comb_precision(em), closed=s.closed) for s in splines)
+    return source_document(
+        outline,
+        path_data(outline.contours, precision),
+        ink_bounds(outline.contours),
+        polygons,
+        [(spline.control_points, spline.closed) for spline in splines],
+        precision,
+    )
+
+
+def source_document(
+    outline: Outline,
+    path: str,
+    ink: Box | None,
+    polygons: list[FloatArray],
+    controls: list[tuple[FloatArray, bool]],
+    precision: int,
+) -> str:
+    """The drawing from its parts.
+
+    Args:
+        outline: of which everything but the contours is written; path: these, as path data; ink: the box around them.
+        polygons: (n, 2) vertices of each. controls: control polygons, and whether they are closed.
+        precision: decimals of outline and polygons.
+    """
+    em = outline.metrics.units_per_em
+    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink)
+    edges = polylines_data(polygons, precision, closed=[True] * len(polygons))
+    control = polylines_data([p for p, _ in controls], comb_precision(em), closed=[closed for _, closed in controls])
     every = np.concatenate(polygons) if polygons else np.empty((0, 2))
     prefix = id_prefix(outline.name, outline.gid)
     return (
@@ -45,10 +70,10 @@ def to_source_svg(glyph: GlyphResult) -> str:
         f"<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
         f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
         f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero"'
-        f' d="{path_data(outline.contours, precision)}"/></g>\n'
+        f' d="{path}"/></g>\n'
         f'<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
         f' stroke-linecap="round" stroke-linejoin="round"><path d="{edges}"/>'
-        f'<path stroke-width="{number(em / 100, 3)}" d="{segments_data(every, every, precision)}"/></g>\n'
+        f'<path stroke-width="{number(em / 100, 3)}" d="{dots(every, comb_precision(em))}"/></g>\n'
         f'<g id="{prefix}-control" display="none" fill="none" stroke="#75c" stroke-width="{number(em / 600, 3)}">'
         f'<path d="{control}"/></g>\n'
         "</svg>\n"

@@ -6,12 +6,16 @@ import numpy as np
 
 from ...convert import convert
 from ...express.contours import cubics_of
-from ...express.curves import paths
+from ...express.curves import cubics_of_splines, paths
 from ...express.stepping import stepped_points
 from ...glyph import Options
 from ...outline import Outline
+from ...writers.figures import figures
 from .. import work as work
 from . import SQUARE
+
+ONE = np.array([0, 1])
+"""Of one glyph of one contour: where they begin."""
 
 
 def warm() -> None:
@@ -21,7 +25,7 @@ def warm() -> None:
     cubics_of(np.array([2.0, 2.0]), np.array([2, 2]))
     stepped_points(SQUARE.cubics(), np.array([0, 4]), 20.0, 4.0, 1000)
     counts = np.array([len(spline.control_points)])
-    paths(spline.control_points, spline.knots, np.array([0, counts[0]]), counts, np.array([0, 1]), 2)
+    paths(*cubics_of_splines(spline.control_points, spline.knots, np.array([0, counts[0]]), counts), ONE, *figures(2))
 
 
 warm()
