@@ -26,6 +26,9 @@ TIE = 1e-6
 TINY = 1e-280
 """Squares below this have lost digits."""
 
+SHARES, LENGTHS, DX, DY, CHORD, BEND = range(6)
+"""Rows of the table of a piece's chords."""
+
 X, Y, NX, NY, CURVATURE, WEIGHT = range(6)
 """Columns of the samples: point, unit normal to the left, signed curvature, arc length that the sample stands for."""
 
@@ -43,7 +46,7 @@ def sampled(cubics, spacing, angle):
     m = len(cubics)
     starts = np.zeros(m + 1, dtype=np.int64)
     samples = np.empty((4 * m + 64, 6))
-    shares, lengths = np.empty(TABLE + 1), np.empty(TABLE + 1)
+    table = np.empty((6, TABLE + 1))
     used = 0
     for j in range(m):
         piece = (
@@ -52,9 +55,8 @@ def sampled(cubics, spacing, angle):
         )  # fmt: skip
         length, turn = _even(piece)
         even = length > 0.0
-        if not even:
-            length, turn = _measure(piece, shares, lengths, spacing, angle)
-        n = max(int(np.ceil(length / spacing + turn / angle - TIE)), 1 if even else LEAST)
+        wanted = max(length / spacing, turn / angle) if even else _measure(piece, table, spacing, angle)
+        n = max(int(np.ceil(wanted - TIE)), 1 if even else LEAST)
         while used + n + 1 > len(samples):
             larger = np.empty((2 * len(samples), 6))
             larger[:used] = samples[:used]
@@ -62,7 +64,7 @@ def sampled(cubics, spacing, angle):
         if even:
             _sample_evenly(piece, length, n, samples, used)
         else:
-            _sample(piece, shares, lengths, n, samples, used)
+            _sample(piece, table, n, samples, used)
         used += n + 1
         starts[j + 1] = used
     return samples[:used], starts
@@ -115,42 +117,35 @@ def _sample_evenly(piece, length, n, samples, used):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _measure(piece, shares, lengths, spacing, angle):
-    """Length and turn of a piece by its chords; into tables of TABLE + 1 the share of samples, and the length, before
-    each chord's end."""
-    turn = length = density = bx = by = 0.0
-    shares[0] = lengths[0] = 0.0
-    x, y = piece[0], piece[1]
-    for i in range(1, TABLE + 1):
-        nx, ny = _point(piece, i / TABLE)
-        dx, dy = nx - x, ny - y
-        x, y = nx, ny
-        size = np.sqrt(dx * dx + dy * dy)
-        bend = _angle(abs(bx * dy - by * dx), bx * dx + by * dy) if i > 1 else 0.0
-        shares[i] = size / spacing + 0.5 * bend / angle  # half of a bend counts for the chord before, half for this one
-        if i > 1:
-            shares[i - 1] += 0.5 * bend / angle
-        lengths[i] = size
-        turn += bend
-        bx, by = dx, dy
-    for i in range(1, TABLE + 1):
-        density += shares[i]
-        length += lengths[i]
-        shares[i], lengths[i] = density, length
-    for i in range(1, TABLE + 1):
-        shares[i] = shares[i] / density if density > 0.0 else i / TABLE
-    shares[TABLE] = 1.0
-    return length, turn
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _angle(y, x):
-    """The angle of (x, y), y ≥ 0, to 1e-4 where it is small, as most are."""
-    if y < 0.5 * x:
-        q = y / x
-        r = q * q
-        return q * (1.0 - r * (1.0 / 3.0 - r * (0.2 - r / 7.0)))
-    return np.arctan2(y, x)
+def _measure(piece, table, spacing, angle):
+    """Samples that a piece asks for, by its chords. Rows of the table, TABLE + 1 long: before each chord's end the
+    samples, then the length; the others are room to work in."""
+    x0, y0, x1, y1, x2, y2, x3, y3 = piece
+    for i in range(TABLE + 1):
+        t = i / TABLE
+        s = 1.0 - t
+        u, v, w, z = s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
+        table[DX, i] = u * x0 + v * x1 + w * x2 + z * x3
+        table[DY, i] = u * y0 + v * y1 + w * y2 + z * y3
+    for i in range(TABLE):
+        dx, dy = table[DX, i + 1] - table[DX, i], table[DY, i + 1] - table[DY, i]
+        table[DX, i], table[DY, i], table[CHORD, i] = dx, dy, np.sqrt(dx * dx + dy * dy)
+    for i in range(TABLE - 1):
+        ax, ay, bx, by = table[DX, i], table[DY, i], table[DX, i + 1], table[DY, i + 1]
+        along = ax * bx + ay * by
+        whole = table[CHORD, i] * table[CHORD, i + 1] + along
+        # twice the tangent of half the turn: the turn and a little more. Half of it counts for either chord.
+        table[BEND, i] = min(abs(ax * by - ay * bx) / max(whole, TINY), np.pi / 2) if along > 0.0 else np.pi / 2
+    samples = length = 0.0
+    before = table[BEND, 0]  # the halves at both ends of the piece, as if it went on like that
+    table[SHARES, 0] = table[LENGTHS, 0] = 0.0
+    for i in range(TABLE):
+        after = table[BEND, min(i, TABLE - 2)]
+        samples += max(table[CHORD, i] / spacing, (before + after) / angle)
+        length += table[CHORD, i]
+        table[SHARES, i + 1], table[LENGTHS, i + 1] = samples, length
+        before = after
+    return samples
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -164,22 +159,27 @@ def _point(piece, t):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _sample(piece, shares, lengths, n, samples, used):
-    """Frames at the n + 1 places that divide a piece evenly by its table of shares."""
+def _sample(piece, table, n, samples, used):
+    """Frames at the n + 1 places that divide a piece evenly by its table."""
     x0, y0, x1, y1, x2, y2, x3, y3 = piece
     size = max(abs(x1 - x0), abs(y1 - y0), abs(x2 - x0), abs(y2 - y0), abs(x3 - x0), abs(y3 - y0))
+    whole = table[SHARES, TABLE]
     cell = 0
     behind = 0.0
     for i in range(n + 1):
-        share = i / n
-        while cell < TABLE - 1 and shares[cell + 1] < share:
+        share = i / n * whole
+        while cell < TABLE - 1 and table[SHARES, cell + 1] < share:
             cell += 1
-        width = shares[cell + 1] - shares[cell]
-        part = min((share - shares[cell]) / width, 1.0) if width > 0.0 else 0.0
-        t = 1.0 if i == n else (cell + part) / TABLE
+        width = table[SHARES, cell + 1] - table[SHARES, cell]
+        part = min((share - table[SHARES, cell]) / width, 1.0) if width > 0.0 else 0.0
+        length = table[LENGTHS, cell] + part * (table[LENGTHS, cell + 1] - table[LENGTHS, cell])
+        t = (cell + part) / TABLE
+        if i == n:
+            t, length = 1.0, table[LENGTHS, TABLE]
+        elif whole == 0.0:
+            t = i / n
         samples[used + i, X], samples[used + i, Y] = _point(piece, t)
         samples[used + i, NX], samples[used + i, NY], samples[used + i, CURVATURE] = _frame(piece, t, size)
-        length = lengths[TABLE] if i == n else lengths[cell] + part * (lengths[cell + 1] - lengths[cell])
         samples[used + i, WEIGHT] = 0.5 * (length - behind)
         if i:
             samples[used + i - 1, WEIGHT] += samples[used + i, WEIGHT]
@@ -191,14 +191,22 @@ def _frame(piece, t, size):
     """Normal and curvature. Where the piece stands still they are those beside the point; a piece without extent has
     zeros."""
     dx, dy, ex, ey = _derivatives(piece, t)
-    speed = np.hypot(dx, dy)
+    speed = _size(dx, dy)
     if speed <= SLOW * size:
         dx, dy, ex, ey = _derivatives(piece, t + NUDGE if t < 0.5 else t - NUDGE)
-        speed = np.hypot(dx, dy)
+        speed = _size(dx, dy)
     if speed > SLOW * NUDGE * size:  # a nudged sample has a speed of the order of NUDGE squared
-        tx, ty = dx / speed, dy / speed
-        return -ty, tx, (tx * (ey / speed) - ty * (ex / speed)) / speed
+        inverse = 1.0 / speed
+        tx, ty = dx * inverse, dy * inverse
+        return -ty, tx, (tx * (ey * inverse) - ty * (ex * inverse)) * inverse
     return 0.0, 0.0, 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _size(x, y):
+    """Length of a vector, however small."""
+    square = x * x + y * y
+    return np.sqrt(square) if square > TINY else np.hypot(x, y)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
