@@ -120,8 +120,9 @@ def write_drawn(job: Job, task: Task, outline: Outline, drawn: Drawn, seconds: f
     """Write what the short way has drawn; of ``outline`` everything but its contours is needed."""
     started = time.perf_counter()
     files, sizes = {}, []
+    folders = job.spec.folders
     for name in WRITERS:
-        if name in job.spec.folders:
+        if name in folders:
             files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
             sizes.append(write_whole(f"{job.out}/{files[name]}", SHORT[name](job, outline, drawn)))
     contours = solved_text(drawn.solved)
@@ -229,20 +230,20 @@ WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
 }
 
 
-def _drawn_source(job: Job, outline: Outline, drawn: Drawn) -> str:
+def _drawn_source(job: Job, outline: Outline, drawn: Drawn) -> bytes:
     return drawn_source(outline, drawn, job.spec.options.precision)
 
 
-def _drawn_svg(job: Job, outline: Outline, drawn: Drawn) -> str:
+def _drawn_svg(job: Job, outline: Outline, drawn: Drawn) -> bytes:
     return drawn_svg(outline, drawn, job.spec.options.precision, job.spec.view_box)
 
 
-def _drawn_map(job: Job, outline: Outline, drawn: Drawn) -> str:
+def _drawn_map(job: Job, outline: Outline, drawn: Drawn) -> bytes:
     assert job.curvature_scale is not None
     return drawn_map(outline, drawn, job.curvature_scale)
 
 
-SHORT: dict[str, Callable[[Job, Outline, Drawn], str]] = {
+SHORT: dict[str, Callable[[Job, Outline, Drawn], bytes]] = {
     "source": _drawn_source,
     "svg": _drawn_svg,
     "curvature": _drawn_map,

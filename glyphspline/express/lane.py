@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -17,7 +18,7 @@ from ..outline import Contour, Outline
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import map_document
 from ..writers.figures import figures
-from ..writers.markup import Box, curves_data, ink_bounds
+from ..writers.markup import Box, Chains, curves_data, ink_bounds
 from ..writers.source import source_document
 from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
@@ -59,7 +60,7 @@ class Chunk:
     knots: FloatArray
     cubics: FloatArray
     cubic_starts: IntArray
-    text: bytes
+    text: memoryview
     text_ends: list[int]
     boxes: list[list[float]]
     solved: list[Solved]
@@ -78,10 +79,15 @@ class Drawn:
         return float(self.chunk.advances[self.index])
 
     @property
-    def path(self) -> str:
-        """SVG path data of the result."""
+    def text(self) -> memoryview:
+        """SVG path data of the result, as bytes."""
         ends = self.chunk.text_ends
-        return self.chunk.text[ends[self.index] : ends[self.index + 1]].decode("ascii")
+        return self.chunk.text[ends[self.index] : ends[self.index + 1]]
+
+    @property
+    def path(self) -> str:
+        """The same as text."""
+        return bytes(self.text).decode("ascii")
 
     @property
     def box(self) -> Box:
@@ -89,7 +95,7 @@ class Drawn:
         left, bottom, right, top = self.chunk.boxes[self.index]
         return left, bottom, right, top
 
-    @property
+    @cached_property
     def contours(self) -> tuple[int, int]:
         """Its contours in the chunk: from and to."""
         return int(self.chunk.before[self.index]), int(self.chunk.before[self.index + 1])
@@ -100,18 +106,28 @@ class Drawn:
         first, last = self.contours
         return self.chunk.solved[first:last]
 
-    @property
+    @cached_property
     def curves(self) -> tuple[FloatArray, IntArray]:
         """(m, 4, 2) Bézier pieces of the result, and (c + 1,) where each contour begins among them."""
         first, last = self.contours
         starts = self.chunk.cubic_starts[first : last + 1]
         return self.chunk.cubics[starts[0] : starts[-1]], starts - starts[0]
 
-    @property
-    def polygons(self) -> list[FloatArray]:
-        """The vertices of each contour."""
+    @cached_property
+    def polygons(self) -> Chains:
+        """The vertices of all contours."""
         first, last = self.contours
-        return [self.chunk.polygons[a:b] for a, b in pairwise(self.chunk.polygon_starts[first : last + 1].tolist())]
+        starts = self.chunk.polygon_starts[first : last + 1]
+        ends = starts - starts[0]
+        return Chains(self.chunk.polygons[starts[0] : starts[-1]], ends[:-1], ends[1:], np.ones(last - first, np.bool_))
+
+    @property
+    def controls(self) -> Chains:
+        """The control polygons: as many points as vertices, or less if some were merged."""
+        points, starts, _, closed = self.polygons
+        first = self.chunk.polygon_starts[self.contours[0]]
+        stops = starts + np.diff(self.curves[1])
+        return Chains(self.chunk.controls[first : first + len(points)], starts, stops, closed)
 
     @property
     def splines(self) -> list[tuple[FloatArray, FloatArray]]:
@@ -160,7 +176,7 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
     left |= broken | strange | huge | (before[:-1] == before[1:])
     chunk = Chunk(
         advances, left, before, (own, degrees, segments, owns), source_cubics, points, offsets, ragged.controls,
-        ragged.knots, cubics, cubic_starts, text.tobytes(), ends.tolist(), boxes.tolist(), solved(ragged),
+        ragged.knots, cubics, cubic_starts, memoryview(text), ends.tolist(), boxes.tolist(), solved(ragged),
     )  # fmt: skip
     return [None if alone else Drawn(chunk, i) for i, alone in enumerate(left.tolist())]
 
@@ -202,31 +218,28 @@ def last_residuals(ragged: Ragged) -> FloatArray:
     return ragged.residuals[np.clip(ragged.residual_offsets[1:] - 1, 0, len(ragged.residuals) - 1)]
 
 
-def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> str:
+def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> bytes:
     """The SVG document of a glyph; of ``outline`` everything but its contours is needed."""
-    path = drawn.path
     box = shown_box(outline, drawn.box, "em")
     if view_box == "ink" or (view_box == "em" and box != shown_box(outline, None, "em")):
-        ink = ink_bounds(path_contours(path))  # the box around Bézier points may be wider
+        ink = ink_bounds(path_contours(drawn.path))  # the box around Bézier points may be wider
         box = shown_box(outline, ink, view_box)
-    return svg_document(outline, path, box, precision, view_box)
+    return svg_document(outline, drawn.text, box, precision, view_box)
 
 
-def drawn_map(outline: Outline, drawn: Drawn, scale: float) -> str:
+def drawn_map(outline: Outline, drawn: Drawn, scale: float) -> bytes:
     """The curvature map of a glyph, its vertices marked, as :func:`to_curvature_svg` writes it."""
-    polygon = np.concatenate(drawn.polygons)
-    return map_document(outline, *drawn.curves, drawn.path, scale, polygon=polygon)
+    return map_document(outline, *drawn.curves, drawn.text, scale, polygon=drawn.polygons.points)
 
 
-def drawn_source(outline: Outline, drawn: Drawn, precision: int) -> str:
+def drawn_source(outline: Outline, drawn: Drawn, precision: int) -> bytes:
     """The source drawing of a glyph, as :func:`to_source_svg` writes it."""
     points, degrees, segments, owns = drawn.chunk.source
     first, last = drawn.contours
     a, b = segments[first], segments[last]
     path = curves_data(points[owns[first] : owns[last]], degrees[a:b], segments[first : last + 1] - a, precision)
     left, bottom, right, top = ink_box(drawn.chunk.source_cubics[a:b]).tolist()
-    controls = [(points, True) for points, _ in drawn.splines]
-    return source_document(outline, path, (left, bottom, right, top), drawn.polygons, controls, precision)
+    return source_document(outline, path, (left, bottom, right, top), drawn.polygons, drawn.controls, precision)
 
 
 def path_contours(path: str) -> list[Contour]:

@@ -18,17 +18,17 @@ from .figures import figures
 from .legend import legend_svg
 from .markup import (
     Box,
+    Text,
     data_attributes,
     id_prefix,
+    joined,
     number,
     path_data,
-    polylines_data,
+    polyline_data,
     union,
     view_box_value,
 )
 from .svg import title
-
-COLOURS = [class_colour(index) for index in range(-SIDES, SIDES + 1)]
 
 SPACING = 1 / 160
 """Teeth stand this far apart, in em, or nearer. Twice as dense they run together in print; half as dense the joined
@@ -131,7 +131,7 @@ def to_curvature_svg(
     scale = curvature_scale([glyph]) if scale is None else scale
     curves = (contour.curve.rounded(glyph.options.precision) for contour in glyph.contours)
     splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    return map_document(
+    document = map_document(
         glyph.outline,
         *curves_of(glyph),
         path_data(curves, glyph.options.precision),
@@ -141,19 +141,20 @@ def to_curvature_svg(
         else None,
         controls=[(spline.control_points, spline.closed) for spline in splines] if control_polygon else None,
     )
+    return document.decode()
 
 
 def map_document(
     outline: Outline,
     cubics: FloatArray,
     contours: IntArray,
-    path: str,
+    path: Text,
     scale: float,
     *,
     polygon: FloatArray | None = None,
     controls: list[tuple[FloatArray, bool]] | None = None,
-) -> str:
-    """The map of a glyph from its curves.
+) -> bytes:
+    """The map of a glyph from its curves, in UTF-8.
 
     Args:
         outline: of which everything but the contours is written.
@@ -164,27 +165,30 @@ def map_document(
     """
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    comb_svg, reach = _comb_layer(cubics, contours, em, scale, precision)
+    layers, reach = _comb_layer(cubics, contours, em, scale, precision)
     box = reach or (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
     box = (min(box[0], 0.0), box[1], max(box[2], outline.advance), box[3])
-    layers = [comb_svg, _outline_layer(path, em)]
+    layers += [
+        f'<path class="outline" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
+        ' fill-opacity=".07" fill-rule="nonzero" d="', path, '"/>\n',
+    ]  # fmt: skip
     if controls is not None:
         layers.append(_control_layer(controls, em, precision))
         box = _around(box, [points for points, _ in controls])
     if polygon is not None:
-        layers.append(_vertex_layer(polygon, em, precision))
+        style = f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="'
+        layers += [style, dots(polygon, precision), '"/>\n']
     legend, box = legend_svg(box, em, scale, precision, TOOTH, LONGEST)
     margin = 0.02 * em
     box = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
     prefix = id_prefix(outline.name, outline.gid)
-    return (
+    head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" role="img"'
         f' aria-labelledby="{prefix}-map-title" {data_attributes(outline, precision)}'
         f' data-scale="{scale:.6g}" fill="none" stroke-linecap="round" stroke-linejoin="round">\n'
         f'<title id="{prefix}-map-title">Curvature of {title(outline)}</title>\n'
-        + "\n".join([*layers, legend])
-        + "\n</svg>\n"
     )
+    return joined([head, *layers, legend, "\n</svg>\n"])
 
 
 @cache
@@ -195,7 +199,7 @@ def comb_precision(em: float) -> int:
 
 def _comb_layer(
     cubics: FloatArray, contours: IntArray, em: float, scale: float, precision: int
-) -> tuple[str, Box | None]:
+) -> tuple[list[Text], Box | None]:
     """Teeth, grouped by colour into one path a class, the line that joins the tips, and the marks of cut teeth; and
     the box around curve and comb."""
     # Here and not above, as they bring the compiler with them: the package opens without.
@@ -203,47 +207,41 @@ def _comb_layer(
     from .comb_text import comb_text
 
     samples, starts = sampled(cubics, spacing_of(cubics, em), ANGLE)
-    data, parts, box = comb_text(
+    text, ends, box = comb_text(
         samples, starts[contours], TOOTH * em, scale, LONGEST, 0.5 * STROKE * em / 1000, *figures(precision)
     )
-    text, ends = data.tobytes().decode("ascii"), parts.tolist()
-    texts = [text[a:b] for a, b in pairwise(ends)]
-    paths = [f'<path stroke="{colour}" d="{d}"/>' for colour, d in zip(COLOURS, texts, strict=False) if d]
-    if len(samples):
-        line, cut = texts[-2:]
-        paths.append(f'<path stroke="currentColor" stroke-opacity=".45" stroke-width="{_width(em, 0.9)}" d="{line}"/>')
-        if cut:
-            paths.append(f'<path class="cut" stroke="currentColor" stroke-width="{_width(em, 3)}" d="{cut}"/>')
-    layer = f'<g class="comb" stroke-width="{_width(em, 1.8)}">' + "\n".join(paths) + "</g>"
-    return layer, tuple(box.tolist()) if len(samples) else None
+    view = memoryview(text)
+    layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
+    for style, (a, b) in zip(_styles(em), pairwise(ends.tolist()), strict=True):
+        if b > a:
+            layers += [style, view[a:b], '"/>\n']
+    layers.append("</g>\n")
+    return layers, tuple(box.tolist()) if len(samples) else None
 
 
-def _outline_layer(path: str, em: float) -> str:
-    return (
-        f'<path class="outline" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
-        f' fill-opacity=".07" fill-rule="nonzero" d="{path}"/>'
-    )
+@cache
+def _styles(em: float) -> list[str]:
+    """How the paths of a comb begin, in the order in which ``comb_text`` gives them."""
+    return [
+        *(f'<path stroke="{class_colour(index)}" d="' for index in range(-SIDES, SIDES + 1)),
+        f'<path stroke="currentColor" stroke-opacity=".45" stroke-width="{_width(em, 0.9)}" d="',
+        f'<path class="cut" stroke="currentColor" stroke-width="{_width(em, 3)}" d="',
+    ]
 
 
-def _vertex_layer(polygon: FloatArray, em: float, precision: int) -> str:
-    data = dots(polygon, precision)
-    return f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{data}"/>'
-
-
-def dots(points: FloatArray, precision: int) -> str:
+def dots(points: FloatArray, precision: int) -> Text:
     """Path data of a dot on each of the points (n, 2), to be stroked with round caps; y flipped."""
     from .comb_text import dots_text
 
-    data: str = dots_text(points, *figures(precision)).tobytes().decode("ascii")
-    return data
+    return memoryview(dots_text(points, *figures(precision)))
 
 
 def _control_layer(controls: list[tuple[FloatArray, bool]], em: float, precision: int) -> str:
-    data = polylines_data([points for points, _ in controls], precision, closed=[closed for _, closed in controls])
+    data = "".join(polyline_data(points, precision, closed=closed) for points, closed in controls)
     dash = _width(em, 6)
     return (
         f'<path class="control-polygon" stroke="currentColor" stroke-opacity=".6" stroke-width="{_width(em, 1.2)}"'
-        f' stroke-dasharray="{dash}" d="{data}"/>'
+        f' stroke-dasharray="{dash}" d="{data}"/>\n'
     )
 
 

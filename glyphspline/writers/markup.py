@@ -7,12 +7,16 @@ import re
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..outline import Contour, Outline
 from .figures import figures
+
+Text = str | memoryview
+"""Part of a document; what compiled code has written is bytes already, in ASCII."""
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top in font units, y up."""
@@ -26,6 +30,11 @@ _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
 _COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
 
 
+def joined(parts: Iterable[Text]) -> bytes:
+    """A document from its parts, in UTF-8."""
+    return b"".join([part.encode() if isinstance(part, str) else part for part in parts])
+
+
 def number(value: float, precision: int) -> str:
     """One number with at most ``precision`` decimals: no zeros at the end, no "-0"."""
     return NUMBER % (round(float(value), precision) + 0.0)
@@ -33,12 +42,14 @@ def number(value: float, precision: int) -> str:
 
 def text(value: str) -> str:
     """Text for element content or a quoted attribute; characters that XML forbids become U+FFFD."""
+    if value.isalnum() and value.isascii():
+        return value
     return escape(_NOT_XML.sub("\ufffd", value))
 
 
 def id_prefix(name: str, gid: int) -> str:
     """What the ids of a glyph's drawing begin with, so that several can stand in one document."""
-    return f"g{gid}-{_NOT_ID.sub('_', name)}"
+    return f"g{gid}-{name if name.isalnum() and name.isascii() else _NOT_ID.sub('_', name)}"
 
 
 def code_points(outline: Outline) -> str:
@@ -67,20 +78,25 @@ def path_data(contours: Iterable[Contour], precision: int) -> str:
     if not drawn:
         return ""
     points, degrees = (np.concatenate(parts) for parts in zip(*((c.points, c.degrees) for c in drawn), strict=True))
-    return curves_data(points, degrees, np.cumsum([0, *map(len, drawn)], dtype=np.int64), precision)
+    contours_at = np.cumsum([0, *map(len, drawn)], dtype=np.int64)
+    return bytes(curves_data(points, degrees, contours_at, precision)).decode("ascii")
 
 
-def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> str:
-    """The same of contours one after the other: points (N, 2), degrees (m,), and (c + 1,) where contours begin."""
+def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> memoryview:
+    """The same, as bytes, of contours one after the other.
+
+    Args:
+        points: (N, 2). degrees: (m,). contours: (c + 1,) where contours begin among these.
+    """
     # Here and not above, as it brings the compiler with it: the package opens without.
     from .path_text import curves_text
 
     text = curves_text(points, degrees, contours, *figures(precision))
     if text is not None:
-        return str(text.tobytes().decode("ascii"))
+        return memoryview(text)
     ends = np.concatenate([[0], np.cumsum(degrees)])[contours]
     parts = [Contour(points[ends[k] : ends[k + 1]], degrees[a:b]) for k, (a, b) in enumerate(pairwise(contours))]
-    return "".join(_contour_data(part, precision) for part in parts)
+    return memoryview("".join([_contour_data(part, precision) for part in parts]).encode())
 
 
 def _contour_data(contour: Contour, precision: int) -> str:
@@ -93,23 +109,36 @@ def _contour_data(contour: Contour, precision: int) -> str:
     return template % tuple((np.round(closed * (1, -1), precision) + 0.0).ravel().tolist())
 
 
+class Chains(NamedTuple):
+    """Points (N, 2) of polygons; (p,) where each begins and where it stops; (p,) whether it is closed."""
+
+    points: FloatArray
+    starts: IntArray
+    stops: IntArray
+    closed: BoolArray
+
+
+def chains(parts: Sequence[FloatArray], closed: Sequence[bool]) -> Chains:
+    """Polygons laid end to end."""
+    ends = np.cumsum([0, *map(len, parts)], dtype=np.int64)
+    return Chains(np.concatenate([np.empty((0, 2)), *parts]), ends[:-1], ends[1:], np.array(closed, dtype=np.bool_))
+
+
 def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
     """Points (k, 2) joined by straight lines, as SVG path data; y flipped."""
-    return polylines_data([points], precision, closed=[closed])
+    return bytes(polylines_data(chains([points], [closed]), precision)).decode("ascii")
 
 
-def polylines_data(parts: Sequence[FloatArray], precision: int, *, closed: Sequence[bool]) -> str:
-    """The same of several chains of points, each closed or not."""
+def polylines_data(parts: Chains, precision: int) -> memoryview:
+    """The same of many, as bytes."""
     from .path_text import polylines_text
 
-    if not parts:
-        return ""
-    ends = np.cumsum([0, *map(len, parts)], dtype=np.int64)
-    text = polylines_text(np.concatenate(parts), ends, np.array(closed, dtype=np.bool_), *figures(precision))
+    text = polylines_text(*parts, *figures(precision))
     if text is not None:
-        return str(text.tobytes().decode("ascii"))
-    texts = [_polyline_data(part, precision) + ("Z" if end else "") for part, end in zip(parts, closed, strict=True)]
-    return "".join(texts)
+        return memoryview(text)
+    each = zip(parts.starts.tolist(), parts.stops.tolist(), parts.closed.tolist(), strict=True)
+    texts = [_polyline_data(parts.points[a:b], precision) + ("Z" if end else "") for a, b, end in each if b > a]
+    return memoryview("".join(texts).encode())
 
 
 def _polyline_data(points: FloatArray, precision: int) -> str:

@@ -110,21 +110,22 @@ def curves_text(points, degrees, contours, precision, power, limit, words):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def polylines_text(points, parts, closed, precision, power, limit, words):
+def polylines_text(points, starts, stops, closed, precision, power, limit, words):
     """Path data of polygons as bytes; None if a number is too large for it.
 
     Args:
-        points: (N, 2) of all, one after the other. parts: (p + 1,) where each begins. closed: (p,) whether Z ends it.
+        points: (N, 2) of all. starts, stops: (p,) where in it each begins and stops. closed: (p,) whether Z ends it.
+        precision, power, limit, words: the figures of so many decimals.
     """
     figures = (precision, power, limit, np.uint64(words.ctypes.data))
     whole = np.rint(points * power)
     for i in range(len(whole)):
         if not (abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST):
             return None
-    text = np.empty((len(points) + len(parts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
+    text = np.empty((len(points) + len(starts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
     start = np.uint64(text.ctypes.data)
     at = start
-    for p in range(len(parts) - 1):
-        if parts[p + 1] > parts[p]:
-            at = polyline(at, whole[parts[p] : parts[p + 1]], closed[p], figures)
+    for p in range(len(starts)):
+        if stops[p] > starts[p]:
+            at = polyline(at, whole[starts[p] : stops[p]], closed[p], figures)
     return text[: np.int64(at - start)]

@@ -14,9 +14,6 @@ from ...writers.figures import figures
 from .. import work as work
 from . import SQUARE
 
-ONE = np.array([0, 1])
-"""Of one glyph of one contour: where they begin."""
-
 
 def warm() -> None:
     """Take a square through both ways."""
@@ -25,7 +22,8 @@ def warm() -> None:
     cubics_of(np.array([2.0, 2.0]), np.array([2, 2]))
     stepped_points(SQUARE.cubics(), np.array([0, 4]), 20.0, 4.0, 1000)
     counts = np.array([len(spline.control_points)])
-    paths(*cubics_of_splines(spline.control_points, spline.knots, np.array([0, counts[0]]), counts), ONE, *figures(2))
+    cubics, starts = cubics_of_splines(spline.control_points, spline.knots, np.array([0, counts[0]]), counts)
+    paths(cubics, starts, np.array([0, 1]), *figures(2))
 
 
 warm()
