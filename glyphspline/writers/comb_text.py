@@ -10,11 +10,13 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ..combing import CURVATURE, NX, NY, X, Y
+from ..combing import CURVATURE, NX, NY, X, Y, control_length, sampled
 from .colours import SIDES
 from .digits import LARGEST, SLACK, SPACE, WIDEST, decimal
 from .path_text import DOT, LINE_BY, MOVE, MOVE_BY, nearest, step
 from .words import store
+
+__all__ = ["comb_text", "control_length", "dots_text", "sampled"]
 
 CLASSES = 2 * SIDES + 1
 LAYERS = CLASSES + 2

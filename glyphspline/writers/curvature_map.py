@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from .markup import (
 )
 from .svg import title
 
-SPACING = 1 / 160
+SPACING = 1 / 140
 """Teeth stand this far apart, in em, or nearer. Twice as dense they run together in print; half as dense the joined
 tips cut corners."""
 
@@ -90,9 +91,15 @@ def curves_of(glyph: GlyphResult) -> tuple[FloatArray, IntArray]:
 
 def spacing_of(cubics: FloatArray, em: float) -> float:
     """How far apart teeth stand along a glyph's pieces (m, 4, 2), in font units."""
-    from ..combing import control_length
+    return max(SPACING * em, _compiled().control_length(cubics) / MOST_TEETH)
 
-    return max(SPACING * em, float(control_length(cubics)) / MOST_TEETH)
+
+@cache
+def _compiled() -> Any:
+    """The compiled code of maps, imported when it is first wanted: the package opens without a compiler."""
+    from . import comb_text
+
+    return comb_text
 
 
 def teeth(glyph: GlyphResult, scale: float) -> list[Teeth]:
@@ -202,12 +209,8 @@ def _comb_layer(
 ) -> tuple[list[Text], Box | None]:
     """Teeth, grouped by colour into one path a class, the line that joins the tips, and the marks of cut teeth; and
     the box around curve and comb."""
-    # Here and not above, as they bring the compiler with them: the package opens without.
-    from ..combing import sampled
-    from .comb_text import comb_text
-
-    samples, starts = sampled(cubics, spacing_of(cubics, em), ANGLE)
-    text, ends, box = comb_text(
+    samples, starts = _compiled().sampled(cubics, spacing_of(cubics, em), ANGLE)
+    text, ends, box = _compiled().comb_text(
         samples, starts[contours], TOOTH * em, scale, LONGEST, 0.5 * STROKE * em / 1000, *figures(precision)
     )
     view = memoryview(text)
@@ -231,9 +234,7 @@ def _styles(em: float) -> list[str]:
 
 def dots(points: FloatArray, precision: int) -> Text:
     """Path data of a dot on each of the points (n, 2), to be stroked with round caps; y flipped."""
-    from .comb_text import dots_text
-
-    return memoryview(dots_text(points, *figures(precision)))
+    return memoryview(_compiled().dots_text(points, *figures(precision)))
 
 
 def _control_layer(controls: list[tuple[FloatArray, bool]], em: float, precision: int) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
+from functools import cache, lru_cache
 from html import escape
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,11 +31,20 @@ _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
 _COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
 
 
+@cache
+def _compiled() -> Any:
+    """The compiled writers of path data, imported when they are first wanted: the package opens without a compiler."""
+    from . import path_text
+
+    return path_text
+
+
 def joined(parts: Iterable[Text]) -> bytes:
     """A document from its parts, in UTF-8."""
     return b"".join([part.encode() if isinstance(part, str) else part for part in parts])
 
 
+@lru_cache(maxsize=4096)
 def number(value: float, precision: int) -> str:
     """One number with at most ``precision`` decimals: no zeros at the end, no "-0"."""
     return NUMBER % (round(float(value), precision) + 0.0)
@@ -88,10 +98,7 @@ def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, preci
     Args:
         points: (N, 2). degrees: (m,). contours: (c + 1,) where contours begin among these.
     """
-    # Here and not above, as it brings the compiler with it: the package opens without.
-    from .path_text import curves_text
-
-    text = curves_text(points, degrees, contours, *figures(precision))
+    text = _compiled().curves_text(points, degrees, contours, *figures(precision))
     if text is not None:
         return memoryview(text)
     ends = np.concatenate([[0], np.cumsum(degrees)])[contours]
@@ -131,9 +138,7 @@ def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -
 
 def polylines_data(parts: Chains, precision: int) -> memoryview:
     """The same of many, as bytes."""
-    from .path_text import polylines_text
-
-    text = polylines_text(*parts, *figures(precision))
+    text = _compiled().polylines_text(*parts, *figures(precision))
     if text is not None:
         return memoryview(text)
     each = zip(parts.starts.tolist(), parts.stops.tolist(), parts.closed.tolist(), strict=True)
