@@ -34,11 +34,12 @@ X, Y, NX, NY, CURVATURE, WEIGHT = range(6)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def sampled(cubics, spacing, angle):
+def sampled(cubics, spacing, angle, flat):
     """Samples of all pieces in order, both ends of each included.
 
     Args:
         cubics: (m, 4, 2). spacing: the largest distance along the curve. angle: the largest turn, in radians.
+        flat: tame pieces of no more curvature get samples at their ends alone.
 
     Returns:
         (k, 6) samples; (m + 1,) where those of each piece begin.
@@ -55,7 +56,12 @@ def sampled(cubics, spacing, angle):
         )  # fmt: skip
         length, turn = _even(piece)
         even = length > 0.0
-        wanted = max(length / spacing, turn / angle) if even else _measure(piece, table, spacing, angle)
+        if not even:
+            wanted = _measure(piece, table, spacing, angle)
+        elif abs(_curvature(piece, False)) < flat and abs(_curvature(piece, True)) < flat:
+            wanted = 1.0
+        else:
+            wanted = max(length / spacing, turn / angle)
         n = max(int(np.ceil(wanted - TIE)), 1 if even else LEAST)
         while used + n + 1 > len(samples):
             larger = np.empty((2 * len(samples), 6))
@@ -92,6 +98,17 @@ def _even(piece):
     turn = first + second
     # Simpson's rule; and no less than the sum of the two arcsines
     return 0.5 * (la + np.sqrt(x * x + y * y) + lc), turn * (1.0 + turn * turn / 5.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _curvature(piece, end):
+    """Curvature where a piece begins or ends, which has to be one that does not stand still there."""
+    ax, ay, bx, by, cx, cy = _legs(piece)
+    if end:
+        ax, ay, bx, by = bx, by, cx, cy
+    dx, dy = (bx, by) if end else (ax, ay)
+    square = dx * dx + dy * dy
+    return (2.0 / 3.0) * (ax * by - ay * bx) / (square * np.sqrt(square))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

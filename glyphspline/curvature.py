@@ -67,7 +67,7 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
     while pieces.shape[1] < 4:
         points = elevate(np.moveaxis(pieces, 1, 0).reshape(pieces.shape[1], -1))
         pieces = np.moveaxis(points.reshape(len(points), -1, 2), 0, 1)
-    samples, starts = sampled(np.ascontiguousarray(pieces, dtype=np.float64), float(spacing), float(angle))
+    samples, starts = sampled(np.ascontiguousarray(pieces, dtype=np.float64), float(spacing), float(angle), 0.0)
     return comb_of(samples, starts)
 
 

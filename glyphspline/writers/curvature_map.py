@@ -209,9 +209,11 @@ def _comb_layer(
 ) -> tuple[list[Text], Box | None]:
     """Teeth, grouped by colour into one path a class, the line that joins the tips, and the marks of cut teeth; and
     the box around curve and comb."""
-    samples, starts = _compiled().sampled(cubics, spacing_of(cubics, em), ANGLE)
+    least = 0.5 * STROKE * em / 1000
+    flat = scale * least / (TOOTH * em)
+    samples, starts = _compiled().sampled(cubics, spacing_of(cubics, em), ANGLE, flat)
     text, ends, box = _compiled().comb_text(
-        samples, starts[contours], TOOTH * em, scale, LONGEST, 0.5 * STROKE * em / 1000, *figures(precision)
+        samples, starts[contours], TOOTH * em, scale, LONGEST, least, *figures(precision)
     )
     view = memoryview(text)
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
