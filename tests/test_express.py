@@ -13,7 +13,7 @@ import pytest
 import glyphspline as gs
 from glyphspline.batch import RunSpec, convert_font, entries_of, work
 from glyphspline.express.contours import cubics_of
-from glyphspline.express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, suits
+from glyphspline.express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
 from glyphspline.express.reading import BulkReader
 from glyphspline.express.stepping import stepped_points
 from glyphspline.glyph import Options
@@ -59,7 +59,8 @@ def test_maps_of_chunks_are_the_writers_to_the_byte(name: str) -> None:
         outline = font.outline(glyph)
         result = gs.GlyphResult(outline, options, tuple(contour_results(outline, short)))
         assert drawn_map(outline, short, 0.02).decode() == to_curvature_svg(result, scale=0.02), glyph
-        assert drawn_source(outline, short, 1).decode() == to_source_svg(result), glyph
+        texts = source_texts(short, font.metrics.units_per_em, 1)
+        assert drawn_source(outline, short, texts, 1).decode() == to_source_svg(result), glyph
         assert drawn_svg(outline, short, 1, "ink").decode() == to_svg(result, view_box="ink"), glyph
 
 

@@ -16,10 +16,10 @@ from ..fit import CERTAIN_RATIO
 from ..glyph import Options
 from ..outline import Contour, Outline
 from ..writers.bounds import ink_box
-from ..writers.curvature_map import map_document
+from ..writers.curvature_map import comb_precision, map_document
 from ..writers.figures import figures
-from ..writers.markup import Box, Chains, curves_data, ink_bounds
-from ..writers.source import source_document
+from ..writers.markup import Box, Chains, curves_data, ink_bounds, polylines_data
+from ..writers.source import SourceTexts, source_document
 from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
 from .curves import cubics_of_splines, paths
@@ -232,14 +232,23 @@ def drawn_map(outline: Outline, drawn: Drawn, scale: float) -> bytes:
     return map_document(outline, *drawn.curves, drawn.text, scale, polygon=drawn.polygons.points)
 
 
-def drawn_source(outline: Outline, drawn: Drawn, precision: int) -> bytes:
-    """The source drawing of a glyph, as :func:`to_source_svg` writes it."""
+def source_texts(drawn: Drawn, em: float, precision: int) -> SourceTexts:
+    """The path data of a glyph's source drawing."""
     points, degrees, segments, owns = drawn.chunk.source
     first, last = drawn.contours
     a, b = segments[first], segments[last]
     path = curves_data(points[owns[first] : owns[last]], degrees[a:b], segments[first : last + 1] - a, precision)
-    left, bottom, right, top = ink_box(drawn.chunk.source_cubics[a:b]).tolist()
-    return source_document(outline, path, (left, bottom, right, top), drawn.polygons, drawn.controls, precision)
+    return SourceTexts(
+        path, polylines_data(drawn.polygons, precision), polylines_data(drawn.controls, comb_precision(em))
+    )
+
+
+def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: int) -> bytes:
+    """The source drawing of a glyph, as :func:`to_source_svg` writes it."""
+    first, last = drawn.contours
+    segments = drawn.chunk.source[2]
+    left, bottom, right, top = ink_box(drawn.chunk.source_cubics[segments[first] : segments[last]]).tolist()
+    return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
 
 
 def path_contours(path: str) -> list[Contour]:

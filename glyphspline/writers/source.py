@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from ..arrays import FloatArray
 from ..glyph import GlyphResult
 from ..outline import Outline
 from .curvature_map import comb_precision, dots
 from .markup import (
     Box,
-    Chains,
-    Text,
     chains,
     data_attributes,
     id_prefix,
@@ -33,25 +34,32 @@ def to_source_svg(glyph: GlyphResult) -> str:
     outline, precision = glyph.outline, glyph.options.precision
     polygons = [contour.polygon for contour in glyph.contours if len(contour.polygon)]
     splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    document = source_document(
-        outline,
-        path_data(outline.contours, precision),
-        ink_bounds(outline.contours),
-        chains(polygons, [True] * len(polygons)),
-        chains([spline.control_points for spline in splines], [spline.closed for spline in splines]),
-        precision,
+    corners = chains(polygons, [True] * len(polygons))
+    control = chains([spline.control_points for spline in splines], [spline.closed for spline in splines])
+    texts = SourceTexts(
+        memoryview(path_data(outline.contours, precision).encode()),
+        polylines_data(corners, precision),
+        polylines_data(control, comb_precision(outline.metrics.units_per_em)),
     )
-    return document.decode()
+    return source_document(outline, texts, ink_bounds(outline.contours), corners.points, precision).decode()
+
+
+class SourceTexts(NamedTuple):
+    """Path data of a source drawing: the source's outline, the polygons, the control polygons of the result."""
+
+    source: memoryview
+    polygon: memoryview
+    control: memoryview
 
 
 def source_document(
-    outline: Outline, path: Text, ink: Box | None, polygons: Chains, controls: Chains, precision: int
+    outline: Outline, texts: SourceTexts, ink: Box | None, vertices: FloatArray, precision: int
 ) -> bytes:
     """The drawing from its parts, in UTF-8.
 
     Args:
-        outline: of which everything but the contours is written; path: these, as path data; ink: the box around them.
-        polygons: all vertices. controls: control polygons. precision: decimals of outline and polygons.
+        outline: of which everything but the contours is written. ink: the box around these.
+        vertices: (n, 2) of all polygons. precision: decimals of the view box.
     """
     em = outline.metrics.units_per_em
     box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink)
@@ -73,8 +81,7 @@ def source_document(
         f' stroke-width="{number(em / 600, 3)}"><path d="'
     )
     between = f'"/><path stroke-width="{number(em / 100, 3)}" d="'
-    digits = comb_precision(em)
     return joined([
-        head, path, polygon, polylines_data(polygons, precision), between, dots(polygons.points, digits),
-        control, polylines_data(controls, digits), '"/></g>\n</svg>\n',
+        head, texts.source, polygon, texts.polygon, between, dots(vertices, comb_precision(em)), control, texts.control,
+        '"/></g>\n</svg>\n',
     ])  # fmt: skip
