@@ -72,13 +72,13 @@ def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
 
 
 def combs(glyph: GlyphResult) -> list[Comb]:
-    """One comb a contour, at the spacing of the maps."""
+    """One comb a contour, twice as dense as those of the maps, for the scale: at theirs it can be 15% too large."""
     return combs_of(*curves_of(glyph), glyph.outline.metrics.units_per_em)
 
 
-def combs_of(cubics: FloatArray, contours: IntArray, em: float) -> list[Comb]:
+def combs_of(cubics: FloatArray, contours: IntArray, em: float, density: float = 2.0) -> list[Comb]:
     """The same from a glyph's pieces (m, 4, 2) and (c + 1,) where each contour begins among them."""
-    spacing = spacing_of(cubics, em)
+    spacing = spacing_of(cubics, em) / density
     return [comb(cubics[a:b], spacing) for a, b in pairwise(contours.tolist())]
 
 
@@ -104,7 +104,8 @@ def _compiled() -> Any:
 
 def teeth(glyph: GlyphResult, scale: float) -> list[Teeth]:
     """Feet and tips of each contour's comb. Teeth point away from the centre of curvature."""
-    return [teeth_of(item, glyph.outline.metrics.units_per_em, scale) for item in combs(glyph)]
+    em = glyph.outline.metrics.units_per_em
+    return [teeth_of(item, em, scale) for item in combs_of(*curves_of(glyph), em, density=1.0)]
 
 
 def teeth_of(item: Comb, em: float, scale: float) -> Teeth:
