@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from .arrays import FloatArray
 from .errors import GlyphsplineError
 from .glyph import ContourResult, GlyphResult, Options
-from .outline import Outline
+from .outline import Contour, Outline
 
 DEFAULTS = Options()
 
@@ -21,34 +21,57 @@ def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
     Raises:
         GlyphsplineError: a contour that cannot be interpolated, or an option out of range; it names glyph and contour.
     """
-    # Here and not above, as it brings the compiler with it: the package opens without.
-    from .contours import convert_contour
-
     tolerance = options.tolerance_for(outline.metrics.units_per_em)
     if not tolerance > 0:
         raise GlyphsplineError(f"tolerance is a positive distance, not {tolerance}")
     if options.corners == "sharp" and (options.step is not None or options.count is not None):
         raise GlyphsplineError('step and count sample whole contours, which corners="sharp" cuts: give a tolerance')
-    results: list[ContourResult] = []
     notes: list[str] = []
     if options.remove_overlaps:
         from .overlaps import remove_overlaps
 
         outline, note = remove_overlaps(outline)
         notes += [note] if note else []
-    for index, contour in enumerate(outline.contours):
-        if not encloses(contour.points):
-            notes.append(f"contour {index} has fewer than three distinct points and is left out")
-            continue
-        try:
-            results.append(convert_contour(contour, options, tolerance, outline.metrics.units_per_em))
-        except GlyphsplineError as error:
-            raise error.locate(glyph=outline.name, contour=index) from error.__cause__
+    kept = [index for index, contour in enumerate(outline.contours) if encloses(contour.points)]
+    for index in sorted(set(range(len(outline.contours))) - set(kept)):
+        notes.append(f"contour {index} has fewer than three distinct points and is left out")
+    try:
+        results = _converted([outline.contours[index] for index in kept], options, tolerance, outline)
+    except GlyphsplineError as error:
+        error.contour = None if error.contour is None else kept[error.contour]
+        raise error.locate(glyph=outline.name) from error.__cause__
     return GlyphResult(outline, options, tuple(results), (*notes, *remarks(results, tolerance)))
+
+
+def _converted(
+    contours: list[Contour], options: Options, tolerance: float, outline: Outline
+) -> list[ContourResult]:  # fmt: skip
+    """The contours' results; an error's ``contour`` is the index in the list."""
+    # Here and not above, as these bring the compiler with them: the package opens without.
+    if options.corners == "sharp":
+        from .sharp_contours import convert_sharp
+
+        return convert_sharp(contours, options, tolerance, outline.metrics.units_per_em)
+    if options.step is None and options.count is None:
+        from .smooth_contours import convert_smooth
+
+        return convert_smooth(contours, options, tolerance)
+    from .contours import convert_contour
+
+    results: list[ContourResult] = []
+    for index, contour in enumerate(contours):
+        try:
+            results.append(convert_contour(contour, options, tolerance))
+        except GlyphsplineError as error:
+            error.contour = index
+            raise
+    return results
 
 
 def encloses(points: FloatArray) -> bool:
     """Whether three of the points (n, 2) are distinct."""
+    if len({tuple(point) for point in points[:4].tolist()}) >= 3:
+        return True  # at once, for nearly all contours
     others = points[(points != points[:1]).any(axis=1)]
     return bool((others != others[:1]).any())
 

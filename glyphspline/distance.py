@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import jet, jit
+from .arcs import jet, jit, length
 from .arrays import FloatArray
 
 ROUNDING = 1e-14
@@ -142,16 +142,16 @@ def _pair_all(
     for k in range(n):
         a, s = anchors[k]
         a_end, s_end = anchors[k + 1]
-        bounds[k], gaps[k] = _pair(result, a, a_end, source, s, s_end, sharpness)
+        bounds[k], gaps[k] = pair(result, a, a_end, source, s, s_end, sharpness)
         if bounds[k] > limit:
-            bound, gap = _pair(source, s, s_end, result, a, a_end, sharpness)
+            bound, gap = pair(source, s, s_end, result, a, a_end, sharpness)
             if bound < bounds[k]:
                 bounds[k], gaps[k] = bound, gap
     return bounds, gaps
 
 
 @jit
-def _pair(
+def pair(
     result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float
 ) -> tuple[float, float]:
     """Bound and gap between two stretches, cut where segments of the first end, at the second's nearest points."""
@@ -165,8 +165,7 @@ def _pair(
         else:
             cut = i + 1.0
             partner = nearest_place(source, s, s_end, result[i % r, 3, 0], result[i % r, 3, 1])
-        b, g = _pair_segment(result, i % r, a - i, cut - i, source, s, partner, sharpness)
-        bound, gap = max(bound, b), max(gap, g)
+        bound, gap = _pair_segment(result, i % r, a - i, cut - i, source, s, partner, sharpness, bound, gap)
         if last:
             return bound, gap
         a, s = cut, partner
@@ -175,11 +174,13 @@ def _pair(
 @jit
 def _pair_segment(
     result: FloatArray, i: int, x0: float, x_end: float, source: FloatArray, before: float, after: float,
-    sharpness: float,
+    sharpness: float, bound: float, gap: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Bound and gap between segment i of the result, from x0 to x_end, and the source from one place to another."""
+    """Bound and gap between segment i of the result, from x0 to x_end, and the source from one place to another.
+
+    They begin with those of what came before: what is below them need not be known sharply.
+    """
     m = len(source)
-    bound, gap = 0.0, 0.0
     place = before
     while True:
         s = int(np.floor(place))
@@ -189,8 +190,7 @@ def _pair_segment(
         else:
             end = 1.0
             x1 = nearest_place(result[i : i + 1], x0, x_end, source[s % m, 3, 0], source[s % m, 3, 1])
-        b, g = _sections(result[i], x0, x1, source[s % m], place - s, end, sharpness)
-        bound, gap = max(bound, b), max(gap, g)
+        bound, gap = _sections(result[i], x0, x1, source[s % m], place - s, end, sharpness, bound, gap)
         if last:
             return bound, gap
         x0, place = x1, s + 1.0
@@ -198,16 +198,18 @@ def _pair_segment(
 
 @jit
 def _sections(
-    a: FloatArray, x0: float, x1: float, b: FloatArray, y0: float, y1: float, sharpness: float
+    a: FloatArray, x0: float, x1: float, b: FloatArray, y0: float, y1: float, sharpness: float, bound: float, gap: float
 ) -> tuple[float, float]:
-    """Bound and gap between two pieces of cubics, halved until the bound is sharp or as often as is allowed."""
+    """Bound and gap between two pieces of cubics, halved until the bound is sharp or as often as is allowed.
+
+    They begin with those of what came before.
+    """
     stack = np.empty((DEEPEST + 2, 5))
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3], stack[0, 4] = x0, x1, y0, y1, 0.0
     count = 1
     A, B = np.empty((4, 2)), np.empty((4, 2))
     whole = np.empty((1, 4, 2))
     whole[0] = b
-    bound, gap = 0.0, 0.0
     while count:
         count -= 1
         x0, x1, y0, y1, depth = stack[count]
@@ -215,7 +217,7 @@ def _sections(
         section(b, y0, y1, B)
         most = 0.0
         for k in range(4):
-            d = np.hypot(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
+            d = length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
             most = max(most, d)
             if k == 0 or k == 3:
                 gap = max(gap, d)

@@ -14,6 +14,7 @@ import numpy as np
 from .arcfit import fit_arc
 from .arcs import jit
 from .arrays import FloatArray, IntArray
+from .cubicfit import fit_cubic
 from .joints import Joints
 
 SEGMENT_PRICE = 1.5
@@ -52,6 +53,13 @@ def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
 
 
 @jit
+def set_ends(joints: Joints, i: int, j: int, p: FloatArray) -> None:
+    """The vertices of a piece without inner ones."""
+    for axis in range(2):
+        p[0, axis], p[1, axis] = joints.samples[joints.first[i], axis], joints.samples[joints.first[j], axis]
+
+
+@jit
 def fit_between(
     joints: Joints,
     i: int,
@@ -67,6 +75,19 @@ def fit_between(
 ) -> float:
     """:func:`.arcfit.fit_arc` from joint i to joint j; tangents at corners are free to turn."""
     a, b = joints.first[i], joints.first[j] + 1
+    if k == 1:
+        set_ends(joints, i, j, p)
+        return fit_cubic(
+            joints.samples[a:b],
+            joints.leaving[i],
+            joints.corner[i],
+            joints.arriving[j],
+            joints.corner[j],
+            tolerance,
+            rounds,
+            start,
+            end,
+        )
     return fit_arc(
         joints.samples[a:b],
         joints.density[a:b],
@@ -85,50 +106,89 @@ def fit_between(
     )
 
 
+class Cut(NamedTuple):
+    """A contour cut into lines and arcs.
+
+    Attributes:
+        rows: (r, 3) joint, next joint and number of spans of each piece; no spans for a line.
+        vertices: (r, most + 1, 2) and tangents: (r, 2, 2), as far as they are used.
+        errors: (r,) largest distance of a sample from each arc.
+    """
+
+    rows: IntArray
+    vertices: FloatArray
+    tangents: FloatArray
+    errors: FloatArray
+
+
+@jit
+def room(count: int, most: int) -> Cut:
+    """Room for so many pieces of at most so many spans."""
+    rows = np.zeros((count, 3), dtype=np.int64)
+    return Cut(rows, np.zeros((count, most + 1, 2)), np.zeros((count, 2, 2)), np.zeros(count))
+
+
+@jit
+def copy_piece(a: Cut, i: int, b: Cut, j: int) -> None:
+    """Write a's piece i where b has its piece j."""
+    b.errors[j] = a.errors[i]
+    for k in range(3):
+        b.rows[j, k] = a.rows[i, k]
+    for axis in range(2):
+        for end in range(2):
+            b.tangents[j, end, axis] = a.tangents[i, end, axis]
+        for k in range(a.rows[i, 2] + 1 if a.rows[i, 2] > 0 else 2):
+            b.vertices[j, k, axis] = a.vertices[i, k, axis]
+
+
 @jit
 def cheapest(
     joints: Joints, nodes: IntArray, tolerance: float, margin: float, residual: float, rounds: int, most: int,
-    chosen: IntArray,
+    result: Cut, count: int,
 ) -> int:  # fmt: skip
     """The cheapest way from nodes[0] to nodes[-1] by lines and arcs between the joints ``nodes``.
 
     From the last node backwards; from each one the ends are tried in the order of the price they promise, a longer
     stretch being taken to need at least the spans of a shorter one, so that the first that can be kept is the best.
-    ``chosen`` receives rows (joint, next joint, spans), spans 0 for a line. Returns their number.
+    The pieces go to ``result`` after the ``count`` that are there. Returns their number then.
     """
     J = len(nodes) - 1
-    rest, following, spans = np.zeros(J + 1), np.zeros(J + 1, dtype=np.int64), np.zeros(J + 1, dtype=np.int64)
+    rest, following = np.zeros(J + 1), np.zeros(J + 1, dtype=np.int64)
     least, carried = np.ones(J + 1, dtype=np.int64), np.ones(J + 1, dtype=np.int64)
-    p, start, end = np.empty((most + 1, 2)), np.empty(2), np.empty(2)
+    kept = room(J, most)  # the piece that begins at each node
     for i in range(J - 1, -1, -1):
         line = _farthest_line(joints, nodes, i, rest, tolerance)
+        p, start, end = kept.vertices[i], kept.tangents[i, 0], kept.tangents[i, 1]
         while True:
             best, at = np.inf, i + 1
             for j in range(i + 1, J + 1):
                 if least[j] <= most and price(least[j]) + rest[j] <= best:
                     best, at = price(least[j]) + rest[j], j
             if line > i and price(0) + rest[line] <= best:
-                rest[i], following[i], spans[i] = price(0) + rest[line], line, 0
+                best, at, k, error = price(0) + rest[line], line, 0, 0.0
+                set_ends(joints, nodes[i], nodes[at], p)
                 break
             k = least[at]
             error = fit_between(joints, nodes[i], nodes[at], k, tolerance, margin, residual, rounds, p, start, end)
             own = nodes[at] - nodes[i]
             if error <= tolerance:
-                rest[i], following[i], spans[i] = best, at, k
                 break
             if at == i + 1 and (own == 1 or k == most):
                 # What cannot be fitted stays as the source has it, a cubic a segment.
-                rest[i], following[i], spans[i] = own * price(1) + rest[at], at, k
+                best = own * price(1) + rest[at]
                 break
             more = max(k + 1, min(int(0.7 * k * (error / tolerance) ** 0.25), most + 1) if error < np.inf else 0)
             for j in range(at, J + 1):
                 least[j] = max(least[j], k + 1 if j > at else more)
                 # A near miss may be due to the tangent here: it says little of what begins before.
                 carried[j] = max(carried[j], k if error < NEAR_MISS * tolerance else k + 1)
-        least[:] = carried
-    count, i = 0, 0
+        rest[i], following[i], kept.errors[i] = best, at, error
+        kept.rows[i, 0], kept.rows[i, 1], kept.rows[i, 2] = nodes[i], nodes[at], k
+        for j in range(J + 1):
+            least[j] = carried[j]
+    i = 0
     while i < J:
-        chosen[count, 0], chosen[count, 1], chosen[count, 2] = nodes[i], nodes[following[i]], spans[i]
+        copy_piece(kept, i, result, count)
         count += 1
         i = following[i]
     return count
@@ -149,21 +209,6 @@ def _farthest_line(joints: Joints, nodes: IntArray, i: int, rest: FloatArray, to
     return found
 
 
-class Cut(NamedTuple):
-    """A contour cut into lines and arcs.
-
-    Attributes:
-        rows: (r, 3) joint, next joint and number of spans of each piece; no spans for a line.
-        vertices: (r, most + 1, 2) and tangents: (r, 2, 2) of the arcs, as far as they are used.
-        errors: (r,) largest distance of a sample from each piece.
-    """
-
-    rows: IntArray
-    vertices: FloatArray
-    tangents: FloatArray
-    errors: FloatArray
-
-
 @jit
 def cut(
     joints: Joints, tolerance: float, margin: float, residual: float, rounds: int, most: int, stride: int
@@ -176,9 +221,9 @@ def cut(
         stride: arcs end at corners and at every so many joints.
     """
     m = len(joints.line)
-    rows = np.empty((m, 3), dtype=np.int64)
+    result, count = room(m, most), 0
     nodes = np.empty(m + 1, dtype=np.int64)
-    count, i = 0, 0
+    i = 0
     while i < m:
         nodes[0] = i
         last, j = 0, i + 1
@@ -189,16 +234,10 @@ def cut(
             j += 1
         nodes[last + 1] = j
         if joints.line[i]:
-            rows[count] = i, j, 0
+            result.rows[count, 0], result.rows[count, 1] = i, j
+            set_ends(joints, i, j, result.vertices[count])
             count += 1
         else:
-            count += cheapest(joints, nodes[: last + 2], tolerance, margin, residual, rounds, most, rows[count:])
+            count = cheapest(joints, nodes[: last + 2], tolerance, margin, residual, rounds, most, result, count)
         i = j
-    vertices, tangents, errors = np.zeros((count, most + 1, 2)), np.zeros((count, 2, 2)), np.zeros(count)
-    for r in range(count):
-        i, j, k = rows[r]
-        if k > 0:
-            errors[r] = fit_between(
-                joints, i, j, k, tolerance, margin, residual, rounds, vertices[r], tangents[r, 0], tangents[r, 1]
-            )
-    return Cut(rows[:count], vertices, tangents, errors)
+    return Cut(result.rows[:count], result.vertices[:count], result.tangents[:count], result.errors[:count])

@@ -81,7 +81,7 @@ def interpolate(
         PolygonError: the polygon or its knots cannot be interpolated; the message says why.
         ValueError: an option out of its range.
     """
-    _check(variant, degree, margin, fallback, residual_tolerance, max_iterations, closed, end_tangents, finish)
+    check_options(variant, degree, margin, fallback, residual_tolerance, max_iterations, closed, end_tangents, finish)
     if degree != 3 or variant in STEPWISE or diagnostics:
         return interpolate_stepwise(
             points, variant, degree=degree, margin=margin, knots=knots, fallback=fallback,
@@ -166,7 +166,7 @@ def _together(
     closed = settings["closed"]
     if isinstance(knots, str) and knots not in CHORD_EXPONENT:
         raise PolygonError(f"knots are {', '.join(CHORD_EXPONENT)} or an array, not {knots!r}")
-    _check(variant, **settings, end_tangents=next((t for t in own_tangents if t is not None), None))
+    check_options(variant, **settings, end_tangents=next((t for t in own_tangents if t is not None), None))
     results: list[Any] = [None] * len(polygons)
     parts: list[FloatArray] = []
     given: list[FloatArray] = []
@@ -266,7 +266,7 @@ def interpolate_vertex(
     )
 
 
-def _check(
+def check_options(
     variant: int,
     degree: int,
     margin: float,

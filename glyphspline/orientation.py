@@ -4,36 +4,41 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arcs import jit
 from .arrays import FloatArray
-from .outline import Contour
 
 
+@jit
 def farthest_joint(joints: FloatArray) -> int:
     """Index of the joint (m, 2) farthest from the middle of all; of several, that farthest right, then up."""
-    reach = np.hypot(*(joints - joints.mean(axis=0)).T)
-    return int(max(range(len(joints)), key=lambda j: (round(reach[j], 6), *joints[j])))
+    m = len(joints)
+    x, y = joints[:, 0].sum() / m, joints[:, 1].sum() / m
+    best, reached = 0, -1.0
+    for j in range(m):
+        reach = np.rint(np.hypot(joints[j, 0] - x, joints[j, 1] - y) * 1e6)
+        x_ahead, y_ahead = joints[j, 0] - joints[best, 0], joints[j, 1] - joints[best, 1]
+        if reach > reached or (reach == reached and (x_ahead > 0 or (x_ahead == 0 and y_ahead > 0))):
+            best, reached = j, reach
+    return best
 
 
+@jit
 def runs_backwards(cubics: FloatArray) -> bool:
     """Whether to fit a chain of cubics (m, 4, 2) the other way round.
 
     Told by the chords of its segments: the sum changes its sign with the direction, is the same from every start,
     and knows no shift, turn or mirror.
     """
-    h = np.hypot(*(cubics[:, 3] - cubics[:, 0]).T)
-    after = np.roll(h, -1)
-    return bool((h * after * (h - after)).sum() < 0)
+    m = len(cubics)
+    h = np.hypot(cubics[:, 3, 0] - cubics[:, 0, 0], cubics[:, 3, 1] - cubics[:, 0, 1])
+    total = 0.0
+    for j in range(m):
+        after = h[(j + 1) % m]
+        total += h[j] * after * (h[j] - after)
+    return total < 0
 
 
+@jit
 def flip(cubics: FloatArray) -> FloatArray:
     """The same chain of cubics run the other way, beginning at the same point."""
-    return np.ascontiguousarray(cubics[::-1, ::-1])
-
-
-def canonical(contour: Contour) -> tuple[Contour, bool]:
-    """The contour begun at its farthest joint and run in the direction of its shape, and whether that flipped it."""
-    flipped = runs_backwards(contour.cubics())
-    if flipped:
-        contour = contour.reversed()
-    k = farthest_joint(contour.points[contour.offsets])
-    return Contour(np.roll(contour.points, -contour.offsets[k], axis=0), np.roll(contour.degrees, -k)), flipped
+    return cubics[::-1, ::-1].copy()

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
-from ..fit import CERTAIN_RATIO
 from ..glyph import Options
 from ..outline import Contour, Outline
 from ..writers.bounds import ink_box

@@ -18,7 +18,7 @@ from ..convert import convert
 from ..curvature import Comb, robust_scale
 from ..display import as_glyph
 from ..errors import GlyphsplineError
-from ..fit import fit_smooth, is_graded
+from ..fit import fit_even, is_graded
 from ..glyph import ContourResult, GlyphResult, Measures, Options
 from ..interpolation import interpolate
 from ..outline import Contour, Outline
@@ -114,7 +114,7 @@ def quick(outline: Outline, options: Options) -> GlyphResult:
     contours = []
     for contour in outline.contours:
         if len(np.unique(contour.points, axis=0)) >= 3:
-            fit = fit_smooth(contour, options, options.tolerance_for(outline.metrics.units_per_em))
+            fit = fit_even(contour, options, options.tolerance_for(outline.metrics.units_per_em))
             contours.append(curve_result(contour, fit.polygon, fit.result))
     return GlyphResult(outline, options, tuple(contours))
 

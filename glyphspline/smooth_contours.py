@@ -1,0 +1,140 @@
+"""A glyph's contours through the smooth mode: fitted and measured together, and those again that cross themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .arrays import FloatArray, IntArray
+from .closed import Backwards, turned
+from .contours import CLOSER
+from .distance import certified_distance
+from .errors import GlyphsplineError
+from .glyph import ContourResult, Measures, Options
+from .outline import Contour
+from .polygon import LARGEST, clean_polygon
+from .refine import Round, refined
+from .result import Interpolation
+from .smooth import rounds
+from .smooth.chains import Chains, chains_of
+from .smooth.forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT, forms
+
+SHARPNESS = 0.02
+"""The certified bound may exceed the distances seen by this share of the tolerance."""
+
+NO_POLYGONS = np.empty((0, 2))
+
+
+def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: float) -> list[ContourResult]:
+    """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
+
+    Results that cross themselves where their source did not are fitted again more closely; that with the fewest
+    crossings counts, and is flagged if it has any. Outlines that go back the way they came keep some.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
+    """
+    if not contours:
+        return []
+    _check(contours)
+    chains = chains_of([contour.cubics() for contour in contours])
+    source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
+    near = np.full(len(contours), tolerance)
+    results: dict[int, ContourResult] = {}
+    left = np.arange(len(contours))
+    for share in CLOSER:
+        near[left] = share * tolerance
+        kept = refined(chains, left, options, near)
+        own = _measured(chains, left, [kept[k] for k in left.tolist()], source, tolerance)
+        for k, measures in zip(left.tolist(), own, strict=True):
+            if k not in results or _rank(measures) < _rank(results[k].measures):
+                results[k] = _result(contours[k], *kept[k], bool(chains.flipped[k]), measures)
+        left = left[[bool(measures.new_crossings) for measures in own]]
+        if len(left) == 0:
+            break
+    return [results[k] for k in range(len(contours))]
+
+
+def _rank(measures: Measures) -> tuple[bool, int]:
+    """The lower, the better: within the tolerance before all, then few crossings."""
+    return not measures.within_tolerance, measures.new_crossings or 0
+
+
+def _check(contours: Sequence[Contour]) -> None:
+    """Refuse coordinates that are not finite, or too large."""
+    for k, contour in enumerate(contours):
+        if not np.abs(contour.points).max() < LARGEST / 4:
+            try:
+                if not np.isfinite(contour.points).all():
+                    raise GlyphsplineError("the outline has a coordinate that is not finite")
+                clean_polygon(contour.points)
+            except GlyphsplineError as error:
+                raise error.locate(contour=k) from None
+
+
+def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Measures) -> ContourResult:
+    """Part i of a round, in the direction in which the contour was given."""
+    points, pieces = found.part(found.points, i), found.part(found.pieces, i)
+    if flipped:
+        points, pieces = turned(points), pieces[::-1, ::-1]
+    curve = Contour(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3))
+    result = Interpolation.shared(Backwards(found.found) if flipped else found.found, i)
+    return ContourResult(contour, points, (result,), curve, measures)
+
+
+def _measured(
+    chains: Chains, which: IntArray, kept: Sequence[tuple[Round, int]], source: FloatArray, tolerance: float
+) -> list[Measures]:
+    """All that is known of some contours' results."""
+    parts = [found.part(found.pieces, i) for found, i in kept]
+    offsets = np.cumsum([0] + [len(part) for part in parts])
+    polygons = np.concatenate([found.part(found.points, i) for found, i in kept])
+    form = forms(np.concatenate(parts), offsets, polygons, offsets)
+    change = np.where(chains.flipped[which], -1, 1) * (form[:, AREA] - source[which, AREA])
+    crossings = np.maximum(form[:, CROSSINGS] - source[which, CROSSINGS], 0).astype(int).tolist()
+    results = []
+    for k, (found, i), row, difference, crossed in zip(
+        which.tolist(), kept, form.tolist(), change.tolist(), crossings, strict=True
+    ):
+        bound, gap = _certificate(chains, k, found, i, tolerance)
+        _, n, iterations, fallbacks, _ = found.found.whole[i].tolist()
+        residual = float(found.found.residuals[found.found.residual_offsets[i + 1] - 1])
+        results.append(
+            Measures(
+                vertices=n,
+                segments=n,
+                numbers=2 * n,
+                iterations=iterations,
+                residual=residual,
+                converged=residual < found.found.tolerances[i],
+                rate_bound=float(found.found.rates[i]),
+                fallbacks=fallbacks,
+                deviation=gap,
+                deviation_bound=bound,
+                within_tolerance=bound <= tolerance,
+                overshoot=row[OVERSHOOT],
+                length=row[LENGTH],
+                area_change=difference,
+                bending_energy=row[ENERGY],
+                max_curvature=row[CURVATURE],
+                new_crossings=crossed,
+            )
+        )
+    return results
+
+
+def _certificate(chains: Chains, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
+    """Certified bound, and distance seen, of part i of a round from contour k."""
+    written, start = found.part(found.written, i), found.offsets[i] + i
+    ends = found.ends[start : start + len(written) + 1]
+    bound, gap = rounds.certificate(
+        chains, k, written, found.part(found.bounds, i), found.part(found.gaps, i), ends, SHARPNESS * tolerance
+    )
+    if bound <= tolerance:
+        return bound, gap
+    # Pairing the other way round too is slow, and only seldom better.
+    anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
+    outline = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
+    other = certified_distance(written, outline, anchors, SHARPNESS * tolerance, tolerance)
+    return (other.bound, other.measured) if other.bound < bound else (bound, gap)

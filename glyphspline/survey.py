@@ -1,0 +1,74 @@
+"""The measures of all contours of a glyph, in one compiled call."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .arcs import jit
+from .arrays import FloatArray, IntArray
+from .chains import Flat, contour_cubics
+from .measure import NODES, WEIGHTS, _shape
+from .selfcrossings import chords, count_crossings, farthest_outside
+
+
+class Survey(NamedTuple):
+    """Measures of C contours, (C,) each; see :class:`.glyph.Measures`. Crossings are those of the result and of the
+    source, each by itself.
+    """
+
+    length: FloatArray
+    area_change: FloatArray
+    bending_energy: FloatArray
+    max_curvature: FloatArray
+    overshoot: FloatArray
+    crossings: IntArray
+    source_crossings: IntArray
+
+
+def survey(result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray) -> Survey:
+    """Measure contours.
+
+    Args:
+        result: the curves; source: what they were fitted to.
+        polygons: (n, 2) their vertices; offsets: (C + 1,) where each contour's begin.
+    """
+    return Survey(*_survey(result, source, polygons, offsets, NODES, WEIGHTS))
+
+
+@jit
+def _survey(
+    result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray, nodes: FloatArray, weights: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, IntArray]:
+    C = len(offsets) - 1
+    length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
+    crossings, before = np.empty(C, dtype=np.int64), np.empty(C, dtype=np.int64)
+    for c in range(C):
+        cubics, given = contour_cubics(result, c), contour_cubics(source, c)
+        length[c], energy[c], curvature[c] = 0.0, 0.0, 0.0
+        for j in range(len(cubics)):
+            if result.degrees[result.offsets[c] + j] == 1:
+                length[c] += np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
+                continue
+            own_length, _, own_energy, own_curvature = _shape(cubics[j : j + 1], nodes, weights)
+            length[c] += own_length
+            energy[c] += own_energy
+            curvature[c] = max(curvature[c], own_curvature)
+        change[c] = _area(cubics) - _area(given)
+        points, first = chords(cubics)
+        beyond[c] = farthest_outside(cubics, points, first, polygons[offsets[c] : offsets[c + 1]])
+        crossings[c] = count_crossings(cubics, points, first)
+        points, first = chords(given)
+        before[c] = count_crossings(given, points, first)
+    return length, change, energy, curvature, beyond, crossings, before
+
+
+@jit
+def _area(cubics: FloatArray) -> float:
+    """Signed area of a closed chain, exactly: the integral of its Bézier points' products."""
+    total = 0.0
+    for b in cubics:
+        for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):
+            total += weight * (b[i, 0] * b[j, 1] - b[i, 1] * b[j, 0])
+    return total / 20
