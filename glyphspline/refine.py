@@ -34,6 +34,7 @@ THINNINGS = {"fast": 0, "best": 30}
 """Trials, at the end, to do without vertices one by one: none comes, those that are needed are put back."""
 
 THIN_POWER = 1.0
+"""The power for these trials: what it promises is tried out."""
 
 
 @dataclass(frozen=True, eq=False)
