@@ -26,7 +26,7 @@ test: lint
 paper: venv
 	$(BIN)/python -m scripts.paper
 
-# Every polygon of the full comparison, some minutes; the tests take a tenth.
+# 5000 polygons through the compiled core and the plain reference, a quarter of an hour of two cores; the tests take 500.
 check-reference: venv
 	$(BIN)/python scripts/check_reference.py
 

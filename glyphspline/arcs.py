@@ -13,13 +13,19 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .bspline import Spline
 
-jit = nb.njit(cache=True, error_model="numpy", fastmath={"contract"})
+jit = nb.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 
 PEAK_SHARE = 0.9
 """As in :mod:`.intervals`. It is asked of arcs of two spans, whose one free vertex has a peak of 1/2 at most.
 
 Lemma 2 has no interval there, but does not need one: alone, a vertex has its error multiplied by 1 - B_i < 1.
 """
+
+
+@jit
+def length(x: float, y: float) -> float:
+    """Length of a vector whose square neither over- nor underflows: in a third of the time of ``hypot``."""
+    return np.sqrt(x * x + y * y)
 
 
 @jit

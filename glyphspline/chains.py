@@ -11,7 +11,7 @@ import numpy as np
 
 from .arcs import jit, raised
 from .arrays import BoolArray, FloatArray, IntArray
-from .joints import Joints, find_joints
+from .joints import Joints, begun_at, find_joints
 from .orientation import farthest_joint, flip, runs_backwards
 
 
@@ -77,20 +77,27 @@ def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
     count = 0
     for j in range(m):
         b = cubics[j]
-        if (b[1:] == b[:3]).all():
+        still = closed = True
+        for axis in range(2):
+            closed &= b[0, axis] == b[3, axis]
+            for k in range(1, 4):
+                still &= b[k, axis] == b[0, axis]
+        if still:
             continue
-        kept[count : count + 2] = degrees[j]
-        found[count] = b
-        if b[0, 0] == b[3, 0] and b[0, 1] == b[3, 1]:
-            for axis in range(2):
-                p, q, r, s = b[0, axis], b[1, axis], b[2, axis], b[3, axis]
-                pq, qr, rs = (p + q) / 2, (q + r) / 2, (r + s) / 2
-                left, right = (pq + qr) / 2, (qr + rs) / 2
-                middle = (left + right) / 2
-                found[count, 1, axis], found[count, 2, axis], found[count, 3, axis] = pq, left, middle
-                found[count + 1, 0, axis], found[count + 1, 1, axis] = middle, right
-                found[count + 1, 2, axis], found[count + 1, 3, axis] = rs, s
+        kept[count] = degrees[j]
+        for axis in range(2):
+            p, q, r, s = b[0, axis], b[1, axis], b[2, axis], b[3, axis]
+            pq, qr, rs = (p + q) / 2, (q + r) / 2, (r + s) / 2
+            left, right = (pq + qr) / 2, (qr + rs) / 2
+            middle = (left + right) / 2
+            whole, halves = (p, q, r, s), (p, pq, left, middle, right, rs, s)
+            for k in range(4):
+                found[count, k, axis] = halves[k] if closed else whole[k]
+                if closed:
+                    found[count + 1, k, axis] = halves[3 + k]
+        if closed:
             count += 1
+            kept[count] = degrees[j]
         count += 1
     return found[:count].copy(), kept[:count].copy()
 
@@ -118,5 +125,5 @@ def laid_out(
     k = first_joint(joints)
     if k > 0:
         cubics, degrees = np.concatenate((cubics[k:], cubics[:k])), np.concatenate((degrees[k:], degrees[:k]))
-        joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line)
+        joints = begun_at(joints, k)
     return cubics, degrees, flipped, joints

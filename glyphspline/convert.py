@@ -70,6 +70,8 @@ def _converted(
 
 def encloses(points: FloatArray) -> bool:
     """Whether three of the points (n, 2) are distinct."""
+    if len({tuple(point) for point in points[:4].tolist()}) >= 3:
+        return True  # at once, for nearly all contours
     others = points[(points != points[:1]).any(axis=1)]
     return bool((others != others[:1]).any())
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arcfit import HOPELESS, SLIDE
-from .arcs import jit
+from .arcs import jit, length
 from .arrays import FloatArray
 
 ENOUGH = 10
@@ -41,18 +41,20 @@ def fit_cubic(
         estimate.
     """
     n = len(Q)
-    chord = np.hypot(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
+    chord = length(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
     if chord == 0:
         return np.inf
     x, e, weight = np.zeros(n), np.empty(n), np.ones(n)
     for j in range(1, n):
-        x[j] = x[j - 1] + np.hypot(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
+        x[j] = x[j - 1] + length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
     reach = x[n - 1]
-    x /= reach
+    for j in range(n):
+        x[j] /= reach
     # Handles in chords: the first inner point less the first end, the last end less the last inner point.
-    handles = np.empty(4)
-    handles[:2], handles[2:] = d0 * min(reach / chord, 3.0) / 3, d1 * min(reach / chord, 3.0) / 3
-    c = np.empty((3, 2))
+    handles, third = np.empty(4), min(reach / chord, 3.0) / 3
+    for axis in range(2):
+        handles[axis], handles[2 + axis] = d0[axis] * third, d1[axis] * third
+    c, A, g = np.empty((3, 2)), np.empty((4, 4)), np.empty(4)
     best = np.inf
     step = max(1, n // (ENOUGH + 1))
     for m in range(rounds):
@@ -60,16 +62,18 @@ def fit_cubic(
         error = _project(Q, c, step, x, e)
         if step > 1 and error <= tolerance:
             step, best = 1, np.inf
-            weight[:] = 1.0
+            for j in range(n):
+                weight[j] = 1.0
             error = _project(Q, c, step, x, e)
         if error < best:
             best = error
-            start[:], end[:] = handles[:2] * 3, handles[2:] * 3
+            for axis in range(2):
+                start[axis], end[axis] = handles[axis] * 3, handles[2 + axis] * 3
         if best <= tolerance or best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance or m == rounds - 1:
             break
         if m >= 1:
             _sharpen(weight, e, error, step)
-        _step(Q, c, step, x, weight, d0, free0, d1, free1, chord, handles)
+        _step(Q, c, step, x, weight, d0, free0, d1, free1, chord, handles, A, g)
     return best
 
 
@@ -105,7 +109,7 @@ def _project(Q: FloatArray, c: FloatArray, step: int, x: FloatArray, e: FloatArr
             if move < 1e-3:
                 break
         low = x[j] = t
-        e[j] = np.hypot(((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy)
+        e[j] = length(((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy)
         worst = max(worst, e[j])
     return worst
 
@@ -126,15 +130,19 @@ def _sharpen(weight: FloatArray, e: FloatArray, error: float, step: int) -> None
 def _step(
     Q: FloatArray, c: FloatArray, step: int, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
+    A: FloatArray, g: FloatArray,
 ) -> None:  # fmt: skip
     """One Gauss-Newton step of both handles on the distances along the normals; the unknowns are both inner points."""
-    A, g = np.zeros((4, 4)), np.zeros(4)
+    for r in range(4):
+        g[r] = 0.0
+        for s in range(4):
+            A[r, s] = 0.0
     total = 0.0
     for j in range(step, len(Q) - 1, step):
         t, w = x[j], weight[j]
         y = 1 - t
         dx, dy = (3 * c[2, 0] * t + 2 * c[1, 0]) * t + c[0, 0], (3 * c[2, 1] * t + 2 * c[1, 1]) * t + c[0, 1]
-        speed = np.hypot(dx, dy)
+        speed = length(dx, dy)
         if speed <= 0:
             continue
         tx, ty = dx / speed, dy / speed
@@ -200,14 +208,12 @@ def _solve(A: FloatArray, g: FloatArray) -> None:
 @jit
 def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: bool) -> None:
     """Move a handle; it stays on its old side, and its tangent between SHORTEST and LONGEST."""
-    old = np.hypot(handle[0], handle[1])
+    old = length(handle[0], handle[1])
     x, y = handle[0] + x, handle[1] + y
-    new = np.hypot(x, y)
+    new = length(x, y)
+    size = min(max(new, SHORTEST / 3), LONGEST / 3)
     if x * handle[0] + y * handle[1] <= 0.1 * old * new:
-        handle *= max(0.5, SHORTEST / 3 / old)
-        return
-    length = min(max(new, SHORTEST / 3), LONGEST / 3)
-    if free:
-        handle[0], handle[1] = x / new * length, y / new * length
-    else:
-        handle[:] = d * length
+        x, y, new, size = handle[0], handle[1], old, max(old / 2, SHORTEST / 3)
+    elif not free:
+        x, y, new = d[0], d[1], 1.0
+    handle[0], handle[1] = x / new * size, y / new * size

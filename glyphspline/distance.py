@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import jet, jit
+from .arcs import jet, jit, length
 from .arrays import FloatArray
 
 ROUNDING = 1e-14
@@ -217,7 +217,7 @@ def _sections(
         section(b, y0, y1, B)
         most = 0.0
         for k in range(4):
-            d = np.hypot(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
+            d = length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
             most = max(most, d)
             if k == 0 or k == 3:
                 gap = max(gap, d)

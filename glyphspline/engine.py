@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -24,14 +24,20 @@ from .result import Interpolation
 GIVEN = -1.0
 """In place of a chord exponent: the knots are the caller's."""
 
-CHUNK_VERTICES = 8192
-"""Work handed to a thread at a time: enough to hide the hand-over, little enough to share the last of it."""
+LEAST_VERTICES = 1024
+"""The least work handed to a thread at a time, some 0.3 ms: enough to hide the hand-over."""
+
+LARGE = 30_000
+"""Polygons of so many vertices get their room from NumPy, which asks for large pages: the processor can remember
+where few pages are, but not where many small ones are, and all of the room is gone through in every pass.
+"""
 
 WHOLE = 5
 """Where among the arrays of :func:`_results` the whole numbers are."""
 
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
+NO_ROOM = np.empty((0, 0))
 NOTHING_MERGED = np.empty(0, dtype=np.int64)
 
 
@@ -153,9 +159,10 @@ def interpolate_ragged(
     peak_share = PEAK_SHARE if fallback == "peak" else 0.0
 
     def work(part: tuple[int, int]) -> Any:
+        most = int(np.diff(offsets[part[0] : part[1] + 1]).max(initial=0))
         return run(
             part[0], part[1], points, offsets, given, tangents, closed, variant, float(margin), exponent, peak_share,
-            tolerances, max_iterations, finish == "solve", *out,
+            tolerances, max_iterations, finish == "solve", _room(most), *out,
         )  # fmt: skip
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
@@ -174,13 +181,27 @@ def _threads(threads: int | None) -> int:
 
 
 def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
-    """Runs of polygons, each of some CHUNK_VERTICES vertices."""
-    count = len(offsets) - 1
-    if _threads(threads) == 1 or offsets[-1] <= CHUNK_VERTICES or count < 2:
+    """Runs of polygons, large ones first: each has half of a thread's share of what is left, LEAST_VERTICES or more.
+
+    So that threads are done at almost the same time, however fast each of them gets on.
+    """
+    count, total, workers = len(offsets) - 1, int(offsets[-1]), _threads(threads)
+    if workers == 1 or total < 4 * LEAST_VERTICES or count < 2:
         return [(0, count)]
-    cuts = np.searchsorted(offsets, np.arange(CHUNK_VERTICES, int(offsets[-1]), CHUNK_VERTICES))
-    ends = np.unique(np.concatenate([[0], cuts, [count]]))
+    cuts = [0]
+    while cuts[-1] < total:
+        cuts.append(cuts[-1] + max((total - cuts[-1]) // (2 * workers), LEAST_VERTICES))
+    ends = np.unique([*np.searchsorted(offsets, np.minimum(cuts, total)), count])
     return [(int(a), int(b)) for a, b in pairwise(ends)]
+
+
+def _room(most: int) -> FloatArray:
+    """Room for a large polygon, or none: the compiled code finds small ones their own."""
+    if most < LARGE:
+        return NO_ROOM
+    from .core.fields import BLOCK, LANES
+
+    return np.empty((-(-most // LANES), BLOCK))
 
 
 def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
@@ -236,7 +257,8 @@ def interpolate_one(
     given, exponent = (NO_KNOTS, CHORD_EXPONENT[knots]) if isinstance(knots, str) else (knots, GIVEN)
     residuals = _compiled()(
         0, 1, points, np.array((0, n)), given, tangents, closed, variant, margin, exponent,
-        PEAK_SHARE if fallback == "peak" else 0.0, np.array((tolerance,)), max_iterations, finish == "solve", *out,
+        PEAK_SHARE if fallback == "peak" else 0.0, np.array((tolerance,)), max_iterations, finish == "solve", _room(n),
+        *out,
     )  # fmt: skip
     if out[WHOLE][0, 0]:
         return None
@@ -252,10 +274,29 @@ def _compiled() -> Any:
 
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:
-    """``work`` of each item, in order; worth it where work lets go of the interpreter's lock."""
-    if len(items) == 1 or _threads(threads) == 1:
+    """``work`` of each item, in order; worth it where work lets go of the interpreter's lock.
+
+    The caller's thread works too, which saves waking another one; each takes the next item when it is done with one.
+    """
+    helpers = min(_threads(threads), len(items)) - 1
+    if helpers < 1:
         return [work(item) for item in items]
-    return list(_pool(_threads(threads)).map(work, items))
+    results: list[Any] = [None] * len(items)
+    left = iter(range(len(items)))
+
+    def take() -> None:
+        for i in left:
+            results[i] = work(items[i])
+
+    running = [_pool(_threads(threads)).submit(take) for _ in range(helpers)]
+    try:
+        take()
+    finally:
+        wait([helper for helper in running if not helper.cancel()])
+    for helper in running:
+        if not helper.cancelled():
+            helper.result()
+    return results
 
 
 @cache

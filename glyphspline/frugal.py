@@ -53,6 +53,13 @@ def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
 
 
 @jit
+def set_ends(joints: Joints, i: int, j: int, p: FloatArray) -> None:
+    """The vertices of a piece without inner ones."""
+    for axis in range(2):
+        p[0, axis], p[1, axis] = joints.samples[joints.first[i], axis], joints.samples[joints.first[j], axis]
+
+
+@jit
 def fit_between(
     joints: Joints,
     i: int,
@@ -69,7 +76,7 @@ def fit_between(
     """:func:`.arcfit.fit_arc` from joint i to joint j; tangents at corners are free to turn."""
     a, b = joints.first[i], joints.first[j] + 1
     if k == 1:
-        p[0], p[1] = joints.samples[a], joints.samples[b - 1]
+        set_ends(joints, i, j, p)
         return fit_cubic(
             joints.samples[a:b],
             joints.leaving[i],
@@ -124,7 +131,14 @@ def room(count: int, most: int) -> Cut:
 @jit
 def copy_piece(a: Cut, i: int, b: Cut, j: int) -> None:
     """Write a's piece i where b has its piece j."""
-    b.rows[j], b.vertices[j], b.tangents[j], b.errors[j] = a.rows[i], a.vertices[i], a.tangents[i], a.errors[i]
+    b.errors[j] = a.errors[i]
+    for k in range(3):
+        b.rows[j, k] = a.rows[i, k]
+    for axis in range(2):
+        for end in range(2):
+            b.tangents[j, end, axis] = a.tangents[i, end, axis]
+        for k in range(a.rows[i, 2] + 1 if a.rows[i, 2] > 0 else 2):
+            b.vertices[j, k, axis] = a.vertices[i, k, axis]
 
 
 @jit
@@ -152,7 +166,7 @@ def cheapest(
                     best, at = price(least[j]) + rest[j], j
             if line > i and price(0) + rest[line] <= best:
                 best, at, k, error = price(0) + rest[line], line, 0, 0.0
-                p[0], p[1] = joints.samples[joints.first[nodes[i]]], joints.samples[joints.first[nodes[at]]]
+                set_ends(joints, nodes[i], nodes[at], p)
                 break
             k = least[at]
             error = fit_between(joints, nodes[i], nodes[at], k, tolerance, margin, residual, rounds, p, start, end)
@@ -170,7 +184,8 @@ def cheapest(
                 carried[j] = max(carried[j], k if error < NEAR_MISS * tolerance else k + 1)
         rest[i], following[i], kept.errors[i] = best, at, error
         kept.rows[i, 0], kept.rows[i, 1], kept.rows[i, 2] = nodes[i], nodes[at], k
-        least[:] = carried
+        for j in range(J + 1):
+            least[j] = carried[j]
     i = 0
     while i < J:
         copy_piece(kept, i, result, count)
@@ -220,8 +235,7 @@ def cut(
         nodes[last + 1] = j
         if joints.line[i]:
             result.rows[count, 0], result.rows[count, 1] = i, j
-            result.vertices[count, 0] = joints.samples[joints.first[i]]
-            result.vertices[count, 1] = joints.samples[joints.first[j]]
+            set_ends(joints, i, j, result.vertices[count])
             count += 1
         else:
             count = cheapest(joints, nodes[: last + 2], tolerance, margin, residual, rounds, most, result, count)

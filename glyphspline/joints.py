@@ -122,6 +122,23 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
 
 
 @jit
+def begun_at(joints: Joints, k: int) -> Joints:
+    """The joints of the same contour begun at joint k."""
+    m, last = len(joints.line), len(joints.samples) - 1
+    s, turned = joints.first[k], (np.arange(m + 1) + k) % m
+    return Joints(
+        np.concatenate((joints.samples[s:last], joints.samples[: s + 1])),
+        np.concatenate((joints.first[k:m] - s, joints.first[: k + 1] + (last - s))),
+        np.concatenate((joints.density[s:last], joints.density[: s + 1] + joints.density[last])),
+        joints.corner[turned],
+        joints.hard[turned],
+        joints.arriving[turned],
+        joints.leaving[turned],
+        joints.line[turned[:m]],
+    )
+
+
+@jit
 def _sample_segment(
     cubics: FloatArray, j: int, at: int, n: int, tolerance: float, samples: FloatArray, density: FloatArray
 ) -> None:

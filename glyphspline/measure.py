@@ -56,6 +56,9 @@ def _shape(pieces: FloatArray, nodes: FloatArray, weights: FloatArray) -> tuple[
 @jit
 def _curvature(dx: float, dy: float, ax: float, ay: float) -> float:
     """Absolute curvature. Dividing by the speed three times keeps tiny and huge curves from under- and overflow."""
+    square = dx * dx + dy * dy
+    if 1e-60 < square < 1e60:
+        return abs(dx * ay - dy * ax) / (square * np.sqrt(square))
     speed = np.hypot(dx, dy)
     if speed == 0:
         return np.inf

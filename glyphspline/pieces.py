@@ -6,6 +6,7 @@ get theirs from :func:`glyphspline.interpolate_many`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,7 @@ class Pieces(NamedTuple):
 
 
 @jit
-def _room(count: int) -> Pieces:
+def room(count: int) -> Pieces:
     """Room for so many pieces."""
     return Pieces(
         np.empty((count, 4), dtype=np.int64),
@@ -46,13 +47,6 @@ def _room(count: int) -> Pieces:
         np.empty((count * (FINEST + 1), 2)),
         np.zeros((count, 2, 2)),
     )
-
-
-@jit
-def _first(pieces: Pieces, count: int) -> Pieces:
-    """The first so many of them, without the room behind."""
-    where, starts, vertices, tangents = pieces
-    return Pieces(where[:count], starts[: count + 1], vertices[: starts[count]], tangents[:count])
 
 
 @jit
@@ -65,33 +59,33 @@ def _add(
         c, i, j, k: contour, joints and spans. p: (max(k, 1) + 1, 2) or more rows. tangents: (2, 2).
         flip_m: 0, or for a piece that runs the other way than its chain the number of the chain's segments.
     """
-    n = max(k, 1) + 1
-    at = pieces.starts[count]
-    row = pieces.where[count]
-    if flip_m == 0:
-        row[0], row[1], row[2], row[3] = c, i, j, k
-        pieces.vertices[at : at + n] = p[:n]
-        pieces.tangents[count] = tangents
-    else:
-        row[0], row[1], row[2], row[3] = c, flip_m - j, flip_m - i, k
-        pieces.vertices[at : at + n] = p[:n][::-1]
-        pieces.tangents[count, 0], pieces.tangents[count, 1] = -tangents[1], -tangents[0]
-    pieces.starts[count + 1] = at + n
+    n, at = max(k, 1), pieces.starts[count]
+    row, tau = pieces.where[count], pieces.tangents[count]
+    back = flip_m > 0
+    row[0], row[1], row[2], row[3] = c, flip_m - j if back else i, flip_m - i if back else j, k
+    for axis in range(2):
+        for r in range(n + 1):
+            pieces.vertices[at + r, axis] = p[n - r if back else r, axis]
+        for end in range(2):
+            tau[end, axis] = -tangents[1 - end, axis] if back else tangents[end, axis]
+    pieces.starts[count + 1] = at + n + 1
     return count + 1
 
 
 @jit
-def _add_source(
-    pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees: IntArray, i: int, j: int
-) -> int:  # fmt: skip
+def _add_source(pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees: IntArray, i: int, j: int) -> int:
     """Add segments i to j - 1 of a chain as they are, as lines and arcs of one span."""
-    tangents = np.zeros((2, 2))
+    p, tangents = np.empty((2, 2)), np.empty((2, 2))
     for s in range(i, j):
         b = cubics[s]
-        if degrees[s] > 1:
-            chord = np.hypot(b[3, 0] - b[0, 0], b[3, 1] - b[0, 1])
-            tangents[0], tangents[1] = (b[1] - b[0]) * 3 / chord, (b[3] - b[2]) * 3 / chord
-        count = _add(pieces, count, c, s, s + 1, min(degrees[s] - 1, 1), b[::3], tangents, 0)
+        factor = 3 / np.hypot(b[3, 0] - b[0, 0], b[3, 1] - b[0, 1])
+        for axis in range(2):
+            p[0, axis], p[1, axis] = b[0, axis], b[3, axis]
+            tangents[0, axis], tangents[1, axis] = (
+                (b[1, axis] - b[0, axis]) * factor,
+                (b[3, axis] - b[2, axis]) * factor,
+            )
+        count = _add(pieces, count, c, s, s + 1, 0 if degrees[s] == 1 else 1, p, tangents, 0)
     return count
 
 
@@ -104,7 +98,8 @@ def cut_contours(flat: Flat, settings: Settings) -> tuple[Chains, Pieces]:
         np.empty((most, 4, 2)), np.empty(most, dtype=np.int64), np.zeros(C + 1, dtype=np.int64),
         np.zeros(C, dtype=np.bool_),
     )  # fmt: skip
-    pieces, count = _room(most), 0
+    pieces, count = room(most), 0
+    where, starts, vertices, tangents = pieces
     for c in range(C):
         own = flat.degrees[flat.offsets[c] : flat.offsets[c + 1]]
         cubics, degrees, flipped, joints = laid_out(contour_cubics(flat, c), own, settings)
@@ -123,50 +118,71 @@ def cut_contours(flat: Flat, settings: Settings) -> tuple[Chains, Pieces]:
                 i, j = (m - j, m - i) if flipped else (i, j)
                 count = _add_source(pieces, count, c, cubics, degrees, i, j)
         at = chains.offsets[c]
-        chains.cubics[at : at + m], chains.degrees[at : at + m] = cubics, degrees
+        for s in range(m):
+            chains.degrees[at + s] = degrees[s]
+            for corner in range(4):
+                for axis in range(2):
+                    chains.cubics[at + s, corner, axis] = cubics[s, corner, axis]
         chains.offsets[c + 1], chains.flipped[c] = at + m, flipped
     total = chains.offsets[C]
-    return Chains(chains.cubics[:total], chains.degrees[:total], chains.offsets, chains.flipped), _first(pieces, count)
+    return Chains(chains.cubics[:total], chains.degrees[:total], chains.offsets, chains.flipped), Pieces(
+        where[:count], starts[: count + 1], vertices[: starts[count]], tangents[:count]
+    )
 
 
-@jit
-def cut_closer(chains: Chains, pieces: Pieces, poor: BoolArray, extra: int, rounds: int, settings: Settings) -> Pieces:
-    """Pieces with others in the place of poor ones: an arc of ``extra`` spans more, or the source's own segments.
+def cut_closer(
+    chains: Chains, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
+) -> Pieces:
+    """Pieces with others in the place of poor ones: arcs fitted more closely, or else the source's own segments.
+
+    Few pieces are poor, so that this is the one part that is not compiled.
 
     Args:
         poor: (P,) which pieces have failed.
-        extra: spans to add; 0 to take the source's segments at once. rounds: most Gauss-Newton steps.
+        tries: what is tried until it succeeds: how many spans to add, and the share of ``settings.near`` allowed.
+        rounds: most Gauss-Newton steps.
     """
-    longest = 0
-    for q in range(len(poor)):
-        longest += pieces.where[q, 2] - pieces.where[q, 1] if poor[q] else 1
-    result, count, near = _room(longest), 0, 0.9 * settings.near
-    p, tangents = np.empty((FINEST + 1, 2)), np.zeros((2, 2))
-    for q in range(len(poor)):
-        c, i, j, k = pieces.where[q]
-        at = pieces.starts[q]
-        if not poor[q]:
-            count = _add(result, count, c, i, j, k, pieces.vertices[at:], pieces.tangents[q], 0)
-            continue
-        cubics = chains.cubics[chains.offsets[c] : chains.offsets[c + 1]]
-        degrees = chains.degrees[chains.offsets[c] : chains.offsets[c + 1]]
-        m = len(cubics)
-        k = max(k, 1) + extra
-        if extra > 0 and k <= FINEST:
-            back = m if chains.flipped[c] else 0
-            a, b = (m - j, m - i) if back else (i, j)
-            chain = flip(cubics) if back else cubics
-            joints = find_joints(
-                chain, degrees[::-1].copy() if back else degrees, settings.near, settings.angle, settings.line
-            )
-            error = fit_between(
-                joints, a, b, k, near, settings.margin, settings.residual, rounds, p, tangents[0], tangents[1]
-            )
-            if error <= near:
-                count = _add(result, count, c, a, b, k, p, tangents, back)
-                continue
-        count = _add_source(result, count, c, cubics, degrees, i, j)
-    return _first(result, count)
+    parts, done = [], 0
+    for q in np.flatnonzero(poor).tolist():
+        parts += [_part(pieces, done, q), _closer(chains, pieces.where[q], tries, rounds, settings)]
+        done = q + 1
+    parts.append(_part(pieces, done, len(poor)))
+    where, vertices, tangents = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3))
+    starts = np.concatenate([[0], np.cumsum(np.maximum(where[:, 3], 1) + 1)])
+    return Pieces(where, starts, vertices, tangents)
+
+
+def _part(pieces: Pieces, a: int, b: int) -> Pieces:
+    """Pieces a to b - 1."""
+    where, starts, vertices, tangents = pieces
+    return Pieces(where[a:b], starts[a : b + 1], vertices[starts[a] : starts[b]], tangents[a:b])
+
+
+def _closer(
+    chains: Chains, row: IntArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
+) -> Pieces:  # fmt: skip
+    """What takes the place of one piece."""
+    c, i, j, spans = row.tolist()
+    a, b = chains.offsets[c : c + 2].tolist()
+    cubics, degrees = chains.cubics[a:b], chains.degrees[a:b]
+    flipped = b - a if chains.flipped[c] else 0
+    i_there, j_there = (flipped - j, flipped - i) if flipped else (i, j)
+    there = (flip(cubics), degrees[::-1].copy()) if flipped else (cubics, degrees)
+    joints = find_joints(*there, settings.near, settings.angle, settings.line)
+    p, tangents = np.empty((FINEST + 1, 2)), np.empty((2, 2))
+    for extra, share in tries:
+        k, near = max(spans, 1) + extra, share * settings.near
+        if k > FINEST:
+            break
+        error = fit_between(
+            joints, i_there, j_there, k, near, settings.margin, settings.residual, rounds, p, tangents[0], tangents[1]
+        )
+        if error <= near:
+            new = room(1)
+            _add(new, 0, c, i_there, j_there, k, p, tangents, flipped)
+            return _part(new, 0, 1)
+    new = room(j - i)
+    return _part(new, 0, _add_source(new, 0, c, cubics, degrees, i, j))
 
 
 @jit
@@ -186,21 +202,21 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     at = count = knot = control = 0
     for q in range(P):
         c, k = pieces.where[q, 0], pieces.where[q, 3]
-        p = pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]]
-        if k == 0:
-            points[at] = p[0]
-        elif k == 1:
-            third = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
-            points[at] = p[0]
-            points[at + 1] = p[0] + third * pieces.tangents[q, 0]
-            points[at + 2] = p[1] - third * pieces.tangents[q, 1]
-        else:
+        p, tau = pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]], pieces.tangents[q]
+        if k > 1:
             bezier_weights(knots[knot : knot + k + 1], k, M)
             bezier_points(M, controls[control : control + k + 3], k, b)
-            for s in range(k):
-                points[at + 3 * s : at + 3 * s + 3] = b[s, :3]
             knot, control = knot + k + 1, control + k + 3
-        degrees[count : count + max(k, 1)] = 1 if k == 0 else 3
+        third = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
+        for axis in range(2):
+            points[at, axis] = p[0, axis]
+            if k == 1:
+                points[at + 1, axis] = p[0, axis] + third * tau[0, axis]
+                points[at + 2, axis] = p[1, axis] - third * tau[1, axis]
+            for r in range(3 * k if k > 1 else 0):
+                points[at + r, axis] = b[r // 3, r % 3, axis]
+        for s in range(max(k, 1)):
+            degrees[count + s] = 1 if k == 0 else 3
         at += max(3 * k, 1)
         count += max(k, 1)
         starts[c + 1], offsets[c + 1] = at, count
@@ -222,7 +238,7 @@ def certify(
     for c in range(len(chains.offsets) - 1):
         result = contour_cubics(written, c)
         source = chains.cubics[chains.offsets[c] : chains.offsets[c + 1]]
-        rounding = ROUNDING * max(np.abs(result).max(), np.abs(source).max())
+        rounding = ROUNDING * max(_extent(result), _extent(source))
         at = 0.0
         while q < len(bounds) and pieces.where[q, 0] == c:
             _, i, j, k = pieces.where[q]
@@ -236,3 +252,13 @@ def certify(
             at = to
             q += 1
     return bounds, gaps
+
+
+@jit
+def _extent(cubics: FloatArray) -> float:
+    """The largest coordinate."""
+    most = 0.0
+    for b in cubics:
+        for k in range(4):
+            most = max(most, abs(b[k, 0]), abs(b[k, 1]))
+    return most

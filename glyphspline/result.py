@@ -58,14 +58,15 @@ class Interpolation:
     def shared(cls, source: Shared, k: int) -> Interpolation:
         """The result of polygon k, read from ``source`` when an attribute is first asked for: most never are."""
         result = cls.__new__(cls)
-        result.__dict__["_place"] = source, k
+        object.__setattr__(result, "_source", source)  # without touching __dict__, which would make one
+        object.__setattr__(result, "_row", k)
         return result
 
     def __getstate__(self) -> dict[str, Any]:
-        place = self.__dict__.get("_place")
-        if place is not None:
-            self.__dict__.update(place[0].read(place[1]), _place=None)
-        return {name: value for name, value in self.__dict__.items() if name != "_place"}
+        source = self.__dict__.get("_source")
+        if source is not None:
+            self.__dict__.update(source.read(self.__dict__["_row"]), _source=None)
+        return {name: value for name, value in self.__dict__.items() if name not in ("_source", "_row")}
 
     if not TYPE_CHECKING:  # a checker should go by the attributes listed above
 

@@ -42,8 +42,10 @@ def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> 
     m = len(cubics)
     box = np.empty((m, 4))
     for j in range(m):
-        box[j, 0], box[j, 1] = cubics[j, :, 0].min(), cubics[j, :, 0].max()
-        box[j, 2], box[j, 3] = cubics[j, :, 1].min(), cubics[j, :, 1].max()
+        b = cubics[j]
+        for axis in range(2):
+            box[j, 2 * axis] = min(min(b[0, axis], b[1, axis]), min(b[2, axis], b[3, axis]))
+            box[j, 2 * axis + 1] = max(max(b[0, axis], b[1, axis]), max(b[2, axis], b[3, axis]))
     order = np.argsort(box[:, 0])
     found = 0
     for oi in range(m):
@@ -104,9 +106,10 @@ def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, po
     hull = _hull(polygon)
     worst = 0.0
     for s in range(len(cubics)):
-        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
+        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are, of
+        # which the first is the last one of the segment before.
         reach = 0.0
-        for k in range(4):
+        for k in range(1, 4):
             reach = max(reach, _outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
         if reach > worst:
             for k in range(first[s], first[s + 1]):
@@ -118,20 +121,15 @@ def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, po
 def _outside(hull: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a convex polygon, 0 within."""
     n = len(hull)
-    outside = n < 3
+    nearest, outside = np.inf, False
     for k in range(n):
-        if outside:
-            break
-        following = k + 1 if k + 1 < n else 0
-        outside = _side(hull[k, 0], hull[k, 1], hull[following, 0], hull[following, 1], x, y) < 0
-    if not outside:
-        return 0.0
-    nearest = np.inf
-    for k in range(n):
-        ax, ay = hull[k]
-        bx, by = hull[k + 1 if k + 1 < n else 0]
-        square = (bx - ax) ** 2 + (by - ay) ** 2
-        along = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / square if square > 0 else 0.0
-        along = min(max(along, 0.0), 1.0)
-        nearest = min(nearest, np.hypot(x - ax - along * (bx - ax), y - ay - along * (by - ay)))
-    return nearest
+        ax, ay = hull[k, 0], hull[k, 1]
+        dx, dy = hull[k + 1 if k + 1 < n else 0, 0] - ax, hull[k + 1 if k + 1 < n else 0, 1] - ay
+        # The nearest point lies on a side that is seen from outside.
+        if n < 3 or dx * (y - ay) - dy * (x - ax) < 0:
+            outside = True
+            square = dx * dx + dy * dy
+            along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
+            along = min(max(along, 0.0), 1.0)
+            nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
+    return np.sqrt(nearest) if outside else 0.0

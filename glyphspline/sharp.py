@@ -39,8 +39,11 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps an arc."""
 
-ATTEMPTS = 3
-"""Refinements of arcs that fail the certificate; the last one takes the source's own segments."""
+TRIES = ((0, 0.8), (1, 0.9), (2, 0.9))
+"""What is tried for arcs that fail the certificate: spans to add, and the share of the samples' tolerance they may use.
+
+In the end the source's own segments take their place.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +118,8 @@ def unflattened(flat: Flat) -> list[Contour]:
 def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:
     """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
 
-    Arcs that miss it although their samples were near enough get more spans, and in the end the source's own
-    segments, of which each is an arc of one span.
+    Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end
+    become the source's own segments, of which each is an arc of one span.
     """
     check_options(
         options.variant, 3, options.margin, options.fallback, options.residual_tolerance, options.max_iterations,
@@ -130,12 +133,11 @@ def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> 
     )  # fmt: skip
     chains, pieces = cut_contours(contours, settings)
     fit = _certified(chains, pieces, options, tolerance)
-    for attempt in range(1, ATTEMPTS + 1):
+    for attempt in range(len(TRIES) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        extra = attempt if attempt < ATTEMPTS else 0
-        pieces = cut_closer(chains, fit.pieces, poor, extra, ROUNDS["best"], settings)
+        pieces = cut_closer(chains, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
         fit = _certified(chains, pieces, options, tolerance)
     return fit
 
@@ -165,20 +167,21 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     The one free vertex of two spans peaks at 1/2, for which Lemma 2 has no interval: see arcs.PEAK_SHARE.
     """
     where, starts, vertices, tangents = pieces
-    arcs: dict[int, Interpolation] = dict.fromkeys(np.flatnonzero(where[:, 3] > 1).tolist())  # type: ignore[arg-type]
-    for fallback, chosen in (
-        ("knot", [q for q in arcs if where[q, 3] > 2]), ("peak", [q for q in arcs if where[q, 3] == 2])
-    ):  # fmt: skip
+    spans = where[:, 3]
+    arcs: dict[int, Interpolation] = {}
+    for fallback, which in (("knot", spans > 2), ("peak", spans == 2)):
+        chosen = np.flatnonzero(which).tolist()
         if not chosen:
             continue
         try:
-            arcs |= zip(chosen, interpolate_many(
+            found = interpolate_many(
                 [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
                 end_tangents=[(t[0], t[1]) for t in tangents[chosen]], threads=1, margin=options.margin,
                 fallback=fallback, residual_tolerance=options.residual_tolerance,
                 max_iterations=options.max_iterations, closed=False,
-            ), strict=True)  # fmt: skip
+            )  # fmt: skip
         except PolygonError as error:
             error.contour = int(where[chosen[error.contour or 0], 0])
             raise
-    return arcs
+        arcs |= zip(chosen, found, strict=True)
+    return dict(sorted(arcs.items()))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from .errors import GlyphsplineError
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .polygon import LARGEST, clean_polygon
+from .result import Interpolation
 from .sharp import SharpFit, fit_sharp, flattened, unflattened
 from .survey import Survey, survey
 
@@ -73,7 +73,9 @@ def _measures(fit: SharpFit, found: Survey, tolerance: float) -> list[Measures]:
     segments = np.add.reduceat(np.maximum(spans, 1), first)
     numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4, 2), first)
     bound, gap = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
-    arcs = [[arc for q, arc in fit.splines.items() if a <= q < b] for a, b in pairwise(fit.offsets.tolist())]
+    arcs: list[list[Interpolation]] = [[] for _ in first]
+    for q, arc in fit.splines.items():
+        arcs[fit.pieces.where[q, 0]].append(arc)
     rows = [values.tolist() for values in (segments, numbers, bound, gap, *found)]
     results = []
     for own, segment, number, top, seen, length, change, energy, curvature, beyond, after, before in zip(

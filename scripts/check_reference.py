@@ -1,58 +1,101 @@
 """The compiled core against the plain reference, polygon by polygon: iteration counts and control points.
 
-Where they may differ: rounding errors are not the same in both, and a run that does not converge carries them on from
-step to step instead of shrinking them. Seen with near-duplicates (neighbours 1e-9 of the extent apart) under uniform
-knots and in variant 0, where control points differ by some 3e-9 after 30 or 120 passes. Counts may differ by one where
-an error falls within rounding of the tolerance. Such a case is told apart by asking the reference itself: it counts as
-rounding if the reference moves by a hundredth as much, or by a pass, when the polygon's coordinates are changed in
-their last bits.
+Where they may differ: both round, each in its own way, and a run that does not converge carries rounding errors on
+from step to step instead of shrinking them. Counts may differ where an error falls within rounding of the tolerance.
+Whether a difference is of this kind is asked of the reference alone: its polygon is changed in the last bits of its
+coordinates, eight times, and the difference counts as rounding if it is at most ``SMALL`` times the largest that this
+makes, with passes that differ by no more than they do there.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.agreement import TOLERANCE, compare, sensitivity
+from tests.agreement import TOLERANCE, compare, spread
 from tests.polygons import polygon
 
+SMALL = 10
+"""The compiled run rounds otherwise in every operation of every pass, and eight changes may miss the worst."""
 
-def check(number: int) -> tuple[str, int, float, int, bool]:
-    """Kind, number, difference of the control points and of the iterations of a polygon; if any, is it rounding?"""
-    kind, points = polygon(number, scale=2)
+LARGE_EVERY, LARGE_SCALE = 51, 10
+"""One polygon in so many is so many times as large: up to 300 vertices, more than a block of the core holds."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """What became of a polygon.
+
+    Attributes:
+        kind, number, vertices: which it is.
+        difference: of the control points, in the extent.
+        iterations: compiled less reference.
+        moved, passes: where these are too large, how far the reference moves from itself; else 0.
+    """
+
+    kind: str
+    number: int
+    vertices: int
+    difference: float
+    iterations: int
+    moved: float = 0.0
+    passes: int = 0
+
+    @property
+    def differs(self) -> bool:
+        """Whether the results are not the same."""
+        return self.iterations != 0 or not self.difference <= TOLERANCE
+
+    @property
+    def rounding(self) -> bool:
+        """Whether they are as far apart as rounding takes the reference from itself."""
+        return self.difference <= max(TOLERANCE, SMALL * self.moved) and abs(self.iterations) <= self.passes
+
+    def __str__(self) -> str:
+        what = f"control points differ by {self.difference:.1e}, iterations by {self.iterations}"
+        own = f"the reference from itself by {self.moved:.1e} and {self.passes}"
+        verdict = "rounding" if self.rounding else "NOT explained"
+        return f"{self.kind} {self.number}, {self.vertices} vertices: {what}; {own}: {verdict}"
+
+
+def check(number: int) -> Case:
+    """Compare one polygon."""
+    kind, points = polygon(number, scale=LARGE_SCALE if number % LARGE_EVERY == 0 else 1)
     found = compare(points, number)
-    differs = found.iterations != 0 or not found.difference <= TOLERANCE
-    if not differs:
-        return kind, number, found.difference, 0, False
-    moved, passes = sensitivity(points, number)
-    rounding = found.difference <= max(TOLERANCE, 100 * moved) and abs(found.iterations) <= passes
-    return kind, number, found.difference, found.iterations, rounding
+    case = Case(kind, number, len(points), found.difference, found.iterations)
+    if case.differs:
+        return Case(kind, number, len(points), found.difference, found.iterations, *spread(points, number))
+    return case
 
 
 def main() -> int:
-    """Compare ``--count`` polygons; list those that differ; exit status 1 if any does."""
+    """Compare ``--count`` polygons; list those that differ; exit status 1 if any does for no good reason."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=5000)
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     kinds: Counter[str] = Counter()
     worst: dict[str, float] = {}
-    bad, rounded = 0, 0
+    bad, rounded, start = 0, 0, time.monotonic()
     with ProcessPoolExecutor(arguments.jobs) as pool:
-        for kind, number, difference, iterations, rounding in pool.map(check, range(arguments.count), chunksize=20):
-            kinds[kind] += 1
-            worst[kind] = max(worst.get(kind, 0.0), difference)
-            if iterations or not difference <= TOLERANCE:
-                bad, rounded = bad + (not rounding), rounded + rounding
-                why = ", as the reference does from rounding" if rounding else ""
-                print(f"{kind} {number}: control points differ by {difference:.1e}, iterations by {iterations}{why}")
+        for done, case in enumerate(pool.map(check, range(arguments.count), chunksize=5), 1):
+            kinds[case.kind] += 1
+            if case.differs:
+                bad, rounded = bad + (not case.rounding), rounded + case.rounding
+                print(case, flush=True)
+            else:
+                worst[case.kind] = max(worst.get(case.kind, 0.0), case.difference)
+            if done % 250 == 0:
+                print(f"{done} of {arguments.count}, {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
     for kind, count in kinds.items():
-        print(f"{kind:12} {count:5} polygons, control points within {worst[kind]:.1e} of the extent")
-    print(f"{bad} of {arguments.count} differ, {rounded} more by rounding")
+        print(f"{kind:12} {count:5} polygons, control points of those that agree within {worst.get(kind, 0.0):.1e}")
+    print(f"{arguments.count} polygons: {bad} differ, {rounded} more by rounding")
     return min(bad, 1)
 
 

@@ -75,17 +75,21 @@ def compare(points: FloatArray, number: int, most: int = 120) -> Agreement:
     )
 
 
-def sensitivity(points: FloatArray, number: int, most: int = 120) -> tuple[float, int]:
-    """How far the reference moves from itself, and by how many passes, when coordinates change in their last bits."""
+def spread(points: FloatArray, number: int, most: int = 120) -> tuple[float, int]:
+    """How far the reference moves from itself, and by how many passes, when coordinates change in their last bits.
+
+    Each coordinate goes to the float above or below it, at random, eight times; the largest differences count.
+    """
     extent, options = _options(points, number, most)
     plain = interpolate_reference(points, **options)
+    P = plain.spline.control_points
+    size = max(extent, float(np.abs(P - P.mean(axis=0)).max()))
     rng = np.random.default_rng(number)
     difference, passes = 0.0, 0
-    for _ in range(3):
+    for _ in range(8):
         changed = np.nextafter(points, rng.choice([-np.inf, np.inf], points.shape))
         other = interpolate_reference(changed, **options)
         passes = max(passes, abs(other.iterations - plain.iterations))
-        P, Q = other.spline.control_points, plain.spline.control_points
-        if P.shape == Q.shape:
-            difference = max(difference, float(np.abs(P - Q).max()) / extent)
+        if other.spline.control_points.shape == P.shape:
+            difference = max(difference, float(np.abs(other.spline.control_points - P).max()) / size)
     return difference, passes

@@ -99,6 +99,17 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str, path: Path) -> N
         assert not libraries & (FONT_LIBRARIES | DRAWING_LIBRARIES)
 
 
+def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
+    font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
+    code = (
+        "import sys, glyphspline.cli.commands, glyphspline.batch.run, glyphspline.batch.schedule\n"
+        f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
+        "print(*sorted({name.split('.')[0] for name in sys.modules}))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not set(run.stdout.split()) & {"numba", "llvmlite", "scipy", "svgpathtools", "matplotlib"}
+
+
 def test_importing_the_package_imports_no_heavy_library() -> None:
     code = "import sys, glyphspline; print(*sorted({name.split('.')[0] for name in sys.modules}))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import wait
+from pathlib import Path
 
 import pytest
 
@@ -23,6 +25,10 @@ def parts(number: int, each: float) -> int:
         sign_of_life()
         time.sleep(each)
     return number
+
+
+def has_imported(name: str) -> bool:
+    return name in sys.modules
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +70,12 @@ def test_closing_ends_what_is_running_and_queued() -> None:
         time.sleep(0.1)
     assert not wait(futures, timeout=5).not_done
     assert all(future.exception() is not None for future in futures)
+
+
+def test_a_worker_has_imported_what_it_needs_before_its_time_counts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "slow_to_import.py").write_text("import time\ntime.sleep(1.5)\nREADY = True\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    with WorkerPool(1, seconds=0.6, preload=["slow_to_import"]) as pool:  # the server of forks is there already
+        assert pool.submit(has_imported, "slow_to_import").result(timeout=60) is True

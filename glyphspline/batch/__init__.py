@@ -1,13 +1,40 @@
 """Many glyphs of a font into a folder of files, with workers, and so that an interrupted run goes on."""
 
-from .atlas import make_atlas
-from .files import OutputError
-from .fonts import find_fonts, folders_for
-from .gallery import write_gallery
-from .manifest import entries_of
-from .run import convert_font
-from .spec import Limits, RunSpec
-from .summary import Summary
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .atlas import make_atlas
+    from .files import OutputError
+    from .fonts import find_fonts, folders_for
+    from .gallery import write_gallery
+    from .manifest import entries_of
+    from .run import convert_font
+    from .spec import Limits, RunSpec
+    from .summary import Summary
+
+_HOMES = {
+    "Limits": ".spec",
+    "OutputError": ".files",
+    "RunSpec": ".spec",
+    "Summary": ".summary",
+    "convert_font": ".run",
+    "entries_of": ".manifest",
+    "find_fonts": ".fonts",
+    "folders_for": ".fonts",
+    "make_atlas": ".atlas",
+    "write_gallery": ".gallery",
+}
+"""Where names are, imported when they are asked for: workers can start before the font libraries are there."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name], __name__), name)
+
 
 __all__ = [
     "Limits",

@@ -36,14 +36,22 @@ def file_names(glyph_names: Iterable[str]) -> list[str]:
 
     They depend on all names of the font in order, not on which glyphs are selected.
     """
+    names = list(glyph_names)
     taken: set[str] = set()
-    found = []
-    for name in glyph_names:
-        plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
-        stem = name if plain else userNameToFileName(_tame(name), taken)
-        taken.add(stem.lower())
-        found.append(stem)
-    return found
+    first = [_stem(name, taken) for name in names[:1]]  # .notdef in most fonts, which is not plain
+    rest = names[1:]
+    others = {*taken, *reservedFileNames}
+    if all(map(_PLAIN.fullmatch, rest)) and len(others.union(rest)) == len(others) + len(rest):
+        return first + rest
+    return first + [_stem(name, taken) for name in rest]
+
+
+def _stem(name: str, taken: set[str]) -> str:
+    """A name's file name, which joins those that are taken."""
+    plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
+    stem = name if plain else userNameToFileName(_tame(name), taken)
+    taken.add(stem.lower())
+    return stem
 
 
 def _tame(name: str) -> str:
@@ -52,8 +60,10 @@ def _tame(name: str) -> str:
     return clipped.decode(errors="ignore").rstrip(". ") or "_"
 
 
-def write_whole(path: str, content: str | bytes) -> int:
+def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
+
+    Durable is one that is on the disk before it has its name, which takes some milliseconds.
 
     Raises:
         OutputError: it cannot be written; nothing is left under the final name but what was there.
@@ -69,6 +79,8 @@ def write_whole(path: str, content: str | bytes) -> int:
                 written = os.write(handle, data)
                 while written < len(data):
                     written += os.write(handle, data[written:])
+                if durable:
+                    os.fsync(handle)
             finally:
                 os.close(handle)
             os.replace(partial, path)

@@ -3,6 +3,10 @@
 While a run is under way, each finished glyph is a line of the journal, in any order: the sizes of its files, a tab,
 its manifest line. At the end the manifest is written whole, in glyph index order, and the journal goes. A line that
 was cut off, or whose files are not there in those sizes, counts as not written.
+
+Nothing waits for the disk but ``run.json`` and the manifest at the end, so a power cut may take what the system had not
+stored yet. Of a run under way the sizes tell; of a finished one, that a file is empty, as files are that were given
+their names and no content.
 """
 
 from __future__ import annotations
@@ -10,14 +14,15 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from .files import PARTIAL, OutputError, sizes
+from .job import Done
 from .spec import SUFFIXES
-from .summary import Summary
-from .work import Done
+from .summary import Facts, Summary
 
 MANIFEST = "manifest.jsonl"
 JOURNAL = ".journal.jsonl"
@@ -27,12 +32,16 @@ JOURNAL = ".journal.jsonl"
 class Record:
     """Where the lines of finished glyphs are: for each glyph index a file and an offset in it.
 
-    Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found.
+    Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found. Of glyphs
+    done now there is ``notes``: what is in their lines for table and summary, so that those need not be read again.
+    ``pages`` are numbers of pages of the gallery that were written now.
     """
 
     where: dict[int, tuple[str, int]] = field(default_factory=dict)
     failed: set[int] = field(default_factory=set)
     counts: Summary = field(default_factory=Summary)
+    notes: dict[int, tuple[str, Facts]] = field(default_factory=dict)
+    pages: set[int] = field(default_factory=set)
 
     def finished(self) -> set[int]:
         """Glyphs that need not be done again. Those that failed are tried again: the cause may be gone."""
@@ -76,9 +85,9 @@ def _is_entry(entry: Any) -> bool:
 
 
 def _written(files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
-    """Whether all files of an entry are there, and as long as they were written if that is known."""
-    there = [present.get(Path(path).parent.name, {}).get(Path(path).name) for path in files.values()]
-    return None not in there and (lengths is None or there == lengths)
+    """Whether all files of an entry are there, and as long as they were written, or not empty if that is not known."""
+    there = [present.get(folder, {}).get(name) for folder, _, name in (path.rpartition("/") for path in files.values())]
+    return all(there) if lengths is None else there == lengths
 
 
 def remove_written(out: Path) -> None:
@@ -120,6 +129,7 @@ class Journal:
             line = (",".join(map(str, glyph.sizes)) + "\t" + glyph.line + "\n").encode()
             lines.append(line)
             self.record.where[glyph.gid] = (JOURNAL, at)
+            self.record.notes[glyph.gid] = (glyph.row, glyph.facts)
             at += len(line)
         try:
             self._write(b"".join(lines))
@@ -148,27 +158,35 @@ def entries_of(out: Path) -> Iterator[dict[str, Any]]:
         raise OutputError(f"cannot be read: {error}", font=str(path)) from error
 
 
-def finish(out: Path, record: Record) -> Iterator[bytes]:
-    """Write the manifest in glyph index order, giving each line as it passes, and remove the journal at the end."""
+@contextmanager
+def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
+    """Write the manifest in glyph index order, giving each glyph's index and line as it passes.
+
+    It gets its name, and the journal goes, when the block is left, with all lines taken and no error: what else is to
+    be written at the end of a run is written in the block, or it would never be made up for.
+    """
     partial = out / f".{MANIFEST}-{os.getpid()}{PARTIAL}"
-    opened: dict[str, BinaryIO] = {}
     try:
         with open(partial, "xb") as manifest:
-            for gid in sorted(record.where):
-                name, offset = record.where[gid]
-                if name not in opened:
-                    opened[name] = open(out / name, "rb")  # noqa: SIM115
-                opened[name].seek(offset)
-                line = opened[name].readline().rpartition(b"\t")[2]
-                manifest.write(line)
-                yield line
+            yield _written_to(manifest, out, record)
             manifest.flush()
             os.fsync(manifest.fileno())
         os.replace(partial, out / MANIFEST)
         (out / JOURNAL).unlink(missing_ok=True)
     except OSError as error:
-        partial.unlink(missing_ok=True)
         raise OutputError(f"cannot be written: {error.strerror or error}", font=str(out / MANIFEST)) from error
     finally:
-        for file in opened.values():
-            file.close()
+        partial.unlink(missing_ok=True)
+
+
+def _written_to(manifest: BinaryIO, out: Path, record: Record) -> Iterator[tuple[int, bytes]]:
+    with ExitStack() as opened:
+        files: dict[str, BinaryIO] = {}
+        for gid in sorted(record.where):
+            name, offset = record.where[gid]
+            if name not in files:
+                files[name] = opened.enter_context(open(out / name, "rb"))
+            files[name].seek(offset)
+            line = files[name].readline().rpartition(b"\t")[2]
+            manifest.write(line)
+            yield gid, line

@@ -7,6 +7,7 @@ another process takes the place.
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -16,7 +17,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from multiprocessing import connection, resource_tracker
+from importlib import import_module
+from multiprocessing import connection, forkserver, resource_tracker
 from typing import Any
 
 from ..errors import GlyphsplineError
@@ -46,11 +48,32 @@ def sign_of_life() -> None:
         _last_sign.value = time.monotonic()
 
 
-def _serve(calls: Any, sign: Any) -> None:
-    """The life of a worker process: calls in, results out, until the other end is closed."""
+def start_forkserver(preload: Sequence[str]) -> None:
+    """Start the process from which workers are forked, if it is not there yet; nobody waits for its imports.
+
+    Ctrl-C is for this process, and while it still imports the other would tell of it at length: it is started, and so
+    remains, and its workers, with that signal blocked.
+    """
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.set_forkserver_preload(list(preload))
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
+    """The life of a worker process: calls in, results out, until the other end is closed.
+
+    It gets no call, and so no limit of time, before everything is imported. As a rule that is so when it is forked.
+    """
     global _last_sign
     _last_sign = sign
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent ends its workers
+    for name in preload:
+        import_module(name)
+    gc.freeze()  # what was imported stays: it need not be looked through again and again, nor its pages copied
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:
@@ -65,10 +88,10 @@ def _serve(calls: Any, sign: Any) -> None:
 class _Worker:
     """One process, its end of the pipe, and the future of the call that it is at."""
 
-    def __init__(self, context: Any) -> None:
+    def __init__(self, context: Any, preload: Sequence[str]) -> None:
         self.sign = context.RawValue("d", 0.0)
         self.calls, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs, self.sign), daemon=True)
+        self.process = context.Process(target=_serve, args=(theirs, self.sign, preload), daemon=True)
         self.process.start()
         theirs.close()
         self.ready = False
@@ -91,16 +114,17 @@ class WorkerPool(Executor):
     Args:
         size: how many processes.
         seconds: time limit between signs of life.
-        preload: modules to import once, in the process from which the workers are forked.
+        preload: modules to import before the first call: once, in the process from which the workers are forked. One
+            that is there already, from an earlier pool, stays as it is, and workers import what they miss.
     """
 
     def __init__(self, size: int, seconds: float, preload: Sequence[str] = ()) -> None:
         self._max_workers = size
         self._seconds = seconds
+        self._preload = tuple(preload)
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         if os.name != "nt":
-            resource_tracker.ensure_running()
-            self._context.set_forkserver_preload(list(preload))
+            start_forkserver(preload)
         self._queue: deque[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]] = deque()
         self._wake, self._woken = self._context.Pipe()
         self._closing = False
@@ -163,7 +187,7 @@ class WorkerPool(Executor):
         """Processes as they are needed: as many as there are calls, up to the size."""
         wanted = len(self._queue) + sum(worker.future is not None for worker in self._workers)
         while len(self._workers) < min(self._max_workers, wanted):
-            self._workers.append(_Worker(self._context))
+            self._workers.append(_Worker(self._context, self._preload))
 
     def _receive(self, worker: _Worker) -> None:
         try:
@@ -189,7 +213,7 @@ class WorkerPool(Executor):
 
     def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
         worker.end()
-        self._workers[self._workers.index(worker)] = _Worker(self._context)
+        self._workers[self._workers.index(worker)] = _Worker(self._context, self._preload)
         if worker.future is not None:
             worker.future.set_exception(error)
 

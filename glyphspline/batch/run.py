@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from operator import itemgetter
 from pathlib import Path
+from typing import Any
 
 from ..curvature import robust_scale
-from ..readers import Source
-from ..report import write_report
+from ..readers import Font, Source
+from ..report.data import FOLDER, STATUS, as_json
+from ..report.gallery import Gallery, row_of, shown
 from .files import OutputError, file_names, make_folder, remove_partials
-from .manifest import JOURNAL, MANIFEST, Journal, Record, entries_of, finish, read_record, remove_written
-from .schedule import chunk_size, spread, workers
+from .job import Job, Task, failed, page_of, survey, work
+from .manifest import JOURNAL, MANIFEST, Journal, Record, finish, read_record, remove_written
+from .schedule import chunks_of, slices, spread, workers
 from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
-from .summary import Summary
+from .summary import Facts, Summary, facts_of
 from .whole import check_possible, missing, write_fonts
-from .work import Job, Task, failed, survey, work
 
 SCALE_SAMPLE = 200
 """Glyphs from which the shared curvature scale is taken, evenly spread over those selected."""
@@ -64,8 +67,11 @@ def convert_font(
     spec = spec or RunSpec()
     check_possible(spec)
     record = prepare(source, out, spec, restart)
-    tasks = tasks_of(source, glyphs)
-    job = Job(source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec)
+    tasks = tasks_of(source, glyphs, record.where)
+    job = Job(
+        source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
+        source.metrics, type(source) is Font and not source.axes,
+    )  # fmt: skip
     finished = record.finished()
     left = [task for task in tasks if task.gid not in finished]
     summary = Summary()
@@ -77,7 +83,7 @@ def convert_font(
                 convert_tasks(job, left, pool, journal, summary, observer)
             finally:
                 journal.close()
-        for name in spec.folders if left else ():
+        for name in (*spec.folders, FOLDER) if left else ():
             remove_partials(out / name)
     if left or not (out / MANIFEST).exists() or (out / JOURNAL).exists():
         conclude(out, record, summary)
@@ -102,18 +108,24 @@ def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
         remove_written(out)
         for name in (MANIFEST, JOURNAL, RUN_FILE):
             (out / name).unlink(missing_ok=True)
-    for name in spec.folders:
+    for name in (*spec.folders, FOLDER):
         make_folder(out / name)
         remove_partials(out / name)
     remove_partials(out)
     return read_record(out) if old is not None else Record()
 
 
-def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
-    """A task for each glyph, in glyph index order."""
+def tasks_of(source: Source, glyphs: Sequence[str], there: Iterable[int]) -> list[Task]:
+    """A task for each glyph, in glyph index order; ``there`` are indices of those that the folder has."""
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     stems = file_names(source.glyph_names)
-    return [Task(gid, source.glyph_names[gid], stems[gid]) for gid in sorted({index[name] for name in glyphs})]
+    unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
+    for code, name in source.cmap.items():
+        if name in unicodes:
+            unicodes[name].append(code)
+    chosen = sorted((index[name], name, tuple(sorted(codes))) for name, codes in unicodes.items())
+    places = {gid: place for place, gid in enumerate(sorted({*(gid for gid, _, _ in chosen), *there}))}
+    return [Task(gid, name, stems[gid], codes, places[gid]) for gid, name, codes in chosen]
 
 
 def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
@@ -123,7 +135,7 @@ def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> J
         return replace(job, curvature_scale=old["curvature_scale"])
     if {"curvature", "png", "pdf"} & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
-        found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, chosen, SCALE_CHUNK)
+        found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, slices(chosen, SCALE_CHUNK))
                  if isinstance(combs, list)]  # fmt: skip
         combs = [item for _, items in sorted(found, key=itemgetter(0)) for item in items]
         em = source.metrics.units_per_em
@@ -139,8 +151,13 @@ def convert_tasks(
     """All tasks through the pool, each recorded in the journal once its files are written."""
     before = len(journal.record.finished())
     failures = 0
-    for chunk, result in spread(pool, work, job, tasks, chunk_size(pool, len(tasks))):
-        done = result if isinstance(result, list) else [failed(job, task, result.message) for task in chunk]
+    for chunk, result in spread(pool, work, job, chunks_of(tasks, pool)):
+        if isinstance(result, list):
+            done, page = result, page_of(chunk)
+            if page is not None:
+                journal.record.pages.add(page)
+        else:
+            done = [failed(task, result.message) for task in chunk]
         journal.add(done)
         for glyph in done:
             summary.time(glyph.seconds, glyph.name)
@@ -150,7 +167,22 @@ def convert_tasks(
 
 
 def conclude(out: Path, record: Record, summary: Summary) -> None:
-    """Write manifest and index, and count what is in them."""
-    for line in finish(out, record):
-        summary.add(json.loads(line))
-    write_report(out, entries_of(out), read_run(out) or {})
+    """Write manifest and gallery, and count what is in them."""
+    gallery = Gallery(out, record.pages)
+    with finish(out, record) as lines:
+        for gid, line in lines:
+            text, facts = record.notes.get(gid) or _noted(json.loads(line))
+            row = json.loads(text)
+            error = json.loads(line)["error"] if row[STATUS] == "failed" else None
+            summary.count(row[0], row[STATUS], error, facts)
+            gallery.add(row, partial(_shown, out, line))
+        gallery.close(read_run(out) or {})
+
+
+def _noted(entry: dict[str, Any]) -> tuple[str, Facts]:
+    """Of a glyph that an earlier run has done, what is noted of those done now."""
+    return as_json(row_of(entry)), facts_of(entry["contours"])
+
+
+def _shown(out: Path, line: bytes) -> str:
+    return shown(out, json.loads(line))

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from typing import Any, TypeVar
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..glyph import Options
+from ..report.data import CHUNK
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for
-from .work import Job, Task
 
-LARGEST_CHUNK = 32
-"""Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar."""
+if TYPE_CHECKING:
+    from .job import Job, Task
+
+LARGEST_CHUNK = CHUNK
+"""Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar. As many
+as a page of the gallery shows, so that the worker can write that, too."""
 
 AHEAD = 3
 """Chunks in flight for each worker, so that none waits for the next."""
@@ -53,13 +58,21 @@ def pool_size(pool: Executor) -> int:
     return int(getattr(pool, "_max_workers", 1))
 
 
-def chunk_size(pool: Executor, tasks: int) -> int:
-    """Glyphs to a chunk: so many chunks that the workers finish at about the same time."""
-    return max(1, min(LARGEST_CHUNK, tasks // (8 * pool_size(pool))))
+def chunks_of(tasks: Sequence[Task], pool: Executor) -> list[Sequence[Task]]:
+    """Glyphs in chunks, so many that the workers finish at about the same time; of many glyphs, page by page."""
+    size = min(LARGEST_CHUNK, len(tasks) // (8 * pool_size(pool)))
+    if size < LARGEST_CHUNK:
+        return slices(tasks, max(1, size))
+    return [list(page) for _, page in groupby(tasks, lambda task: task.place // CHUNK)]
+
+
+def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
+    """Glyphs in chunks of a size."""
+    return [tasks[start : start + size] for start in range(0, len(tasks), size)]
 
 
 def spread(
-    pool: Executor, function: Callable[[Job, Sequence[Task]], Result], job: Job, tasks: Sequence[Task], size: int
+    pool: Executor, function: Callable[[Job, Sequence[Task]], Result], job: Job, chunks: Iterable[Sequence[Task]]
 ) -> Iterator[tuple[Sequence[Task], Result | WorkerLostError | TimeLimitError]]:
     """Call a function on chunks of glyphs: each chunk with its result, in the order in which they get done.
 
@@ -67,7 +80,7 @@ def spread(
     own, so that in the end only the one to blame comes with an error.
     """
     again: deque[tuple[Sequence[Task], int]] = deque()
-    fresh = iter([(tasks[start : start + size], 1) for start in range(0, len(tasks), size)])
+    fresh = ((chunk, 1) for chunk in chunks)
     pending: dict[Future[Result], tuple[Sequence[Task], int]] = {}
     try:
         while True:

@@ -6,15 +6,17 @@ import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import GlyphsplineError
 from ..glyph import Options
-from ..readers import Source
 from ..version import __version__
-from ..writers.font_glyphs import Flavour, fitting_tolerance
 from ..writers.svg import VIEW_BOXES, ViewBox
 from .files import OutputError, write_whole
+
+if TYPE_CHECKING:
+    from ..readers import Source
+    from ..writers.font_glyphs import Flavour
 
 RUN_FILE = "run.json"
 
@@ -83,6 +85,8 @@ class RunSpec:
         flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
         if not flavours or self.options.step is not None or self.options.count is not None:
             return self.options
+        from ..writers.font_glyphs import fitting_tolerance
+
         tolerance = self.options.tolerance_for(units_per_em)
         return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))
 
@@ -109,8 +113,8 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
 
 
 def write_run(out: Path, run: dict[str, Any]) -> None:
-    """Write ``run.json``."""
-    write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n")
+    """Write ``run.json``, without which nothing that a run leaves can be gone on with."""
+    write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n", durable=True)
 
 
 def read_run(out: Path) -> dict[str, Any] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -13,6 +13,22 @@ SHOWN = 10
 
 SLOW = 0.5
 """Seconds from which the slowest glyphs are worth a line."""
+
+
+Facts = tuple[bool, bool, float | None]
+"""Of a glyph: whether a contour did not converge, whether one is outside the tolerance, the largest deviation."""
+
+
+def facts_of(contours: Iterable[Mapping[str, Any]]) -> Facts:
+    """What the measures of a glyph's contours, as the manifest has them, come to."""
+    not_converged, outside, deviation = False, False, None
+    for contour in contours:
+        not_converged |= contour["converged"] is False
+        outside |= contour["within_tolerance"] is False
+        own = contour["deviation"]
+        if own is not None and (deviation is None or own > deviation):
+            deviation = own
+    return not_converged, outside, deviation
 
 
 @dataclass
@@ -35,17 +51,20 @@ class Summary:
     done: int = 0
     remarks: list[str] = field(default_factory=list)
 
-    def add(self, entry: dict[str, Any]) -> None:
+    def add(self, entry: Mapping[str, Any]) -> None:
         """Count one line of the manifest."""
-        self.statuses[entry["status"]] += 1
-        if entry["status"] == "failed" and len(self.failures) < SHOWN:
-            self.failures.append((entry["glyph"], entry["error"]))
-        contours = entry["contours"]
-        self.not_converged += any(contour["converged"] is False for contour in contours)
-        self.outside_tolerance += any(contour["within_tolerance"] is False for contour in contours)
-        deviations = [contour["deviation"] for contour in contours if contour["deviation"] is not None]
-        if deviations:
-            keep_largest(self.worst, (max(deviations), entry["glyph"]))
+        self.count(entry["glyph"], entry["status"], entry["error"], facts_of(entry["contours"]))
+
+    def count(self, glyph: str, status: str, error: str | None, facts: Facts) -> None:
+        """Count one glyph."""
+        self.statuses[status] += 1
+        if status == "failed" and len(self.failures) < SHOWN:
+            self.failures.append((glyph, error or ""))
+        not_converged, outside_tolerance, deviation = facts
+        self.not_converged += not_converged
+        self.outside_tolerance += outside_tolerance
+        if deviation is not None:
+            keep_largest(self.worst, (deviation, glyph))
 
     def time(self, seconds: float, glyph: str) -> None:
         """Note how long a glyph took."""

@@ -1,10 +1,12 @@
-"""What a worker does: open the font once, then glyph after glyph from outline to files and a manifest line."""
+"""What a worker does: glyph after glyph from outline to files and a manifest line.
+
+The font is opened by the first glyph that needs more of it than HarfBuzz draws.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -17,63 +19,24 @@ from ..express.lane import Drawn, draw_chunk, drawn_svg, suits
 from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
-from ..readers import Font, Source, open_source
+from ..readers import Source, open_source
+from ..report.data import glyph_text, page_file, page_text
+from ..report.drawings import drawing, drawing_of
 from ..writers.curvature_map import combs, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text, manifest_line
+from .entry import contours_text
 from .files import write_whole
+from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
 from .spec import RESULTS, SUFFIXES, RunSpec
 from .store import to_text
-
-
-@dataclass(frozen=True)
-class Job:
-    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs."""
-
-    path: Path
-    face_index: int
-    location: tuple[tuple[str, float], ...]
-    out: Path
-    spec: RunSpec
-    curvature_scale: float | None = None
-
-
-@dataclass(frozen=True)
-class Task:
-    """One glyph: its name and index, and its file name without suffix."""
-
-    gid: int
-    name: str
-    stem: str
-
-
-@dataclass(frozen=True)
-class Done:
-    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took."""
-
-    gid: int
-    name: str
-    status: str
-    line: str
-    sizes: tuple[int, ...]
-    seconds: float
 
 
 @lru_cache(maxsize=1)
 def source_of(path: Path, face_index: int, location: tuple[tuple[str, float], ...]) -> Source:
     """The source, opened once a process; only one is kept, as a CJK face takes some 100 MB."""
     return open_source(path, face_index, dict(location))
-
-
-@lru_cache(maxsize=1)
-def unicodes_of(path: Path, face_index: int, location: tuple[tuple[str, float], ...]) -> dict[str, list[int]]:
-    """The code points of each glyph that has any."""
-    found: dict[str, list[int]] = {}
-    for code, name in sorted(source_of(path, face_index, location).cmap.items()):
-        found.setdefault(name, []).append(code)
-    return found
 
 
 @lru_cache(maxsize=1)
@@ -85,45 +48,51 @@ def bulk_reader(path: Path, face_index: int) -> BulkReader:
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     """Convert and write glyphs, the short way where there is one. A glyph that cannot be converted fails alone.
 
+    Glyphs that are just a page of the gallery are written to it, too: now their drawings are in memory.
+
     Raises:
         OutputError: the output folder cannot be written to, which no other glyph would survive either.
     """
-    found = []
     started = time.perf_counter()
-    drawn = (
-        draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
-        if short_way(job)
-        else [None] * len(tasks)
-    )
+    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
     share = (time.perf_counter() - started) / len(tasks)
+    found, shown = [], []
     for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
-        found.append(work_one(job, task) if short is None else write_drawn(job, task, short, share))
+        done, glyph = work_one(job, task) if short is None else write_drawn(job, task, short, share)
+        found.append(done)
+        shown.append(glyph)
+    page = page_of(tasks)
+    if page is not None:
+        write_whole(f"{job.out}/{page_file(page)}", page_text(shown))
     return found
 
 
 def short_way(job: Job) -> bool:
     """Whether a run's glyphs can be converted in compiled chunks: plain drawings of a font that does not vary."""
-    source = source_of(job.path, job.face_index, job.location)
-    return job.spec.formats == ("svg",) and suits(job.spec.options) and isinstance(source, Font) and not source.axes
+    return job.spec.formats == ("svg",) and job.static and suits(job.spec.options)
 
 
-def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> Done:
-    """Write what the short way has drawn."""
+def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
+    """Glyphs the short way."""
+    return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
+
+
+def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
+    """Write what the short way has drawn; and the glyph as the gallery shows it."""
     started = time.perf_counter()
-    source, options = source_of(job.path, job.face_index, job.location), job.spec.options
-    unicodes = unicodes_of(job.path, job.face_index, job.location).get(task.name, [])
-    outline = Outline(task.name, task.gid, tuple(unicodes), drawn.advance, (), source.metrics)
+    options = job.spec.options
+    outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
     document = drawn_svg(outline, drawn, options.precision, job.spec.view_box)
-    file = f"svg/{task.stem}.svg"
-    size = write_whole(f"{job.out}/{file}", document)
+    files = {"svg": f"svg/{task.stem}.svg"}
+    sizes = (write_whole(f"{job.out}/{files['svg']}", document),)
     contours = contours_text(drawn.measures, options)
-    line = manifest_line(task.name, task.gid, unicodes, drawn.advance, "ok", {"svg": file}, contours)
-    return Done(task.gid, task.name, "ok", line, (size,), seconds + time.perf_counter() - started)
+    done = finished(task, "ok", drawn.advance, files, sizes, contours, None, seconds + time.perf_counter() - started)
+    return done, glyph_text(drawing(drawn.path), files, contours, None)
 
 
-def work_one(job: Job, task: Task) -> Done:
-    """Convert and write one glyph."""
+def work_one(job: Job, task: Task) -> tuple[Done, str]:
+    """Convert and write one glyph; and the glyph as the gallery shows it."""
     started = time.perf_counter()
     files, written = {}, []
     try:
@@ -131,21 +100,17 @@ def work_one(job: Job, task: Task) -> Done:
         result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
         documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
     except Exception as error:
-        return failed(job, task, reason(error), time.perf_counter() - started)
+        why = reason(error)
+        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), {}, "", why)
     for name, document in documents.items():
         files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
         written.append(write_whole(f"{job.out}/{files[name]}", document))
     contours = contours_text((contour.measures for contour in result.contours), job.spec.options)
     status = "ok" if files else "empty"
-    line = manifest_line(task.name, task.gid, outline.unicodes, outline.advance, status, files, contours)
-    return Done(task.gid, task.name, status, line, tuple(written), time.perf_counter() - started)
-
-
-def failed(job: Job, task: Task, error: str, seconds: float = 0.0) -> Done:
-    """A glyph that could not be converted, or that no worker lived to tell of."""
-    unicodes = unicodes_of(job.path, job.face_index, job.location).get(task.name, [])
-    line = manifest_line(task.name, task.gid, unicodes, None, "failed", {}, "", error)
-    return Done(task.gid, task.name, "failed", line, (), seconds)
+    seconds = time.perf_counter() - started
+    done = finished(task, status, outline.advance, files, tuple(written), contours, None, seconds)
+    texts = {name: document for name, document in documents.items() if isinstance(document, str)}
+    return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
 
 
 def read(job: Job, task: Task) -> Outline:

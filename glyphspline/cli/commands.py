@@ -72,16 +72,16 @@ def convert(
     """Convert glyphs of a font to SVG drawings and curvature maps, with a manifest and an index."""
     given = dict(locals())
     with errors():
-        from ..readers import open_source
-
         spec = opt.spec_of(given)
-        source = open_source(font, face_index, opt.location_of(location))
-        names = opt.selection_of(source, given)
-        if names.missing and not quiet:
-            say(f"not in the font: {', '.join(names.missing)}")
-        if not names:
-            stop("none of the glyphs asked for is in the font")
-        with workplace(jobs, scheduler, spec) as executor:
+        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
+            from ..readers import open_source
+
+            source = open_source(font, face_index, opt.location_of(location))
+            names = opt.selection_of(source, given)
+            if names.missing and not quiet:
+                say(f"not in the font: {', '.join(names.missing)}")
+            if not names:
+                stop("none of the glyphs asked for is in the font")
             summary = run(source, names, out, spec, executor, restart=not resume, quiet=quiet, json_log=json_log)
     raise typer.Exit(1 if summary.failed else 0)
 

@@ -53,6 +53,7 @@ WORK = (5, 64)
 """Shape of the scratch array: shifted x and y, squared distance, and the two ends of the parts to do."""
 
 compiled = njit(cache=True, nogil=True, error_model="numpy")
+inlined = njit(inline="always", error_model="numpy")
 
 
 @compiled

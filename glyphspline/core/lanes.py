@@ -12,8 +12,7 @@ of C', and w_i = C''(u_i)/2:
 The *main side* is the one on which the distance falls at u_i (or on which the whole interval lies), and y ≥ 0 runs
 along it. Newton's method with Chebyshev's third-order term goes from the last footpoint to a local minimum y*. The
 certificate of ``footpoint`` then has two parts: about y* over the main side, and about u_i over the other side, which
-shows D ≥ D(u_i) ≥ D(y*) there; or else all of the other side is shown to be farther away than y*. A vertex that fails
-either is flagged, looked at again in smaller parts, and at last searched in full.
+shows D ≥ D(u_i) ≥ D(y*) there. A vertex that fails either is flagged, and left to ``flagged``.
 
 No value depends on another lane, and no floating-point reassociation is allowed, so results do not depend on the
 width of the vectors.
@@ -22,33 +21,28 @@ width of the vectors.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from .fields import FIELDS, STRIDE
-from .footpoint import GUARD, WORK, compiled, search_piece
+from .footpoint import GUARD, compiled, inlined
 from .select import select
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
     np.uint64(k * STRIDE) for k in range(FIELDS)
 )
-# Fields of the scratch block: derivatives by control points; E, V, W, Z and y on the main side; the other side.
-DX, DY, WX, WY, SEX, SEY, SVX, SVY, SWX, SWY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
-    np.uint64(k * STRIDE) for k in range(21)
+# Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
+DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
+    np.uint64(k * STRIDE) for k in range(19)
 )
-SCRATCH = 21
-ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
+SIXTH = 1 / 6
+ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
 
 WIDTH = 8
 """Vertices are taken by this many: loops of whole vectors."""
 
 NEWTON_PASSES = 8
-BEYOND = 1 + 1e-9
-CUT = 0.125
 SETTLED_STEP = 1e-6
 """A step this small (share of the side's length) is the last: third-order convergence leaves its cube."""
-
-inlined = njit(inline="always", error_model="numpy")
 
 
 @inlined
@@ -56,7 +50,7 @@ def least_quartic(c0, c1, c2, c3, c4, L):
     """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
     k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
     b1 = c0 + 0.25 * k1
-    b2 = c0 + 0.5 * k1 + k2 / 6.0
+    b2 = c0 + 0.5 * k1 + SIXTH * k2
     b3 = c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3
     b4 = c0 + k1 + k2 + k3 + k4
     least = select(c0 < b1, c0, b1)
@@ -71,7 +65,7 @@ def least_rise(slope, c0, c1, c2, c3, c4, L):
     k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
     b1 = 0.2 * L * c0
     b2 = 0.4 * L * (c0 + 0.25 * k1)
-    b3 = 0.6 * L * (c0 + 0.5 * k1 + k2 / 6.0)
+    b3 = 0.6 * L * (c0 + 0.5 * k1 + SIXTH * k2)
     b4 = 0.8 * L * (c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3)
     b5 = L * (c0 + k1 + k2 + k3 + k4)
     least = select(b1 < b2, b1, b2)
@@ -82,57 +76,27 @@ def least_rise(slope, c0, c1, c2, c3, c4, L):
 
 
 @inlined
-def least_distance(ex, ey, vx, vy, wx, wy, zx, zy, L):
-    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L."""
-    ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
-    bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
-    cx, cy = ex + ((zx * L + wx) * L + vx) * L, ey + ((zy * L + wy) * L + vy) * L
-    least = ex * ex + ey * ey
-    d = ex * ax + ey * ay
-    least = select(d < least, d, least)
-    d = (2.0 * (ex * bx + ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
-    least = select(d < least, d, least)
-    d = (ex * cx + ey * cy + 9.0 * (ax * bx + ay * by)) * 0.1
-    least = select(d < least, d, least)
-    d = (2.0 * (ax * cx + ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
-    least = select(d < least, d, least)
-    d = bx * cx + by * cy
-    least = select(d < least, d, least)
-    d = cx * cx + cy * cy
-    return select(d < least, d, least)
-
-
-@compiled
-def taylor(B, S, m):
+def _taylor(B, S, m, step):
     """Derivatives at the knots from control points (see the module), main side chosen, into the scratch block."""
-    for j in range(ONE, np.uint64(m) + TWO + TWO):
+    for j in range(step, np.uint64(m) + TWO * step + TWO * step):
         r = B[RATE + j]
-        S[DX + j] = r * (B[PX + j] - B[PX + j - ONE])
-        S[DY + j] = r * (B[PY + j] - B[PY + j - ONE])
-    for j in range(ONE, np.uint64(m) + THREE):
+        S[DX + j] = r * (B[PX + j] - B[PX + j - step])
+        S[DY + j] = r * (B[PY + j] - B[PY + j - step])
+    for j in range(step, np.uint64(m) + THREE * step):
         s = B[HALF + j]
-        S[WX + j] = s * (S[DX + j + ONE] - S[DX + j])
-        S[WY + j] = s * (S[DY + j + ONE] - S[DY + j])
-    for j in range(TWO, np.uint64(m) + TWO):
+        S[SWX + j] = s * (S[DX + j + step] - S[DX + j])
+        S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
+    for j in range(TWO * step, np.uint64(m) + TWO * step):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
-        ex = B[PX + j] - B[QX + j] + (a * S[DX + j + ONE] - b * S[DX + j])
-        ey = B[PY + j] - B[QY + j] + (a * S[DY + j + ONE] - b * S[DY + j])
-        vx = (1.0 - lam) * S[DX + j] + lam * S[DX + j + ONE]
-        vy = (1.0 - lam) * S[DY + j] + lam * S[DY + j + ONE]
-        wx, wy = S[WX + j], S[WY + j]
-        right, left = B[THIRD + j], B[THIRD + j - ONE]
-        rx, ry = (S[WX + j + ONE] - wx) * right, (S[WY + j + ONE] - wy) * right
-        lx, ly = (S[WX + j - ONE] - wx) * left, (S[WY + j - ONE] - wy) * left
+        ex = B[PX + j] - B[QX + j] + (a * S[DX + j + step] - b * S[DX + j])
+        ey = B[PY + j] - B[QY + j] + (a * S[DY + j + step] - b * S[DY + j])
+        vx = (1.0 - lam) * S[DX + j] + lam * S[DX + j + step]
+        vy = (1.0 - lam) * S[DY + j] + lam * S[DY + j + step]
         low, high = B[LOW + j], B[HIGH + j]
         falling = ex * vx + ey * vy <= 0.0
         forward = (low >= 0.0) | ((high > 0.0) & falling)
         side = select(forward, 1.0, -1.0)
         S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j] = ex, ey, side * vx, side * vy
-        S[SWX + j], S[SWY + j] = wx, wy
-        S[SZX + j] = select(forward, rx, lx)
-        S[SZY + j] = select(forward, ry, ly)
-        S[OZX + j] = select(forward, lx, rx)
-        S[OZY + j] = select(forward, ly, ry)
         near = select(forward, low, -high)
         far = select(forward, high, -low)
         near0 = select(near > 0.0, near, 0.0)
@@ -142,13 +106,49 @@ def taylor(B, S, m):
         y = select(y > near0, y, near0)
         S[SY + j] = select(y < far, y, far)
         S[DONE + j] = select(far <= near0, 1.0, 0.0)
+    for j in range(TWO * step, np.uint64(m) + TWO * step):  # one loop with the above would not become SIMD
+        wx, wy = S[SWX + j], S[SWY + j]
+        right, left = B[THIRD + j], B[THIRD + j - step]
+        rx, ry = (S[SWX + j + step] - wx) * right, (S[SWY + j + step] - wy) * right
+        lx, ly = (S[SWX + j - step] - wx) * left, (S[SWY + j - step] - wy) * left
+        forward = S[SIDE + j] > 0.0
+        S[SZX + j] = select(forward, rx, lx)
+        S[SZY + j] = select(forward, ry, ly)
+        S[OZX + j] = select(forward, lx, rx)
+        S[OZY + j] = select(forward, ly, ry)
 
 
 @compiled
-def newton(S, m):
+def _taylor_1(B, S, m):
+    _taylor(B, S, m, ONE)
+
+
+@compiled
+def _taylor_4(B, S, m):
+    _taylor(B, S, m, FOUR)
+
+
+@compiled
+def _taylor_8(B, S, m):
+    _taylor(B, S, m, EIGHT)
+
+
+@compiled
+def taylor(B, S, first, m):
+    """Derivatives at the knots. The step is a constant in each case: with a variable one loops do not become SIMD."""
+    if first == TWO:
+        _taylor_1(B, S, m)
+    elif first == EIGHT:
+        _taylor_4(B, S, m)
+    else:
+        _taylor_8(B, S, m)
+
+
+@compiled
+def newton(S, first, m):
     """One step for every vertex that has not settled; the number of those that still have not."""
     pending = 0
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
         qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
@@ -180,10 +180,10 @@ def newton(S, m):
 
 
 @compiled
-def certify(B, S, m):
+def certify(B, S, first, m):
     """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
     bad, wild = 0, 0
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
         ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
         zx, zy = S[SZX + j], S[SZY + j]
@@ -211,11 +211,10 @@ def certify(B, S, m):
         o4 = ox * ox + oy * oy
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
         D = qx * qx + qy * qy
-        hidden = (rise <= 0.0) & (least_distance(ex, ey, -vx, -vy, wx, wy, ox, oy, L) <= BEYOND * D)
         main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
-        hidden = hidden & (L > 0.0)
-        fails = main | hidden
-        S[BAD + j] = select(main, 1.0, 0.0) + select(hidden, 2.0, 0.0)
+        other = (rise <= 0.0) & (L > 0.0)
+        fails = main | other
+        S[BAD + j] = select(main, 1.0, 0.0) + select(other, 2.0, 0.0)
         bad += select(fails, 1, 0)
         wild += select(np.inf > D, 0, 1)
         B[X + j] = S[SIDE + j] * y
@@ -224,107 +223,27 @@ def certify(B, S, m):
 
 
 @compiled
-def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
-    """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
-
-    Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
-    """
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b0, b1, b2, b3, b4 = (
-        c0, c0 + 0.25 * k1, c0 + 0.5 * k1 + k2 / 6.0, c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3, c0 + k1 + k2 + k3 + k4,
-    )  # fmt: skip
-    for _ in range(6):
-        if min(b0, b1, b2, b3, b4) > guard:
-            return True
-        p0, p1, p2, p3 = b0 + CUT * (b1 - b0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
-        q0, q1, q2 = p0 + CUT * (p1 - p0), p1 + CUT * (p2 - p1), p2 + CUT * (p3 - p2)
-        r0, r1 = q0 + CUT * (q1 - q0), q1 + CUT * (q2 - q1)
-        s0 = r0 + CUT * (r1 - r0)
-        if not min(s0, r1, q2, p3, b4) > guard:
-            return False
-        b1, b2, b3, b4 = p0, q0, r0, s0
-    return False
+def whole_vectors(count):
+    """``count``, or so many more that loops consist of whole vectors."""
+    return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
 @compiled
-def _second_look(S, j):
-    """Whether the certificate holds on the main side after all, in parts."""
-    y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
-    wx, wy, vx, vy = S[SWX + j], S[SWY + j], S[SVX + j], S[SVY + j]
-    qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
-    px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-    ax, ay = 3.0 * zx * y + wx, 3.0 * zy * y + wy
-    speed = px * px + py * py
-    c0 = 2.0 * (qx * ax + qy * ay) + speed
-    c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-    c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-    c3 = 2.0 * (ax * zx + ay * zy)
-    c4 = zx * zx + zy * zy
-    guard = GUARD * max(speed, c0)
-    return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
-        c0, c1, c2, c3, c4, S[SLO + j] - y, guard
-    )
-
-
-@compiled
-def flagged(B, S, m, tie):
-    """A second look at the vertices that were flagged, then a search in full; the number of those searched."""
-    c = np.empty((2, 4))
-    work = np.empty(WORK)
-    searched = 0
-    for j in range(TWO, np.uint64(m) + TWO):
-        if S[BAD + j] == 0.0:
-            continue
-        side, x, D = S[SIDE + j], S[SIDE + j] * S[SY + j], B[DD + j]
-        main_side = S[BAD + j] != 2.0 and (S[DONE + j] == 0.0 or not _second_look(S, j))
-        other_side = S[BAD + j] >= 2.0 or (main_side and S[OTHER + j] > 0.0)
-        if main_side:
-            D = np.inf
-        if not (main_side or other_side):
-            continue
-        searched += 1
-        for turn in range(2):
-            main = turn == 0
-            if not (main_side if main else other_side):
-                continue
-            sign = side if main else -side
-            low = S[SLO + j] if main else 0.0
-            high = S[SHI + j] if main else S[OTHER + j]
-            c[0, 0], c[1, 0] = S[SEX + j], S[SEY + j]
-            c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
-            c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
-            c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
-            y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, tie, work)
-            if D_new < D or y != sign * x:
-                x, D = sign * y, D_new
-                B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
-                B[EY + j] = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
-        B[X + j] = x
-        B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
-    return searched
-
-
-@compiled
-def footpoints(B, S, count, tie):
-    """Footpoints of a block's vertices, all certified; the number of full searches, or -1 if one is not finite."""
-    m = (count + WIDTH - 1) // WIDTH * WIDTH
-    taylor(B, S, m)
+def seek(B, S, first, m):
+    """Footpoints of a block's vertices, into it; how many are flagged, and how many not finite."""
+    taylor(B, S, first, m)
     for _ in range(NEWTON_PASSES):
-        if newton(S, m) == 0:
+        if newton(S, first, m) == 0:
             break
-    bad, wild = certify(B, S, m)
-    if wild > 0:
-        return -1
-    return flagged(B, S, m, tie) if bad > 0 else 0
+    return certify(B, S, first, m)
 
 
 @compiled
-def errors_at(B, S, count):
-    """Errors p - C(t) at the parameters that the block holds, nothing searched; -1 if one is not finite, else 0."""
-    m = (count + WIDTH - 1) // WIDTH * WIDTH
-    taylor(B, S, m)
+def errors_at(B, S, first, m):
+    """Errors p - C(t) at the parameters that the block holds, nothing searched; how many are not finite."""
+    taylor(B, S, first, m)
     wild = 0
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         y = S[SIDE + j] * B[X + j]
         main = y >= 0.0
         sign = select(main, 1.0, -1.0)
@@ -335,4 +254,4 @@ def errors_at(B, S, count):
         D = qx * qx + qy * qy
         wild += select(np.inf > D, 0, 1)
         B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
-    return -1 if wild > 0 else 0
+    return wild

@@ -5,12 +5,14 @@ The same rules, to rounding, as ``polygon.py``, ``knots.py`` and ``intervals.py`
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..polygon import LARGEST, SAME_VERTEX, SMALLEST
 from . import fields
 from .fields import HALO
-from .footpoint import compiled
+from .footpoint import compiled, inlined
 from .select import select
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
@@ -19,7 +21,7 @@ OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD = (
     np.uint64(k) for k in (fields.RATE, fields.LAMBDA, fields.MOVE_A, fields.MOVE_B, fields.HALF, fields.THIRD)
 )
-ONE, TWO = np.uint64(1), np.uint64(2)
+ONE, TWO, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 4, 8))
 
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
@@ -115,24 +117,29 @@ def given_knots(given, kept, count, closed, merged, u):
 
 
 @compiled
+def power_of_two(x):
+    """The power of two that brings x > 0 between 1 and 2."""
+    return math.ldexp(1.0, 1 - math.frexp(x)[1])
+
+
+@compiled
 def pad_intervals(u, closed, unit, h):
     """Knot intervals times ``unit``: h[PAD + i] is that from u_i on, continued periodically, or by zeros."""
     spans = u.shape[0] - 1
     for i in range(spans):
         h[PAD + i] = (u[i + 1] - u[i]) * unit
-    for k in range(PAD):
-        h[PAD - 1 - k] = h[PAD + (spans - 1 - k) % spans] if closed else 0.0
+    for k in range(PAD):  # one after another, so that fewer spans than PAD are gone round more than once
+        h[PAD - 1 - k] = h[PAD + spans - 1 - k] if closed else 0.0
     for k in range(PAD + 2):
-        h[PAD + spans + k] = h[PAD + k % spans] if closed else 0.0
+        h[PAD + spans + k] = h[PAD + k] if closed else 0.0
 
 
-@compiled
-def fill_block(block, first, count, h):
-    """Rates and weights of the block that begins with vertex ``first`` (see lanes.py)."""
-    shift = np.uint64(first + PAD - HALO)
-    for lane in range(ONE, np.uint64(count + 4)):
+@inlined
+def _fill(block, h, shift, low, high, step):
+    """Rates and weights (see lanes.py) of lanes low to high - 1; h[lane + shift] is the interval from a knot on."""
+    for lane in range(low, high):
         i = lane + shift
-        a, b, c = h[i - TWO], h[i - ONE], h[i]
+        a, b, c = h[i - TWO * step], h[i - step], h[i]
         three, two = a + b + c, b + c
         half = select(two > 0.0, 1.0 / two, 0.0)
         lam = b * half
@@ -142,3 +149,18 @@ def fill_block(block, first, count, h):
         block[LAMBDA + lane] = lam
         block[MOVE_A + lane] = lam * b / 3.0
         block[MOVE_B + lane] = (1.0 - lam) * c / 3.0
+
+
+@compiled
+def fill_block(block, first, count, h):
+    """Rates and weights of the block of a long polygon that begins with its vertex ``first``."""
+    _fill(block, h, np.uint64(first + PAD - HALO), ONE, np.uint64(count + 4), ONE)
+
+
+@compiled
+def fill_side_by_side(block, step, rows, h):
+    """Rates and weights of a block of ``step`` polygons; ``rows`` vertices of each, whose intervals lie as they do."""
+    if step == FOUR:
+        _fill(block, h, np.uint64(PAD - HALO) * FOUR, FOUR, (rows + FOUR) * FOUR, FOUR)
+    else:
+        _fill(block, h, np.uint64(PAD - HALO) * EIGHT, EIGHT, (rows + FOUR) * EIGHT, EIGHT)

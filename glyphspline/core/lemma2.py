@@ -12,11 +12,11 @@ import numpy as np
 
 from . import fields
 from .fields import HALO, LANES, STRIDE
-from .footpoint import compiled
+from .footpoint import compiled, inlined
 from .layout import PAD
 from .select import select
 
-ONE, TWO = np.uint64(1), np.uint64(2)
+ONE, TWO, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 4, 8))
 LOW, HIGH, X = np.uint64(fields.LOW), np.uint64(fields.HIGH), np.uint64(fields.X)
 # Fields of the scratch block: top, right, left side; the two problems: coefficients, bracket and estimate of each.
 TOP, R1, R2, R3, L1, L2, L3, PEAK, HIGHEST, LEVEL, RISING = (np.uint64(k * STRIDE) for k in range(11))
@@ -27,11 +27,11 @@ CLOSE = 1e-9
 """A Newton step of this share of the span is the last: its square is what is left."""
 
 
-@compiled
-def _prepare(h, S, m, margin, peak_share):
+@inlined
+def _prepare(h, S, m, margin, peak_share, step):
     """Coefficients, peak and level of every basis function; h[0] is the interval two before the first vertex's knot."""
-    for j in range(TWO, np.uint64(m) + TWO):
-        a, b, c, d = h[j - TWO], h[j - ONE], h[j], h[j + ONE]
+    for j in range(TWO * step, np.uint64(m) + TWO * step):
+        a, b, c, d = h[j - TWO * step], h[j - step], h[j], h[j + step]
         left, right = 1.0 / (a + b + c), 1.0 / (b + c + d)
         l1, l2 = (a + b) * left, a * left
         r1, r2 = (c + d) * right, d * right
@@ -64,9 +64,24 @@ def _prepare(h, S, m, margin, peak_share):
 
 
 @compiled
-def _start(S, problem, m):
+def _prepare_1(h, S, m, margin, peak_share):
+    _prepare(h, S, m, margin, peak_share, ONE)
+
+
+@compiled
+def _prepare_4(h, S, m, margin, peak_share):
+    _prepare(h, S, m, margin, peak_share, FOUR)
+
+
+@compiled
+def _prepare_8(h, S, m, margin, peak_share):
+    _prepare(h, S, m, margin, peak_share, EIGHT)
+
+
+@compiled
+def _start(S, problem, first, m):
     """First estimates, into R1: halfway. R2 says which have arrived: those without a crossing have from the start."""
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         inside, outside = S[problem + INSIDE + j], S[problem + OUTSIDE + j]
         last, level = S[problem + B3 + j], S[LEVEL + j]
         without = ((outside > 0.5) & (last >= level)) | (S[HIGHEST + j] <= level)
@@ -75,10 +90,10 @@ def _start(S, problem, m):
 
 
 @compiled
-def _newton(S, problem, m):
+def _newton(S, problem, first, m):
     """One step for every crossing; the number of those still under way."""
     pending = 0
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]
         inside, outside, y, done = S[problem + INSIDE + j], S[problem + OUTSIDE + j], S[R1 + j], S[R2 + j]
         z = 1.0 - y
@@ -102,12 +117,12 @@ def _newton(S, problem, m):
 
 
 @compiled
-def _crossings(S, problem, result, m):
-    _start(S, problem, m)
+def _crossings(S, problem, result, first, m):
+    _start(S, problem, first, m)
     for _ in range(STEPS):
-        if _newton(S, problem, m) == 0:
+        if _newton(S, problem, first, m) == 0:
             break
-    for j in range(TWO, np.uint64(m) + TWO):
+    for j in range(first, np.uint64(m) + first):
         S[result + j] = S[R1 + j]
 
 
@@ -130,30 +145,65 @@ def _combine(S, j, b, c, peak_share):
 
 
 @compiled
+def _prepared(h, S, first, m, margin, peak_share):
+    """Coefficients and crossings of all basis functions of a block."""
+    if first == TWO:
+        _prepare_1(h, S, m, margin, peak_share)
+    elif first == EIGHT:
+        _prepare_4(h, S, m, margin, peak_share)
+    else:
+        _prepare_8(h, S, m, margin, peak_share)
+    _crossings(S, PROBLEM_A, L1, first, m)
+    _crossings(S, PROBLEM_B, L2, first, m)
+
+
+@compiled
+def _interval(S, lane, a, b, c, d, variant, peak_share):
+    """The interval about the knot between b and c, the least value of B_i on it, and whether Lemma 2 has none."""
+    if variant == 1:
+        return -b, c, min(a / (a + b) * (a / (a + b + c)), d / (c + d) * (d / (b + c + d))), False
+    if variant == 3:
+        share = b / (b + c)
+        return 0.0, 0.0, (1.0 - share) * ((a + b) / (a + b + c)) + share * ((c + d) / (b + c + d)), False
+    return _combine(S, lane, b, c, peak_share)
+
+
+@compiled
 def fill_intervals(blocks, scratch, n, first, last, h, variant, margin, peak_share):
     """Where every footpoint is sought, relative to its knot. Returns the fallbacks and the least value of any B_i."""
     fallbacks, least = 0, 1.0
     for first_of_block in range(0, n, LANES):
         block, count = blocks[first_of_block // LANES], min(LANES, n - first_of_block)
         if variant == 2:
-            m = (count + 7) // 8 * 8
-            _prepare(h[PAD + first_of_block - 2 :], scratch, m, margin, peak_share)
-            _crossings(scratch, PROBLEM_A, L1, m)
-            _crossings(scratch, PROBLEM_B, L2, m)
+            _prepared(h[PAD + first_of_block - 2 :], scratch, TWO, (count + 7) // 8 * 8, margin, peak_share)
         for k in range(count):
             i, lane = first_of_block + k, np.uint64(k + HALO)
             low = high = 0.0
             if first <= i < last:
                 a, b, c, d = h[PAD + i - 2], h[PAD + i - 1], h[PAD + i], h[PAD + i + 1]
-                if variant == 1:
-                    low, high = -b, c
-                    value = min(a / (a + b) * (a / (a + b + c)), d / (c + d) * (d / (b + c + d)))
-                elif variant == 3:
-                    share = b / (b + c)
-                    value = (1.0 - share) * ((a + b) / (a + b + c)) + share * ((c + d) / (b + c + d))
-                else:
-                    low, high, value, missing = _combine(scratch, lane, b, c, peak_share)
-                    fallbacks += missing
+                low, high, value, missing = _interval(scratch, lane, a, b, c, d, variant, peak_share)
+                fallbacks += missing
                 least = min(least, value)
             block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0
     return fallbacks, least
+
+
+@compiled
+def fill_intervals_side_by_side(block, scratch, step, counts, h, variant, margin, peak_share, fallbacks, least):
+    """The same for closed polygons of ``counts`` vertices in one block, whose intervals h lie as they do.
+
+    Fallbacks and least values of a B_i are left in the arrays of these names, one number for each polygon.
+    """
+    first = HALO * step
+    if variant == 2:
+        m = (counts.max() * step + 7) // 8 * 8
+        _prepared(h[(PAD - HALO) * step :], scratch, np.uint64(first), m, margin, peak_share)
+    for k in range(counts.shape[0]):
+        fallbacks[k], least[k] = 0, 1.0
+        for i in range(counts[k]):
+            lane, at = np.uint64(first + i * step + k), (PAD + i) * step + k
+            a, b, c, d = h[at - 2 * step], h[at - step], h[at], h[at + step]
+            low, high, value, missing = _interval(scratch, lane, a, b, c, d, variant, peak_share)
+            fallbacks[k] += missing
+            least[k] = min(least[k], value)
+            block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0

@@ -10,13 +10,14 @@ import numpy as np
 
 from . import fields
 from .fields import HALO, LANES
+from .flagged import flagged
 from .footpoint import compiled
-from .lanes import errors_at, footpoints
+from .lanes import errors_at, seek, whole_vectors
 from .select import select
 from .solve import solve
 
 PX, PY, EX, EY, DD = (np.uint64(k) for k in (fields.PX, fields.PY, fields.EX, fields.EY, fields.DD))
-FOUR = np.uint64(4)
+TWO, FOUR = np.uint64(2), np.uint64(4)
 POLISHED = 1e-14
 """A frozen solve whose error is not below this share of the extent is done a second time, for its rounding errors."""
 
@@ -108,10 +109,15 @@ def _one_pass(blocks, scratch, n, closed, natural, base, moves, search, tie):
         halos(blocks, n, b, closed)
         block = blocks[b]
         inside = min(LANES, n - b * LANES)
-        more = footpoints(block, scratch, inside, tie) if search else errors_at(block, scratch, inside)
-        if more < 0:
+        m, bad = whole_vectors(inside), 0
+        if search:
+            bad, wild = seek(block, scratch, TWO, m)
+        else:
+            wild = errors_at(block, scratch, TWO, m)
+        if wild > 0:
             return np.inf, searched
-        searched += more
+        if bad > 0:
+            searched += flagged(block, scratch, TWO, m, tie)
         start, stop = max(first - b * LANES, 0), min(last - b * LANES, inside)
         if stop > start:
             largest = max(largest, _largest(block, start + HALO, stop + HALO))
@@ -119,7 +125,8 @@ def _one_pass(blocks, scratch, n, closed, natural, base, moves, search, tie):
 
 
 @compiled
-def _grown(array, size):
+def grown(array, size):
+    """The array, or one twice as large as need be that begins with it."""
     if array.shape[0] >= size:
         return array
     larger = np.empty(2 * size)
@@ -129,32 +136,38 @@ def _grown(array, size):
 
 @compiled
 def iterate(
-    blocks, scratch, n, closed, h, natural, base, search, limit, tie, max_iterations, frozen, rows, residuals, used,
+    blocks, scratch, n, closed, natural, base, search, limit, tie, max_iterations, residuals, used, passes
 ):  # fmt: skip
-    """Algorithm 2, and the frozen solve if wanted; errors go to ``residuals`` from ``used`` on.
+    """Algorithm 2, of which ``passes`` passes have been made; all errors go to ``residuals`` from ``used`` on.
 
     Args:
         limit: distance to stop below.
-        rows: (n, …) room for the solve.
 
     Returns:
-        The residuals, which may have moved to a larger array, the passes and the full searches.
+        The residuals, which may have moved to a larger array, the passes in all and the full searches.
     """
-    searched, passes = 0, 0
+    searched = 0
     while True:
         D, more = _one_pass(blocks, scratch, n, closed, natural, base, passes > 0, search, tie)
-        residuals = _grown(residuals, used + passes + 2)
+        residuals = grown(residuals, used + passes + 2)
         residuals[used + passes] = np.sqrt(D)
         passes += 1
         searched += more
         if np.sqrt(D) < limit or passes > max_iterations or not np.inf > D:
+            return residuals, passes, searched
+
+
+@compiled
+def freeze(blocks, scratch, n, closed, h, natural, base, tie, rows):
+    """The control points whose curve passes through every vertex at the footpoints found last, and the error left.
+
+    Args:
+        rows: (n, …) room for the solve.
+    """
+    D = 0.0
+    for _ in range(2):
+        found = solve(blocks, n, h, closed, natural, rows)
+        D, _more = _one_pass(blocks, scratch, n, closed, natural, base, found, False, tie)
+        if np.sqrt(D) < POLISHED or not found:
             break
-    if frozen and np.inf > D and n > (0 if closed else 2):
-        for _ in range(2):
-            found = solve(blocks, n, h, closed, natural, rows)
-            D, more = _one_pass(blocks, scratch, n, closed, natural, base, found, not frozen, tie)
-            if np.sqrt(D) < POLISHED or not found:
-                break
-        residuals[used + passes] = np.sqrt(D)
-        passes += 1
-    return residuals, passes, searched
+    return np.sqrt(D)

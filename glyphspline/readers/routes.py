@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import uharfbuzz as hb
@@ -65,8 +66,16 @@ class FontTools:
     """Outlines through fontTools, at a location in normalised coordinates."""
 
     def __init__(self, tables: TTFont, normalized: Mapping[str, float]) -> None:
-        self._glyphs: Any = tables.getGlyphSet(location=dict(normalized) or None, normalized=True)
-        self._static_glyf: Any = tables["glyf"] if "glyf" in tables and not normalized else None
+        self._tables, self._normalized = tables, normalized
+
+    @cached_property
+    def _glyphs(self) -> Any:
+        """Made when HarfBuzz has failed on a glyph: of a CJK face it takes as long as all else in opening it."""
+        return self._tables.getGlyphSet(location=dict(self._normalized) or None, normalized=True)
+
+    @cached_property
+    def _static_glyf(self) -> Any:
+        return self._tables["glyf"] if "glyf" in self._tables and not self._normalized else None
 
     def draw(self, name: str) -> tuple[ContourPen, float]:
         """The glyph's contours and advance; whatever is broken is raised as fontTools raises it."""

@@ -24,7 +24,6 @@ from ..errors import FontError, GlyphsplineError
 from ..outline import FontMetrics, Outline
 from .base import NamedGlyphs, reason
 from .pens import ContourPen
-from .svg_shapes import draw_shapes
 
 LARGEST_FILE = 1 << 26
 """Bytes of one drawing."""
@@ -114,6 +113,8 @@ def read_drawing(file: Path) -> Outline:
     Raises:
         GlyphsplineError: it is too large, no SVG, or declares entities.
     """
+    from .svg_shapes import draw_shapes  # brings SciPy with it, for which fonts have no use
+
     if file.stat().st_size > LARGEST_FILE:
         raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB", font=str(file))
     try:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
-from typing import Any
 
-Drawing = dict[str, Any]
+Drawing = dict[str, str]
 """Path data of ``source``, ``result``, ``polygon`` and ``control``; "" for what was not written."""
 
 _GROUP = re.compile(r'<g id="[^"]*-(source|polygon|control)"[^>]*><path(?: [a-z-]+="[^"]*")*? d="([^"]*)"')
@@ -17,16 +16,26 @@ _PATH = re.compile(r"[MLQCZ0-9 .e-]*")
 
 def read_drawing(folder: Path, files: Mapping[str, str]) -> Drawing:
     """The path data of one glyph; of files that are not there, or are no drawings of ours, nothing."""
-    found = dict.fromkeys(("source", "result", "polygon", "control"), "")
-    for name, data in _GROUP.findall(_content(folder, files.get("source"))):
+    return drawing_of(lambda kind: _content(folder, files.get(kind)))
+
+
+def drawing_of(content: Callable[[str], str]) -> Drawing:
+    """The path data of one glyph from its drawings, which are asked for by their kind; "" says there is none."""
+    found = drawing()
+    for name, data in _GROUP.findall(content("source")):
         found[name] = _clean(data)
     # The curvature map draws the same outline, for runs that wrote no plain SVG.
     for kind in ("svg", "curvature"):
-        match = _RESULT.search(_content(folder, files.get(kind)))
+        match = _RESULT.search(content(kind))
         if match:
             found["result"] = _clean(match[1])
             break
     return found
+
+
+def drawing(result: str = "") -> Drawing:
+    """A glyph of which no more than its outline is drawn."""
+    return {"source": "", "result": result, "polygon": "", "control": ""}
 
 
 def inside(path: object) -> bool:

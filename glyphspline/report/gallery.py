@@ -6,27 +6,35 @@ Scripts, because a page opened from disk may not read other files in any other w
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from base64 import b64encode
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from functools import partial
 from hashlib import sha256
 from importlib.resources import files
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from string import Template
 from typing import Any
 
 from ..writers.colours import SIDES, class_colour
 from ..writers.markup import text
+from .data import (
+    CHUNK,
+    FOLDER,
+    Row,
+    as_json,
+    contours_text,
+    glyph_text,
+    page_file,
+    page_text,
+    script,
+    table_row,
+    table_text,
+)
 from .drawings import inside, read_drawing
-from .measures import MEASURES, glyph_measures
-
-FOLDER = "gallery"
-
-CHUNK = 40
-"""Glyphs in a file of drawings: about half a megabyte of CJK outlines, a tenth of a second to load."""
+from .measures import MEASURES
 
 TABLE = 5000
 """Glyphs in a file of measures."""
@@ -53,18 +61,73 @@ def write_report(out_dir: Path, entries: Iterable[Entry], run: Mapping[str, Any]
         entries: the lines of its ``manifest.jsonl``, parsed. A few thousand rows of measures are held at a time.
         run: its ``run.json``.
     """
-    folder = out_dir / FOLDER
-    folder.mkdir(exist_ok=True)
-    glyphs = tables = count = 0
-    for part in _batched(entries, TABLE):
-        _script(folder / f"table-{tables:05}.js", _table(part))
-        for chunk in _batched(part, CHUNK):
-            _script(folder / f"glyphs-{glyphs:05}.js", [_glyph(out_dir, entry) for entry in chunk])
-            glyphs += 1
-        tables, count = tables + 1, count + len(part)
-    _script(folder / "run.js", _run(run, count))
-    _remove_stale(folder, {"table": tables, "glyphs": glyphs})
-    write_index(out_dir, [""], _heading(run))
+    gallery = Gallery(out_dir)
+    for entry in entries:
+        gallery.add(row_of(entry), partial(shown, out_dir, entry))
+    gallery.close(run)
+
+
+class Gallery:
+    """A run's gallery as it is written, glyph after glyph in the order in which they are shown.
+
+    Args:
+        out_dir: the run's folder.
+        pages: numbers of the pages, of ``CHUNK`` glyphs each, that are there and as they should be.
+    """
+
+    def __init__(self, out_dir: Path, pages: Container[int] = ()) -> None:
+        self._out, self._there = out_dir, pages
+        self._rows: list[Row] = []
+        self._glyphs: list[Callable[[], str]] = []
+        self._count = self._tables = self._pages = 0
+        (out_dir / FOLDER).mkdir(exist_ok=True)
+
+    def add(self, row: Row, glyph: Callable[[], str]) -> None:
+        """The next glyph: its row of the table, and what gives its drawing if its page has to be written."""
+        self._rows.append(row)
+        self._glyphs.append(glyph)
+        self._count += 1
+        if len(self._glyphs) == CHUNK:
+            self._end_page()
+        if len(self._rows) == TABLE:
+            self._end_table()
+
+    def close(self, run: Mapping[str, Any]) -> None:
+        """Write what is left, and the page to look at. ``run`` is the content of ``run.json``."""
+        if self._glyphs:
+            self._end_page()
+        if self._rows:
+            self._end_table()
+        folder = self._out / FOLDER
+        _replace(folder / "run.js", script(_run(run, self._count)))
+        _remove_stale(folder, {"table": self._tables, "glyphs": self._pages})
+        write_index(self._out, [""], _heading(run))
+
+    def _end_page(self) -> None:
+        if self._pages not in self._there:
+            _replace(self._out / page_file(self._pages), page_text(glyph() for glyph in self._glyphs))
+        self._glyphs.clear()
+        self._pages += 1
+
+    def _end_table(self) -> None:
+        _replace(self._out / FOLDER / f"table-{self._tables:05}.js", table_text(self._rows))
+        self._rows.clear()
+        self._tables += 1
+
+
+def row_of(entry: Entry) -> Row:
+    """An entry's row of the table."""
+    return table_row(
+        str(entry["glyph"]), int(entry["gid"]), entry.get("unicodes") or (), entry.get("advance"),
+        str(entry["status"]), entry.get("contours") or (),
+    )  # fmt: skip
+
+
+def shown(out_dir: Path, entry: Entry) -> str:
+    """An entry on its page, its drawing read from the files."""
+    named = {str(kind): path for kind, path in (entry.get("files") or {}).items() if inside(path)}
+    contours = contours_text(entry.get("contours") or ())
+    return glyph_text(read_drawing(out_dir, named), named, contours, entry.get("error"))
 
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
@@ -74,7 +137,7 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     script = "".join(package_text(name) for name in SCRIPTS)
     page = Template(package_text("gallery.html")).substitute(
         heading=text(heading), style=package_text("theme.css") + package_text("gallery.css"), layers=layer_switches(),
-        setup=_json(setup), script=script, digest=b64encode(sha256(("\n" + script).encode()).digest()).decode(),
+        setup=as_json(setup), script=script, digest=b64encode(sha256(("\n" + script).encode()).digest()).decode(),
     )  # fmt: skip
     _replace(out_dir / "index.html", page)
 
@@ -119,38 +182,6 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
     }
 
 
-def _table(entries: Sequence[Entry]) -> dict[str, list[Any]]:
-    """Columns, which are a third of the size of rows with names."""
-    measures = [glyph_measures(entry.get("contours") or ()) for entry in entries]
-    columns: dict[str, list[Any]] = {
-        "glyph": [str(entry["glyph"]) for entry in entries],
-        "gid": [int(entry["gid"]) for entry in entries],
-        "unicodes": [" ".join(map(str, entry.get("unicodes") or ())) for entry in entries],
-        "advance": [entry.get("advance") for entry in entries],
-        "status": [str(entry["status"]) for entry in entries],
-    }
-    for key in ("contours", *MEASURES):
-        column = [values[key] for values in measures]
-        if any(value is not None for value in column):
-            columns[key] = column
-    return columns
-
-
-def _glyph(out_dir: Path, entry: Entry) -> dict[str, Any]:
-    named = {str(kind): path for kind, path in (entry.get("files") or {}).items() if inside(path)}
-    more = {"files": named, "contours": list(entry.get("contours") or ()), "error": entry.get("error")}
-    return read_drawing(out_dir, named) | more
-
-
-def _script(path: Path, data: Any) -> None:
-    _replace(path, f"glyphsplineData({_json(data)});\n")
-
-
-def _json(data: Any) -> str:
-    """JSON that can stand in a script and in a page: ASCII, and no "<" that could end either."""
-    return json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-
-
 def _replace(path: Path, content: str) -> None:
     """Write under a temporary name, then rename: a file is there whole or not at all."""
     temporary = path.with_name(f".{path.name}.part")
@@ -164,9 +195,3 @@ def _remove_stale(folder: Path, counts: Mapping[str, int]) -> None:
         found = re.fullmatch(r"(table|glyphs)-(\d{5,})\.js", path.name)
         if found and int(found[2]) >= counts[found[1]]:
             path.unlink()
-
-
-def _batched(items: Iterable[Entry], size: int) -> Iterator[list[Entry]]:
-    rest = iter(items)
-    while part := list(islice(rest, size)):
-        yield part

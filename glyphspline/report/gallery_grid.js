@@ -75,12 +75,14 @@
       if (!cards.has(current) && cards.size) cards.values().next().value.firstChild.tabIndex = 0;
     };
 
+    /** Takes the list's width in; true if that moves the cards. */
     const measure = () => {
-      const room = list.clientWidth, wanted = room < 520 ? 150 : 176;
+      const room = list.clientWidth, wanted = room < 520 ? 150 : 176, before = width;
       columns = Math.max(1, Math.floor(room / wanted));
       width = room / columns;
       height = width + 46;
       list.style.height = `${Math.ceil(rows.length / columns) * height}px`;
+      return width !== before;
     };
 
     const again = () => {
@@ -91,6 +93,9 @@
       show();
       if (held) cards.get(current)?.firstChild.focus({ preventScroll: true });
     };
+
+    /** Cards that stay where they are keep what they hold, the focus with it. */
+    const resized = () => (measure() ? again() : show());
 
     const focus = (position) => {
       current = Math.max(0, Math.min(rows.length - 1, position));
@@ -117,7 +122,7 @@
       asked = true;
       requestAnimationFrame(() => { asked = false; show(); });
     }, { passive: true });
-    new ResizeObserver(again).observe(box);
+    new ResizeObserver(resized).observe(box);
 
     return {
       set(chosen, fact) {

@@ -31,10 +31,12 @@ DIGITS = 5
 
 def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """All of ``MEASURES`` for one glyph, None where no contour has it."""
-    found: dict[str, Any] = {"contours": len(contours)}
-    for key, (_, together) in MEASURES.items():
-        values = [contour[key] for contour in contours if contour.get(key) is not None]
-        found[key] = _short(together(values)) if values else None
+    found: dict[str, Any] = {"contours": len(contours)} | dict.fromkeys(MEASURES)
+    columns = zip(*[map(contour.get, MEASURES) for contour in contours], strict=True)
+    for (key, (_, together)), column in zip(MEASURES.items(), columns, strict=False):
+        values = [value for value in column if value is not None] if None in column else column
+        if values:
+            found[key] = _short(together(values))
     return found
 
 

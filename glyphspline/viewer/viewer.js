@@ -19,12 +19,20 @@
   const layers = new Set(["source", "result", "vertices"]);
   let shown = null, compared = null, steps = null, playing = null;
 
+  /** What is drawn may still change while an answer is awaited, and says so. */
+  let awaited = 0;
+  const awaiting = (more) => {
+    awaited += more;
+    document.querySelector("main").setAttribute("aria-busy", String(awaited > 0));
+  };
+
   /** One request of a kind at a time; of those that came in between only the last is sent. */
   const line = (path, then) => {
     let busy = false, next = null;
     const send = async (body) => {
       if (busy) { next = body; return; }
       busy = true;
+      awaiting(1);
       try {
         const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body });
         const found = await answer.json();
@@ -34,6 +42,7 @@
       }
       busy = false;
       if (next) { const body = next; next = null; send(body); }
+      awaiting(-1);
     };
     return () => send(JSON.stringify(state));
   };
@@ -127,7 +136,6 @@
     if (other) zoom.fit(GS.viewerBox(font, found));
     tell();
     draw();
-    document.body.dataset.shown = String(+(document.body.dataset.shown || 0) + 1);
     if (at("compare").checked) askCompared();
   });
   const ask = () => {

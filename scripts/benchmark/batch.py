@@ -1,5 +1,8 @@
 """Whole fonts: interpolated SVG beside plain export of the same outlines by others, in one run.
 
+Nothing is removed before all is measured: ext4 without a journal looks, for each new file, through the inodes that were
+freed within the last minutes, and what came after a removal of ten thousand files would seem several times as slow.
+
 The font is Noto Sans CJK Regular (Debian's fonts-noto-cjk); ``GLYPHSPLINE_BENCH_FONT`` names another with as many Han
 glyphs, ``GLYPHSPLINE_BENCH_GLYPHS`` another number of them. Exports by others write the path and nothing more.
 """
@@ -53,14 +56,18 @@ def rows() -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
         ours(here / "warm", few, step, ("svg",), 1)
-        plain = [], []  # type: tuple[list[float], list[float]]
-        for _ in range(2):  # in turn, so that what else the machine does falls on both
-            plain[0].append(fonttools_export(here / "plain", many))
-            plain[1].append(ours(here / "step", many, step, ("svg",), 1))
-        source, stepped = min(plain[0]), min(plain[1])
-        resumed = ours(here / "step", many, step, ("svg",), 1, restart=False) * len(many)
-        two = ours(here / "two", many, step, ("svg",), 2)
-        bare = floor(here / "floor", many)
+        rounds = []
+        for k in range(2):  # in turn, so that what else the machine does falls on all
+            rounds.append(
+                (
+                    fonttools_export(here / f"plain-{k}", many),
+                    ours(here / f"one-{k}", many, step, ("svg",), 1),
+                    ours(here / f"two-{k}", many, step, ("svg",), 2),
+                    floor(here / f"floor-{k}", many),
+                )
+            )
+        source, stepped, two, bare = map(min, zip(*rounds, strict=True))
+        resumed = ours(here / "one-0", many, step, ("svg",), 1) * len(many)
         mapped = ours(here / "maps", few, step, ("svg", "curvature"), 1)
         certified = ours(here / "close", few, Options(tolerance=1.0), ("svg",), 1)
         forge = fontforge_export(here / "forge", few)
@@ -85,9 +92,7 @@ def per(seconds: float) -> str:
     return f"{in_words(seconds)} a glyph"
 
 
-def ours(
-    out: Path, gids: Sequence[int], options: object, formats: tuple[str, ...], jobs: int, *, restart: bool = True
-) -> float:
+def ours(out: Path, gids: Sequence[int], options: object, formats: tuple[str, ...], jobs: int) -> float:
     """Seconds a glyph of a whole run: opening the font, workers' start, files, manifest, index."""
     from glyphspline.batch import RunSpec, convert_font
     from glyphspline.readers import open_font
@@ -95,7 +100,7 @@ def ours(
     start = perf_counter()
     font = open_font(FONT)
     names = [font.glyph_names[gid] for gid in gids]
-    convert_font(font, names, out, RunSpec(options, formats), jobs=jobs, restart=restart)  # type: ignore[arg-type]
+    convert_font(font, names, out, RunSpec(options, formats), jobs=jobs)  # type: ignore[arg-type]
     return (perf_counter() - start) / len(gids)
 
 
@@ -105,7 +110,7 @@ def fonttools_export(out: Path, gids: Sequence[int]) -> float:
     from fontTools.ttLib import TTFont
 
     start = perf_counter()
-    empty(out)
+    out.mkdir()
     font = TTFont(FONT, fontNumber=0, lazy=True)
     glyphs, order = font.getGlyphSet(), font.getGlyphOrder()
     for gid in gids:
@@ -123,7 +128,7 @@ def floor(out: Path, gids: Sequence[int]) -> float:
     from fontTools.pens.basePen import NullPen
 
     start = perf_counter()
-    empty(out)
+    out.mkdir()
     font = hb.Font(hb.Face(hb.Blob.from_file_path(str(FONT)), 0))
     pen = NullPen()
     for gid in gids:
@@ -135,16 +140,10 @@ def floor(out: Path, gids: Sequence[int]) -> float:
 
 def fontforge_export(out: Path, gids: Sequence[int]) -> float:
     """Seconds a glyph of FontForge's own export, the font's opening not counted; not a number without FontForge."""
-    empty(out)
+    out.mkdir()
     for python in ("/usr/bin/python3", shutil.which("python3") or "python3"):
         call = [python, "-c", FONTFORGE, str(FONT), str(out), str(len(gids))]
         done = subprocess.run(call, capture_output=True, text=True, timeout=600)
         if done.returncode == 0:
             return float(done.stdout.split()[-1])
     return float("nan")
-
-
-def empty(folder: Path) -> None:
-    """A folder with nothing in it: files are always new."""
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)

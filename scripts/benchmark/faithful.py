@@ -1,7 +1,8 @@
 """How few segments and numbers keep a glyph within 1/1000 em, against the source itself, FontForge and variant 3.
 
 FontForge is given the benefit of the doubt: of 30 settings of its ``simplify`` the one with the fewest numbers counts
-whose result, by dense sampling, truly stays within the tolerance; where none does, the source does.
+whose result, by dense sampling, truly stays within the tolerance; where none does, the source does. So is kurbo's fit,
+with its accuracies in the place of settings.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import glyphspline as gs
 from glyphspline.arrays import FloatArray
 from glyphspline.bezier import evaluate
 
+from .kurbo_fit import kurbo_results
 from .measure import Row
 
 GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "200"))
@@ -109,7 +111,9 @@ def face_rows(face: Face) -> list[Row]:
     forge = np.array([fewest(g, results) for g, results in zip(glyphs, forge_results(glyphs), strict=True)])
     best, best_time = converted(glyphs, gs.Options(corners="sharp", effort="best", tolerance=1.0))
     fast, fast_time = converted(glyphs, gs.Options(corners="sharp", effort="fast", tolerance=1.0))
-    few = glyphs[:: max(1, len(glyphs) // 25)]
+    every = max(1, len(glyphs) // 25)
+    few = glyphs[::every]
+    kurbo = np.array([fewest(glyph, kurbo_results(glyph)) for glyph in few])
     smooth, smooth_time = converted(few, gs.Options(tolerance=1.0, effort="best"))
     third, _ = converted(few, gs.Options(tolerance=1.0, effort="best", variant=3))
     missed, contours = best[:, 2].sum() + fast[:, 2].sum(), 2 * sum(len(g.contours) for g in glyphs)
@@ -121,6 +125,10 @@ def face_rows(face: Face) -> list[Row]:
         Row(f"{face.name}: segments / source's", share[0], "x", *face.segments, False, note),
         Row(f"{face.name}: numbers / FontForge's", best.mean(0)[1] / forge.mean(0)[1], "x", *face.numbers, False),
         Row(f"{face.name}: segments / FontForge's", best.mean(0)[0] / forge.mean(0)[0], "x", None, None, False),
+        Row(
+            f"{face.name}: segments / kurbo's", best[::every].mean(0)[0] / kurbo.mean(0)[0], "x", None, None, False,
+            f"{len(few)} glyphs; a glyph: kurbo {kurbo.mean(0)}, sharp {best[::every].mean(0)[:2]}",
+        ),
         Row(f"{face.name}: share of contours not certified", missed / contours, "", 1e-4, None, False),
         Row(f"{face.name}: best, a glyph", best_time * 1e3, "ms", 25, None, False),
         Row(f"{face.name}: fast, a glyph", fast_time * 1e3, "ms", 2, None, False),

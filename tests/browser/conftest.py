@@ -11,13 +11,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import expect, sync_playwright
 
 import glyphspline as gs
 from glyphspline.batch import RunSpec, convert_font, write_gallery
 
 FONTS = Path(__file__).parents[2] / "fonts_test"
+PATIENCE = 60_000
+"""Milliseconds: a slow machine is not an error, and what never comes fails all the same."""
+
 SANDBOXED = hasattr(os, "getuid") and os.getuid() != 0  # Chromium's sandbox does not work for root
+
+expect.set_options(timeout=PATIENCE)
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +40,7 @@ def page(browser: Any) -> Iterator[Any]:
     """A page on which any error, and any request beyond this machine, fails the test."""
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
-    page.set_default_timeout(10_000)
+    page.set_default_timeout(PATIENCE)
     wrong: list[str] = []
     page.on("console", lambda message: wrong.append(message.text) if message.type in ("error", "warning") else None)
     page.on("pageerror", lambda error: wrong.append(str(error)))

@@ -14,8 +14,13 @@ def shown(page: Any, viewer: str) -> Any:
     """The viewer's page with the first glyph drawn, and waiting for nothing."""
     page.goto(viewer)
     page.wait_for_selector(RESULT, state="attached")
-    page.wait_for_load_state("networkidle")
+    rests(page)
     return page
+
+
+def rests(page: Any) -> None:
+    """Wait until no answer is awaited."""
+    page.wait_for_selector("main[aria-busy=false]")
 
 
 def path(page: Any) -> str:
@@ -23,11 +28,11 @@ def path(page: Any) -> str:
 
 
 def changes(page: Any, act: Any) -> str:
-    """The curve after something that has to change it."""
+    """The curve after something that has to change it, once the last answer is in."""
     before = path(page)
     act()
     page.wait_for_function("d => document.querySelector('#picture .result')?.getAttribute('d') !== d", arg=before)
-    page.wait_for_load_state("networkidle")
+    rests(page)
     return path(page)
 
 
@@ -78,7 +83,7 @@ def test_the_iteration_is_played_from_the_polygon_to_the_result(shown: Any) -> N
     assert "error" in shown.locator("#step-out").inner_text()
     assert shown.locator("#picture .ties").get_attribute("d") != "", "vertices are tied to their footpoints"
     assert changes(shown, lambda: None) != first
-    shown.wait_for_function("() => document.getElementById('step-out').textContent === 'result'", timeout=15_000)
+    shown.wait_for_function("() => document.getElementById('step-out').textContent === 'result'")
     assert path(shown) == final
 
 
@@ -98,7 +103,6 @@ def test_a_vertex_is_dragged_and_put_back(shown: Any) -> None:
 
     changes(shown, drag)
     assert shown.locator("#moved-note").is_visible()
-    shown.wait_for_load_state("networkidle")
     changes(shown, lambda: shown.locator("#restore").click())
     assert path(shown) == before
 
@@ -108,22 +112,6 @@ def test_saves_the_drawing(shown: Any, tmp_path: Path) -> None:
         shown.locator("#save").click()
     waiting.value.save_as(tmp_path / "saved.svg")
     assert f'd="{path(shown)}"' in (tmp_path / "saved.svg").read_text()
-
-
-def test_an_ordinary_glyph_answers_within_a_tenth_of_a_second(shown: Any) -> None:
-    shown.locator("#words").fill("g")
-    shown.wait_for_load_state("networkidle")
-    shown.wait_for_timeout(500)
-    times = shown.evaluate(
-        """async () => { const times = [];
-           for (let i = 0; i < 8; i++) { const from = performance.now();
-             const body = JSON.stringify({ glyph: 'g', sampling: 'step', amount: 40 + i, variant: 2, margin: 0.02 });
-             const headers = { 'content-type': 'application/json' };
-             await (await fetch('/api/glyph', { method: 'POST', headers, body })).json();
-             times.push(performance.now() - from); }
-           return times.sort((a, b) => a - b); }"""
-    )
-    assert times[len(times) // 2] < 100
 
 
 def test_on_a_phone_nothing_is_wider_than_the_screen(shown: Any) -> None:

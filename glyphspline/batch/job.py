@@ -1,0 +1,111 @@
+"""What is said between the process that hands out a run's glyphs and those that convert them.
+
+The first has no use for the compiled code, which takes a second to import: :func:`work` and :func:`survey` bring it in
+where they are called.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..outline import FontMetrics
+from ..report.data import CHUNK, as_json, table_row
+from .entry import manifest_line
+from .spec import RunSpec
+from .summary import Facts, facts_of
+
+if TYPE_CHECKING:
+    from ..curvature import Comb
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs.
+
+    ``static`` says that it is a font file, and does not vary.
+    """
+
+    path: Path
+    face_index: int
+    location: tuple[tuple[str, float], ...]
+    out: Path
+    spec: RunSpec
+    metrics: FontMetrics
+    static: bool
+    curvature_scale: float | None = None
+
+
+class Task(NamedTuple):
+    """One glyph: its name, index and code points, its file name without suffix, and its place in the manifest."""
+
+    gid: int
+    name: str
+    stem: str
+    unicodes: tuple[int, ...]
+    place: int
+
+
+class Done(NamedTuple):
+    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took.
+
+    What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
+    """
+
+    gid: int
+    name: str
+    status: str
+    line: str
+    sizes: tuple[int, ...]
+    seconds: float
+    row: str
+    facts: Facts
+
+
+def page_of(tasks: Sequence[Task]) -> int | None:
+    """The number of the gallery's page that shows just these glyphs, if one does."""
+    first = tasks[0].place
+    whole = len(tasks) == CHUNK and tasks[-1].place == first + CHUNK - 1 and first % CHUNK == 0
+    return first // CHUNK if whole else None
+
+
+def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
+    """A glyph that could not be converted, or that no worker lived to tell of."""
+    return finished(task, "failed", None, {}, (), "", error, seconds)
+
+
+def finished(
+    task: Task,
+    status: str,
+    advance: float | None,
+    files: Mapping[str, str],
+    sizes: tuple[int, ...],
+    contours: str,
+    error: str | None,
+    seconds: float,
+) -> Done:
+    """What is told of a glyph; ``contours`` is what :func:`.entry.contours_text` gave."""
+    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
+    entry = json.loads(line)
+    row = table_row(task.name, task.gid, entry["unicodes"], entry["advance"], status, entry["contours"])
+    return Done(
+        task.gid, task.name, status, line, sizes, seconds, as_json(row),
+        facts_of(entry["contours"]),
+    )  # fmt: skip
+
+
+def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
+    """:func:`.work.work`, in a worker."""
+    from .work import work
+
+    return work(job, tasks)
+
+
+def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
+    """:func:`.work.survey`, in a worker."""
+    from .work import survey
+
+    return survey(job, tasks)

@@ -1,0 +1,115 @@
+"""Runs over so many glyphs that workers write the gallery page by page; and the short way, interrupted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from glyphspline.batch import OutputError, RunSpec, convert_font, write_gallery
+from glyphspline.batch.manifest import JOURNAL
+from glyphspline.glyph import Options
+from glyphspline.readers import Font, open_font
+from glyphspline.report.data import CHUNK, page_file
+
+from .test_batch import content
+from .test_hostile import built, square
+
+SPEC = RunSpec(Options(step=300.0), ("svg",))
+MANY = 16 * CHUNK + 5
+"""Glyphs of which each of two workers gets whole pages; the last page is none."""
+
+
+@pytest.fixture(scope="module")
+def font(tmp_path_factory: pytest.TempPathFactory) -> Font:
+    path = tmp_path_factory.mktemp("font") / "many.ttf"
+    empty = [3, CHUNK]
+    names = {f"glyph{k:03}": square(0.0 if k in empty else 300.0 + k) for k in range(MANY - 1)}
+    built({".notdef": square(), **names}).save(path)
+    return open_font(path)
+
+
+@pytest.fixture(scope="module")
+def finished(font: Font, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("runs") / "finished"
+    summary = convert_font(font, font.glyph_names, out, SPEC, jobs=0)
+    assert summary.statuses == {"ok": MANY - 2, "empty": 2}
+    return out
+
+
+def stop_at(least: int) -> Any:
+    def observe(done: int, total: int, failed: int) -> None:
+        if done >= least:
+            raise KeyboardInterrupt
+
+    return observe
+
+
+def test_a_page_is_there_as_soon_as_its_glyphs_are(font: Font, tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(1))
+    assert (tmp_path / page_file(0)).exists()
+    assert not (tmp_path / "gallery" / "run.js").exists()
+
+
+def test_pages_are_those_that_are_made_of_the_files(finished: Path, font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2)
+    assert content(tmp_path) == content(finished)
+    for path in [*(tmp_path / "gallery").iterdir(), tmp_path / "index.html"]:
+        path.unlink()
+    write_gallery(tmp_path)
+    assert content(tmp_path) == content(finished)
+
+
+def test_an_interrupted_run_ends_with_the_same_pages(finished: Path, font: Font, tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(3 * CHUNK))
+    (tmp_path / "gallery" / ".glyphs-00001.js-1.part").write_text("half a pa")
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2).done == MANY - 3 * CHUNK
+    assert content(tmp_path) == content(finished)
+
+
+def test_glyphs_between_those_that_are_there_move_the_pages(finished: Path, font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.glyph_names[1::2], tmp_path, SPEC, jobs=0)
+    convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0)
+    assert content(tmp_path) == content(finished)
+
+
+def test_drawings_lost_or_cut_are_made_again(finished: Path, font: Font, tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(2 * CHUNK))
+    drawings = sorted((tmp_path / "svg").iterdir())
+    drawings[0].unlink()
+    drawings[1].write_bytes(drawings[1].read_bytes()[:-1])
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == MANY - 2 * CHUNK + 2
+    assert content(tmp_path) == content(finished)
+
+
+def test_a_power_cut_after_the_end_may_leave_empty_drawings(finished: Path, font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0)
+    emptied = sorted((tmp_path / "svg").iterdir())[7:9]
+    for drawing in emptied:
+        drawing.write_bytes(b"")
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == 2
+    assert content(tmp_path) == content(finished)
+
+
+def test_a_gallery_that_could_not_be_written_is_made_up_for(finished: Path, font: Font, tmp_path: Path) -> None:
+    (tmp_path / "index.html").mkdir()
+    with pytest.raises(OutputError):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0)
+    assert (tmp_path / JOURNAL).exists()
+    (tmp_path / "index.html").rmdir()
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == 0
+    assert content(tmp_path) == content(finished)
+
+
+def test_a_page_that_cannot_be_written_ends_a_run_that_can_go_on(finished: Path, font: Font, tmp_path: Path) -> None:
+    blocked = tmp_path / page_file(2)
+    blocked.mkdir(parents=True)
+    with pytest.raises(OutputError, match=blocked.name):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2)
+    blocked.rmdir()
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2).done >= CHUNK
+    assert content(tmp_path) == content(finished)

@@ -1,0 +1,208 @@
+"""The sharp mode's parts: every variant, glyphs taken whole or in parts, single cubics, pieces, crossings, overlaps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.arrays import FloatArray
+from glyphspline.bezier import evaluate
+from glyphspline.chains import Settings
+from glyphspline.crossings import overshoot, self_crossings
+from glyphspline.cubicfit import fit_cubic
+from glyphspline.distance import certified_distance
+from glyphspline.measure import shape
+from glyphspline.overlaps import remove_overlaps
+from glyphspline.pieces import certify, cut_closer, cut_contours, put_together
+from glyphspline.selfcrossings import chords, count_crossings, farthest_outside
+from glyphspline.sharp import flattened
+from glyphspline.survey import survey
+
+from .polygons import circle_contour, square_contour
+
+FONT = Path(__file__).parent.parent / "fonts_test" / "kouzan-gyosho.ttf"
+LINES = np.ones(4, dtype=np.int64)
+
+
+def glyph(character: str) -> gs.Outline:
+    font = gs.open_font(FONT)
+    return font.outline(font.select(text=character)[0])
+
+
+def options(variant: int = 2, **others: object) -> gs.Options:
+    return gs.Options(corners="sharp", effort="best", variant=variant, **others)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("variant", range(5))
+@pytest.mark.parametrize("character", ["永", "龍"])
+def test_every_variant_is_certified_and_gives_what_the_public_interpolation_gives(variant: int, character: str) -> None:
+    chosen = options(variant)
+    compared = 0
+    for contour in gs.convert(glyph(character), chosen).contours:
+        measures = contour.measures
+        assert measures.within_tolerance
+        assert measures.new_crossings == 0
+        written = contour.curve.rounded(chosen.precision).cubics()
+        # The same bound from anchors that know nothing of pieces: the whole lap at once, from the fit's first joint.
+        start = int(np.hypot(*(contour.source.cubics()[:, 0] - written[0, 0]).T).argmin())
+        lap = np.array([[0.0, start], [len(written), start + len(contour.source)]])
+        bound = certified_distance(written, contour.source.cubics(), lap, 0.02, 1.0).bound
+        assert bound == pytest.approx(measures.deviation_bound, abs=0.02)
+        for arc in contour.interpolations:
+            k = len(arc.parameters) - 1
+            first = int(np.hypot(*(contour.polygon - arc.spline.control_points[0]).T).argmin())
+            p = contour.polygon.take(range(first, first + k + 1), axis=0, mode="wrap")
+            ends = arc.spline(arc.spline.knots[[0, -1]], derivative=1)
+            again = gs.interpolate(
+                p, variant, closed=False, end_tangents=(ends[0], ends[1]), margin=chosen.margin,
+                fallback="peak" if k == 2 else "knot", residual_tolerance=chosen.residual_tolerance,
+            )  # fmt: skip
+            np.testing.assert_allclose(arc.spline.control_points, again.spline.control_points, atol=1e-6)
+            np.testing.assert_allclose(arc.intervals, again.intervals, atol=1e-9)
+            compared += k > 1
+    assert compared >= 2
+
+
+def test_variants_differ_where_arcs_have_inner_vertices() -> None:
+    curves = {
+        v: np.concatenate([c.curve.points for c in gs.convert(glyph("龍"), options(v)).contours]) for v in range(5)
+    }
+    shapes = {points.tobytes() for points in curves.values()}
+    assert len(shapes) > 2
+
+
+@pytest.mark.parametrize("effort", ["fast", "best"])
+def test_a_contour_is_the_same_alone_and_among_others(effort: str) -> None:
+    outline = glyph("龍")
+    chosen = gs.Options(corners="sharp", effort=effort)  # type: ignore[arg-type]
+    together = gs.convert(outline, chosen).contours
+    for contour, result in zip(outline.contours, together, strict=True):
+        (alone,) = gs.convert(replace(outline, contours=(contour,)), chosen).contours
+        np.testing.assert_array_equal(alone.curve.points, result.curve.points)
+        np.testing.assert_array_equal(alone.polygon, result.polygon)
+        assert alone.measures == result.measures
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_an_error_names_the_contour_whatever_was_left_out_before_it(corners: str) -> None:
+    flat = gs.Contour(np.array([[0.0, 0.0], [9.0, 0.0]]), np.array([1, 1]))
+    broken = square_contour(100).points.copy()
+    broken[2, 1] = np.nan
+    outline = gs.Outline("x", contours=(flat, square_contour(100), gs.Contour(broken, LINES)))
+    with pytest.raises(gs.GlyphsplineError, match="finite") as caught:
+        gs.convert(outline, gs.Options(corners=corners))  # type: ignore[arg-type]
+    assert (caught.value.glyph, caught.value.contour) == ("x", 2)
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_a_single_cubic_is_found_again(free: bool) -> None:
+    cubic = np.array([[0.0, 0.0], [40.0, 90.0], [150.0, 120.0], [200.0, 10.0]])
+    samples = evaluate(np.broadcast_to(cubic, (60, 4, 2)), np.linspace(0, 1, 60))
+    directions = [leg / np.hypot(*leg) for leg in (cubic[1] - cubic[0], cubic[3] - cubic[2])]
+    start, end = np.empty(2), np.empty(2)
+    error = fit_cubic(samples, directions[0], free, directions[1], free, 0.3, 10, start, end)
+    assert error <= 0.3
+    third = np.hypot(*(cubic[3] - cubic[0])) / 3
+    found = np.stack([cubic[0], cubic[0] + third * start, cubic[3] - third * end, cubic[3]])
+    fine = evaluate(np.broadcast_to(found, (5000, 4, 2)), np.linspace(0, 1, 5000))
+    true = np.hypot(*(samples[:, None] - fine[None]).transpose(2, 0, 1)).min(axis=1).max()
+    assert error == pytest.approx(true, abs=0.01)
+    if not free:
+        np.testing.assert_allclose(start / np.hypot(*start), directions[0], atol=1e-12)
+        np.testing.assert_allclose(end / np.hypot(*end), directions[1], atol=1e-12)
+
+
+def test_what_no_cubic_is_near_is_not_taken_for_one() -> None:
+    x = np.linspace(0, 6 * np.pi, 200)
+    wave = np.stack([10 * x, 20 * np.sin(x)], axis=1)
+    start, end = np.empty(2), np.empty(2)
+    east = np.array([1.0, 0.0])
+    assert fit_cubic(wave, east, True, east, True, 1.0, 6, start, end) > 5
+    assert fit_cubic(np.zeros((5, 2)), east, False, east, False, 1.0, 6, start, end) == np.inf
+
+
+SETTINGS = Settings(0.9, np.radians(12.0), 20.0, 0.02, 0.005, 4, 1, 2)
+
+
+def test_pieces_that_all_fail_become_the_source_itself() -> None:
+    contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
+    chains, pieces = cut_contours(flattened(contours), SETTINGS)
+    exact = cut_closer(chains, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), 6, SETTINGS)
+    curve = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
+    bounds, _ = certify(chains, exact, curve, 0.01, 1.0)
+    assert bounds.max() < 1e-9
+    assert len(curve.degrees) == sum(map(len, contours))
+    areas = survey(curve, flattened(contours), exact.vertices, np.zeros(len(contours) + 1, dtype=np.int64)).area_change
+    np.testing.assert_allclose(areas, 0, atol=1e-6)
+
+
+def test_one_piece_is_replaced_and_the_others_stay() -> None:
+    contours = glyph("永").contours
+    chains, pieces = cut_contours(flattened(contours), SETTINGS)
+    q = int((pieces.where[:, 2] - pieces.where[:, 1]).argmax())
+    poor = np.arange(len(pieces.where)) == q
+    closer = cut_closer(chains, pieces, poor, [(2, 0.9)], 6, SETTINGS)
+    assert len(closer.where) == len(pieces.where)
+    assert closer.where[q].tolist() == [*pieces.where[q, :3], pieces.where[q, 3] + 2]
+    for k in np.flatnonzero(~poor):
+        old, new = (p.vertices[p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
+        np.testing.assert_array_equal(old, new)
+    ends = closer.vertices[closer.starts[q]], closer.vertices[closer.starts[q + 1] - 1]
+    np.testing.assert_array_equal(ends, pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]][[0, -1]])
+
+
+def chains_at_random() -> list[FloatArray]:
+    rng = np.random.default_rng(11)
+    found = []
+    for n in [2, 3, 4, 6, 9, 15] * 8:
+        joints, handles = rng.normal(0, 100, (n, 2)), rng.normal(0, 100 / n, (n, 2, 2))
+        ends = np.roll(joints, -1, axis=0)
+        found.append(np.stack([joints, joints + handles[:, 0], ends - handles[:, 1], ends], axis=1))
+    return found
+
+
+def test_crossings_and_overshoot_are_those_that_every_chord_gives() -> None:
+    counted = 0
+    for cubics in [*chains_at_random(), *(c.cubics() for c in glyph("龍").contours)]:
+        points, first = chords(cubics)
+        assert count_crossings(cubics, points, first) == self_crossings(cubics)
+        counted += self_crossings(cubics) > 0
+        polygon = np.ascontiguousarray(cubics[:, 0])
+        assert farthest_outside(cubics, points, first, polygon) == pytest.approx(overshoot(cubics, polygon), abs=1e-9)
+    assert counted > 20
+
+
+def test_measures_are_those_of_the_curve() -> None:
+    for contour in gs.convert(glyph("龍"), options()).contours:
+        form, source = shape(contour.curve.cubics()), shape(contour.source.cubics())
+        m = contour.measures
+        assert m.length == pytest.approx(form.length)
+        assert m.area_change == pytest.approx(form.area - source.area, abs=1e-6)
+        assert m.bending_energy == pytest.approx(form.bending_energy)
+        assert m.max_curvature == pytest.approx(form.max_curvature)
+
+
+@pytest.mark.parametrize(("shift", "reason"), [(1e8, "changed the area"), (np.inf, "did not succeed")])
+def test_overlaps_that_cannot_be_united_are_left_in_with_a_note(shift: float, reason: str) -> None:
+    """Skia counts in single precision: far from the origin it loses contours, and gives up at infinity."""
+    pytest.importorskip("pathops")
+    a, b = (gs.Contour(square_contour(100).points + d, LINES) for d in (shift, shift + 50))
+    outline = gs.Outline("far", contours=(a, b))
+    same, note = remove_overlaps(outline)
+    assert same is outline
+    assert note is not None
+    assert reason in note
+
+
+def test_a_glyph_whose_overlaps_stay_is_converted_and_says_so() -> None:
+    pytest.importorskip("pathops")
+    a, b = (gs.Contour(square_contour(100).points + d, LINES) for d in (1e8, 1e8 + 50))
+    result = gs.convert(gs.Outline("far", contours=(a, b)), options(remove_overlaps=True))
+    assert [contour.measures.segments for contour in result.contours] == [4, 4]
+    assert all(contour.measures.within_tolerance for contour in result.contours)
+    (note,) = result.notes
+    assert note.startswith("overlaps were left in")
