@@ -35,7 +35,8 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
 
     Results that cross themselves where their source did not are fitted again, with fewer vertices and more closely; the
-    one with the fewest crossings counts, and is flagged if it has any. Outlines that go back the way they came keep some.
+    one with the fewest crossings counts, and is flagged if it has any. Outlines that go back the way they came may keep
+    some.
 
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
