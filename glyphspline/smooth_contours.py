@@ -113,7 +113,7 @@ def _measured(
                 numbers=2 * n,
                 iterations=iterations,
                 residual=residual,
-                converged=residual < found.found.tolerances[i],
+                converged=residual < float(found.found.tolerances[i]),
                 rate_bound=float(found.found.rates[i]),
                 fallbacks=fallbacks,
                 deviation=gap,
