@@ -34,6 +34,7 @@ THINNINGS = {"fast": 0, "best": 30}
 """Trials, at the end, to do without vertices one by one: none comes, those that are needed are put back."""
 
 THIN_POWER = 1.0
+"""The power for these trials: what it promises is tried out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,18 +71,19 @@ Kept = dict[int, tuple[Round, int]]
 """By contour: a round, and which part of it."""
 
 
-def refined(chains: Chains, which: IntArray, options: Options, near: FloatArray) -> Kept:
+def refined(chains: Chains, which: IntArray, options: Options, near: FloatArray, early: int | None = None) -> Kept:
     """Fit contours.
 
     Args:
         chains: all contours. which: numbers of those to fit.
         near: (K,) by contour, how near the written curve has to be, in font units.
+        early: in place of EARLY.
 
     Returns:
         The round with the fewest vertices that are near enough; if none is, that with the smallest bound.
     """
     search = _Search(chains, options, near)
-    search.refine(which)
+    search.refine(which, EARLY[options.effort] if early is None else early)
     if THINNINGS[options.effort]:
         search.thin(which)
     return search.kept
@@ -95,7 +97,7 @@ class _Search:
         self.angle = float(np.radians(options.corner_angle))
         self.kept: Kept = {}
 
-    def refine(self, which: IntArray) -> None:
+    def refine(self, which: IntArray, early: int) -> None:
         """Begin with what is known of the outline; add vertices, and take out others, until all contours pass."""
         chains, options, near = self.chains, self.options, self.near
         left = np.full(len(near), PRUNINGS[options.effort])
@@ -106,7 +108,7 @@ class _Search:
             done = self.attempt(which, places, offsets)
             which, places, offsets = done.which, done.places, done.offsets
             passed[which] = done.most <= near[which]
-            fewer = every if turn < EARLY[options.effort] else passed & (left > 0)
+            fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = rounds.changed(
                 chains, which, places, offsets, done.points, done.bounds, done.gaps, done.worst, near, ~passed, fewer,

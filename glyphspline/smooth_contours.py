@@ -8,7 +8,6 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .closed import Backwards, turned
-from .contours import CLOSER
 from .distance import certified_distance
 from .errors import GlyphsplineError
 from .glyph import ContourResult, Measures, Options
@@ -23,14 +22,21 @@ from .smooth.forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT,
 SHARPNESS = 0.02
 """The certified bound may exceed the distances seen by this share of the tolerance."""
 
+AGAIN = ((1.0, 3), (0.5, 3), (0.25, 3))
+"""For contours that cross themselves: shares of the tolerance, and rounds in which vertices are taken out as well.
+
+Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
+"""
+
 NO_POLYGONS = np.empty((0, 2))
 
 
 def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: float) -> list[ContourResult]:
     """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
 
-    Results that cross themselves where their source did not are fitted again more closely; that with the fewest
-    crossings counts, and is flagged if it has any. Outlines that go back the way they came keep some.
+    Results that cross themselves where their source did not are fitted again, with fewer vertices and more closely; the
+    one with the fewest crossings counts, and is flagged if it has any. Outlines that go back the way they came may keep
+    some.
 
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
@@ -43,9 +49,9 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}
     left = np.arange(len(contours))
-    for share in CLOSER:
+    for share, early in ((1.0, None), *AGAIN):
         near[left] = share * tolerance
-        kept = refined(chains, left, options, near)
+        kept = refined(chains, left, options, near, early)
         own = _measured(chains, left, [kept[k] for k in left.tolist()], source, tolerance)
         for k, measures in zip(left.tolist(), own, strict=True):
             if k not in results or _rank(measures) < _rank(results[k].measures):
@@ -107,7 +113,7 @@ def _measured(
                 numbers=2 * n,
                 iterations=iterations,
                 residual=residual,
-                converged=residual < found.found.tolerances[i],
+                converged=residual < float(found.found.tolerances[i]),
                 rate_bound=float(found.found.rates[i]),
                 fallbacks=fallbacks,
                 deviation=gap,

@@ -136,20 +136,20 @@ def _crossings(pieces: FloatArray) -> int:
     found = 0
     for oi in range(n):
         i = order[oi]
-        if not _monotone(pieces, i, i):
-            found += _crossed(a, _chords(pieces, i, a), a, _chords(pieces, i, a), 0, n == 1)
-        for oj in range(oi + 1, n):
+        for oj in range(oi, n):
             j = order[oj]
             if box[j, 0] > box[i, 2]:
                 break
             if box[j, 1] > box[i, 3] or box[j, 3] < box[i, 1]:
                 continue
             first, second = (i, j) if j == (i + 1) % n else (j, i)
-            adjacent = second == (first + 1) % n
-            if adjacent and n > 2 and _monotone(pieces, first, second):
+            follows = second == (first + 1) % n
+            if (first == second or (follows and n > 2)) and _monotone(pieces, first, second):
                 continue
-            ring = adjacent and first == (second + 1) % n
-            found += _crossed(a, _chords(pieces, first, a), b, _chords(pieces, second, b), 1 if adjacent else 2, ring)
+            ring = first == (second + 1) % n
+            found += _crossed(
+                a, _chords(pieces, first, a), b, _chords(pieces, second, b), first == second, follows, ring
+            )
     return found
 
 
@@ -179,20 +179,18 @@ def _chords(pieces: FloatArray, s: int, points: FloatArray) -> int:
 
 
 @compiled
-def _crossed(a: FloatArray, m: int, b: FloatArray, n: int, apart: int, ring: bool) -> int:
-    """Chords of one piece that properly cross those of another.
+def _crossed(a: FloatArray, m: int, b: FloatArray, n: int, same: bool, follows: bool, ring: bool) -> int:
+    """Chords of one piece that properly cross those of another, which is the ``same``, or ``follows`` it, or neither.
 
-    Args:
-        apart: 0 if both are the same piece, 1 if the second follows the first, 2 if neither.
-        ring: whether the first also follows the second.
+    In a ring the first also follows the second.
     """
     found = 0
     for i in range(m):
         ax, ay = a[i]
         bx, by = a[i + 1]
         low, high, left, right = min(ay, by), max(ay, by), min(ax, bx), max(ax, bx)
-        for j in range(i + 2 if apart == 0 else 0, n):
-            if apart == 1 and i == m - 1 and j == 0:
+        for j in range(i + 2 if same else 0, n):
+            if follows and not same and i == m - 1 and j == 0:
                 continue
             if ring and i == 0 and j == n - 1:
                 continue

@@ -206,7 +206,7 @@ def sharpened(
     """Bound and gap of a whole contour, from what :func:`check` left, the first within ``sharpness`` of the second."""
     work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
     gap, bound = gaps.max(), 0.0
-    for i in np.argsort(-bounds, kind="mergesort"):
+    for i in np.argsort(-bounds):
         enough = max(bound, gap + sharpness)
         if bounds[i] > enough:
             bounds[i], gaps[i], _ = span_distance(

@@ -33,7 +33,7 @@ def sparse(
         if corners[i]:
             expected[i] = max(expected[i], _height(points, i - 1, i, (i + 1) % n))
     left = n
-    for i in np.argsort(expected, kind="mergesort"):
+    for i in np.argsort(expected):
         if not expected[i] <= near or left <= 4:
             break
         before, after = (i - 1) % n, (i + 1) % n

@@ -1,0 +1,111 @@
+"""The smooth fit's compiled steps against the plain ones: distances, measures, first places, curves run backwards."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.closed import interpolated, turned
+from glyphspline.crossings import overshoot, self_crossings
+from glyphspline.fit import chords
+from glyphspline.measure import shape
+from glyphspline.smooth import rounds
+from glyphspline.smooth.chains import chains_of
+from glyphspline.smooth.forms import forms
+from glyphspline.smooth_contours import convert_smooth
+
+from .polygons import circle_contour, random_polygon, square_contour
+from .test_distance import true_distance
+
+NONE = np.empty((0, 2))
+
+
+def wobbly(radius: float, seed: int) -> gs.Contour:
+    """A circle with its control points moved at random."""
+    circle = circle_contour(radius)
+    points = circle.points + np.random.default_rng(seed).normal(0, radius / 15, circle.points.shape)
+    return gs.Contour(points, circle.degrees)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
+    contour = wobbly(100, seed)
+    chains = chains_of([contour.cubics()])
+    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    places = np.linspace(0, len(chains.cubics), 7)[:-1]
+    offsets = np.array([0, len(places)])
+    found = interpolated(rounds.polygons(chains, which, places, offsets), offsets, gs.Options())
+    pieces, written = rounds.beziers(found.controls, found.knots, offsets, 100.0)
+    np.testing.assert_allclose(pieces, found.result(0).spline.to_bezier(), atol=1e-9)
+    np.testing.assert_array_equal(written, np.round(pieces, 2))
+    bounds, gaps, _, ends = rounds.examined(chains, which, places, offsets, written, near)
+    bound, gap = rounds.certificate(chains, 0, written, bounds, gaps, ends, 0.01)
+    truth = true_distance(gs.Contour.from_segments(written), contour)
+    assert truth - 0.06 <= bound
+    assert gap <= bound <= gap + 0.011
+    assert bound <= bounds.max() + 1e-9
+
+
+def test_measures_are_those_that_look_at_every_piece() -> None:
+    polygons = [random_polygon(n, seed) for n in (5, 12, 40) for seed in range(3)]
+    pieces = [gs.interpolate(p, fallback="peak").spline.to_bezier() for p in polygons]
+    offsets = np.cumsum([0] + [len(p) for p in pieces])
+    found = forms(np.concatenate(pieces), offsets, np.concatenate(polygons), offsets)
+    for row, curve, polygon in zip(found, pieces, polygons, strict=True):
+        expected = [*shape(curve), overshoot(curve, polygon), self_crossings(curve)]
+        np.testing.assert_allclose(row, expected, rtol=1e-8, atol=1e-8)
+    assert found[:, -1].sum() > 100
+
+
+def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
+    chains = chains_of([square_contour(900).cubics(), circle_contour(100).cubics()])
+    near = np.ones(2)
+    places, offsets = rounds.first_places(chains, np.arange(2), np.radians(12), 4.0, near, 2)
+    points = rounds.polygons(chains, np.arange(2), places, offsets)
+    square = points[: offsets[1]]
+    h = chords(square)
+    assert max((h / np.roll(h, 1)).max(), (np.roll(h, 1) / h).max()) <= 4 * (1 + 1e-9)
+    assert h.min() < 20
+    assert h.max() > 200
+    for corner in square_contour(900).points:
+        assert (square == corner).all(axis=1).any()
+    assert 4 <= len(points) - len(square) <= 12
+
+
+def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon() -> None:
+    flips = set()
+    for seed in range(6):
+        contour = wobbly(100, seed)
+        flips.add(bool(chains_of([contour.cubics()]).flipped[0]))
+        result = convert_smooth([contour], gs.Options(), 1.0)[0]
+        (arc,) = result.interpolations
+        plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)
+        np.testing.assert_allclose(arc.spline.control_points, plain.spline.control_points, atol=1e-6)
+        np.testing.assert_allclose(arc.spline.knots, plain.spline.knots, atol=1e-6)
+        np.testing.assert_allclose(arc.parameters, plain.parameters, atol=1e-4)
+        np.testing.assert_allclose(arc.intervals, plain.intervals, atol=1e-6)
+        np.testing.assert_allclose(result.curve.cubics(), arc.spline.to_bezier(), atol=1e-6)
+    assert flips == {False, True}
+
+
+def test_turned_begins_with_the_same_vertex() -> None:
+    np.testing.assert_array_equal(turned(np.arange(5.0)), [0, 4, 3, 2, 1])
+
+
+def test_segments_of_no_length_and_all_variants_are_taken() -> None:
+    circle = circle_contour(100)
+    doubled = gs.Contour(np.concatenate([circle.points[:1], circle.points]), np.array([1, 3, 3, 3, 3]))
+    for variant in range(5):
+        measures = convert_smooth([doubled], gs.Options(variant=variant), 1.0)[0].measures
+        assert measures.within_tolerance
+        assert measures.vertices < 16
+
+
+def test_best_takes_no_more_vertices_than_fast() -> None:
+    contours = [wobbly(200, seed) for seed in range(4)]
+    fast, best = (
+        sum(r.measures.vertices for r in convert_smooth(contours, gs.Options(effort=effort), 0.5))
+        for effort in ("fast", "best")
+    )
+    assert best <= fast
