@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .bezier import cross, derivative_points, evaluate
+from .bezier import cross, derivative_points, elevate, evaluate
 
 SCALE_PERCENTILE = 80.0
 """Share of the arc length whose curvature the robust scale covers. Near 100 the rounded corners, a tenth of the length
@@ -23,15 +23,8 @@ SLOW = 1e-7
 NUDGE = 1e-3
 """How far, in local parameter, a sample moves off a point of no speed: the comb shows the limit beside a cusp."""
 
-TABLE = 16
-"""Chords of a piece by which arc length is measured; half as many make teeth visibly uneven on an S-shaped piece."""
-
-
 ANGLE = np.radians(15)
 """Default turn from sample to sample. Wider, the tips of a rounded corner are joined by visible straight lines."""
-
-LEAST = 2
-"""Intervals that even the shortest piece is given: with one, a short piece would show no curvature inside."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,62 +50,30 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
     """Sample Bézier pieces evenly by arc length, and closer where they turn sharply.
 
     Args:
-        pieces: (m, degree + 1, 2) of degree 1 or more.
+        pieces: (m, degree + 1, 2) of degree 1 to 3.
         spacing: the largest distance of samples along the curve.
         angle: the largest turn, in radians, from one sample to the next.
 
     Raises:
-        ValueError: ``spacing`` or ``angle`` is not positive.
+        ValueError: ``spacing`` or ``angle`` is not positive, or the degree is higher.
     """
     if not (spacing > 0 and angle > 0):
         raise ValueError(f"spacing and angle are positive, not {spacing!r} and {angle!r}")
-    lengths, turns = _measure(pieces)
-    density = lengths / spacing + turns / angle
-    intervals = np.maximum(np.ceil(density.sum(axis=1)), LEAST).astype(np.int64)
-    starts = np.concatenate([[0], np.cumsum(intervals + 1)]).astype(np.int64)
-    piece = np.repeat(np.arange(len(pieces)), intervals + 1)
-    fraction = (np.arange(starts[-1]) - starts[piece]) / intervals[piece]
-    x = _interpolate(_shares(density), _table(len(pieces)), piece, fraction)
-    length = _interpolate(_table(len(pieces)), _shares(lengths), piece, x) * lengths.sum(axis=1)[piece]
-    gaps = np.diff(length, prepend=0.0, append=0.0)
-    gaps[starts] = 0.0
-    points, normals, curvature = frames(pieces[piece], x)
-    return Comb(points, normals, curvature, (gaps[:-1] + gaps[1:]) / 2, starts)
+    # Here and not above, as it brings the compiler with it: the package opens without.
+    from .combing import sampled
+
+    if pieces.shape[1] > 4:
+        raise ValueError(f"pieces are of degree 1 to 3, not {pieces.shape[1] - 1}")
+    while pieces.shape[1] < 4:
+        points = elevate(np.moveaxis(pieces, 1, 0).reshape(pieces.shape[1], -1))
+        pieces = np.moveaxis(points.reshape(len(points), -1, 2), 0, 1)
+    samples, starts = sampled(np.ascontiguousarray(pieces, dtype=np.float64), float(spacing), float(angle), 0.0)
+    return comb_of(samples, starts)
 
 
-def _measure(pieces: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Length of TABLE chords of each piece, and how far the curve turns along each, in radians: both (m, TABLE)."""
-    m = len(pieces)
-    dense = evaluate(np.repeat(pieces, TABLE + 1, axis=0), np.tile(_table(1)[0], m)).reshape(m, TABLE + 1, 2)
-    chords = np.diff(dense, axis=1)
-    a, b = chords[:, :-1], chords[:, 1:]
-    bends = np.abs(np.arctan2(cross(a, b), (a * b).sum(axis=2)))
-    turns = np.zeros((m, TABLE))
-    turns[:, :-1] += bends / 2
-    turns[:, 1:] += bends / 2
-    return np.hypot(chords[..., 0], chords[..., 1]), turns
-
-
-def _table(m: int) -> FloatArray:
-    """(m, TABLE + 1) the local parameters of the chords' ends, one row a piece."""
-    return np.tile(np.linspace(0.0, 1.0, TABLE + 1), (m, 1))
-
-
-def _shares(amounts: FloatArray) -> FloatArray:
-    """(m, TABLE + 1) share of each row's sum that lies before each chord's end, from 0 to 1."""
-    total = amounts.sum(axis=1, keepdims=True)
-    share = np.divide(amounts, total, out=np.full_like(amounts, 1 / TABLE), where=total > 0)
-    result = np.concatenate([np.zeros((len(amounts), 1)), np.cumsum(share, axis=1)], axis=1)
-    result[:, -1] = 1.0
-    return result
-
-
-def _interpolate(xs: FloatArray, ys: FloatArray, piece: IntArray, x: FloatArray) -> FloatArray:
-    """For each sample the value of its own piece's table, rows of ``xs`` and ``ys`` in [0, 1], at x (k,)."""
-    # Twice the piece's index keeps the tables of different pieces apart on the one axis of np.interp.
-    offset = 2.0 * np.arange(len(xs))[:, None]
-    found: FloatArray = np.interp(x + 2.0 * piece, (xs + offset).ravel(), ys.ravel()) if len(xs) else x
-    return found
+def comb_of(samples: FloatArray, starts: IntArray) -> Comb:
+    """A comb from what :func:`.combing.sampled` gave: (k, 6) samples and where pieces begin among them."""
+    return Comb(samples[:, :2], samples[:, 2:4], samples[:, 4], samples[:, 5], starts)
 
 
 def frames(pieces: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

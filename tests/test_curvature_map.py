@@ -39,13 +39,14 @@ def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
     """Colour to its teeth (k, 2, 2), foot and tip, y up, as they are written."""
     root = ElementTree.fromstring(svg)
     comb = next(g for g in root.iter(f"{SVG}g") if g.get("class") == group)
+    shift = np.array(re.findall(r"-?[\d.]+", comb.get("transform", "translate(0 0)")), dtype=float) * (1, -1)
     found = {}
     for path in comb.findall(f"{SVG}path"):
         if path.attrib["stroke"].startswith("#"):
-            numbers = [float(word) for word in re.findall(r"-?[\d.]+", path.attrib["d"])]
-            pairs = np.array(numbers).reshape(-1, 2, 2) * (1, -1)
-            pairs[:, 1] += pairs[:, 0]
-            found[path.attrib["stroke"]] = pairs
+            commands = re.findall(r"([Mml])(-?[\d.]+) ?(-?[\d.]+)", path.attrib["d"])
+            assert "".join(command for command, _, _ in commands) == "Ml" + "ml" * (len(commands) // 2 - 1)
+            moves = np.array([move for _, *move in commands], dtype=float) * (1, -1)
+            found[path.attrib["stroke"]] = np.cumsum(moves, axis=0).reshape(-1, 2, 2) + shift  # all are relative
     return found
 
 

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import glyphspline as gs
 from glyphspline.batch import RunSpec, convert_font, entries_of, work
 from glyphspline.express.contours import cubics_of
-from glyphspline.express.curves import number
-from glyphspline.express.lane import draw_chunk, suits
+from glyphspline.express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
 from glyphspline.express.reading import BulkReader
 from glyphspline.express.stepping import stepped_points
 from glyphspline.glyph import Options
 from glyphspline.readers import open_font
 from glyphspline.sampling import sample
+from glyphspline.writers.curvature_map import to_curvature_svg
+from glyphspline.writers.markup import polyline_data
+from glyphspline.writers.source import to_source_svg
+from glyphspline.writers.svg import to_svg
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
 STATIC = ["kouzan-gyosho.ttf", "kouzan-gyosho.otf", "kouzan-kaisho.ttf", "edge-cases.ttf"]
@@ -41,6 +46,35 @@ def test_both_ways_write_the_same_files(
     assert sorted(path.name for path in short.glob("svg/*")) == drawings
     for drawing in drawings:
         assert alike(*((way / "svg" / drawing).read_text() for way in (short, long))), drawing
+
+
+@pytest.mark.parametrize("name", STATIC)
+def test_maps_of_chunks_are_the_writers_to_the_byte(name: str) -> None:
+    font = open_font(FONTS / name)
+    options = Options(step=31.0, precision=1)
+    drawn = draw_chunk(BulkReader(font.path, 0), range(font.num_glyphs), options)
+    for glyph, short in zip(font.glyph_names, drawn, strict=True):
+        if short is None:
+            continue
+        outline = font.outline(glyph)
+        result = gs.GlyphResult(outline, options, tuple(contour_results(outline, short)))
+        assert drawn_map(outline, short, 0.02).decode() == to_curvature_svg(result, scale=0.02), glyph
+        texts = source_texts(short, font.metrics.units_per_em, 1)
+        assert drawn_source(outline, short, texts, 1).decode() == to_source_svg(result), glyph
+        assert drawn_svg(outline, short, 1, "ink").decode() == to_svg(result, view_box="ink"), glyph
+
+
+def contour_results(outline: gs.Outline, drawn: Drawn) -> Iterator[gs.ContourResult]:
+    """What the long way makes of the polygons of the short one."""
+    none = np.empty(0)
+    points, starts, stops, _ = drawn.polygons
+    for contour, a, b, (controls, knots) in zip(outline.contours, starts, stops, drawn.splines, strict=True):
+        spline = gs.Spline(controls, knots)
+        found = gs.Interpolation(spline, none, none, 0, none, True, 0, 0.0, np.empty(0, dtype=np.int64))
+        measures = gs.Measures(0, 0, 0, 0, 0.0, True, 0.0, 0)
+        yield gs.ContourResult(
+            contour, points[a:b], (found,), gs.Contour.from_segments(list(spline.to_bezier())), measures
+        )
 
 
 def without_rates(folder: Path) -> list[Any]:
@@ -75,7 +109,7 @@ def test_vertices_are_those_of_the_sampling(step: float) -> None:
     reader = BulkReader(font.path, 0)
     gid = font.glyph_names.index("uni9F8D")
     buffer, starts, _, _ = reader.read([gid])
-    cubics, contours, _, _ = cubics_of(buffer, starts)
+    cubics, contours, *_ = cubics_of(buffer, starts)
     points, offsets, odd = stepped_points(cubics, contours, step, 4.0, 10_000)
     assert not odd.any()
     for k, contour in enumerate(font.outline("uni9F8D").contours):
@@ -94,9 +128,9 @@ def test_too_many_vertices_are_left_to_the_long_way() -> None:
      (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, "0.000000007")],
 )  # fmt: skip
 def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
-    room = np.zeros(40, dtype=np.uint8)
-    end = number(room, 0, value, precision, 10**precision)
-    assert room[:end].tobytes().decode() == text
+    points = np.array([[value, -value], [value, value]]) / 10.0**precision
+    turned = text.removeprefix("-") if value <= 0 else f"-{text}"
+    assert polyline_data(points, precision) == f"M{text} {text} {text} {turned}"
 
 
 def test_only_plain_stepping_takes_the_short_way() -> None:

@@ -30,6 +30,7 @@ ROOMS = [
     {"outline", "orientation", "sampling"},
     {
         "measure",
+        "combing",
         "curvature",
         "distance",
         "crossings",

@@ -75,7 +75,9 @@ def convert_font(
     finished = record.finished()
     left = [task for task in tasks if task.gid not in finished]
     summary = Summary()
-    with nullcontext(executor) if executor else workers(jobs if left else 0, spec.limits.seconds, spec.options) as pool:
+    limit = spec.limits.seconds
+    own = nullcontext(executor) if executor else workers(jobs if left else 0, limit, spec.options, spec.formats)
+    with own as pool:
         job = with_scale(job, source, tasks, pool)
         if left:
             journal = Journal(out, record)

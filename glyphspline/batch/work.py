@@ -15,17 +15,17 @@ import numpy as np
 from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
-from ..express.lane import Drawn, draw_chunk, drawn_svg, suits
+from ..express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
 from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
 from ..readers import Source, open_source
 from ..report.data import glyph_text, page_file, page_text
-from ..report.drawings import drawing, drawing_of
-from ..writers.curvature_map import combs, to_curvature_svg
+from ..report.drawings import Drawing, drawing, drawing_of
+from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text
+from .entry import contours_text, solved_text
 from .files import write_whole
 from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
@@ -69,8 +69,12 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
 
 
 def short_way(job: Job) -> bool:
-    """Whether a run's glyphs can be converted in compiled chunks: plain drawings of a font that does not vary."""
-    return job.spec.formats == ("svg",) and job.static and suits(job.spec.options)
+    """Whether a run's glyphs can be converted in compiled chunks: drawings of a font that does not vary."""
+    return job.static and set(job.spec.folders) <= SHORT and suits(job.spec.options)
+
+
+SHORT = {"source", "svg", "curvature"}
+"""What the short way can write."""
 
 
 def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
@@ -81,14 +85,32 @@ def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
 def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
     """Write what the short way has drawn; and the glyph as the gallery shows it."""
     started = time.perf_counter()
-    options = job.spec.options
     outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
-    document = drawn_svg(outline, drawn, options.precision, job.spec.view_box)
-    files = {"svg": f"svg/{task.stem}.svg"}
-    sizes = (write_whole(f"{job.out}/{files['svg']}", document),)
-    contours = contours_text(drawn.measures, options)
-    done = finished(task, "ok", drawn.advance, files, sizes, contours, None, seconds + time.perf_counter() - started)
-    return done, glyph_text(drawing(drawn.path), files, contours, None)
+    documents, shown = documents_of(job, outline, drawn)
+    files, sizes = {}, []
+    for name, document in documents.items():
+        files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
+        sizes.append(write_whole(f"{job.out}/{files[name]}", document))
+    contours = solved_text(drawn.solved)
+    seconds += time.perf_counter() - started
+    done = finished(task, "ok", drawn.advance, files, tuple(sizes), contours, None, seconds)
+    return done, glyph_text(shown, files, contours, None)
+
+
+def documents_of(job: Job, outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
+    """A glyph's files in the order of ``WRITERS``; of ``outline`` everything but its contours is needed."""
+    documents, shown = {}, drawing(drawn.path)
+    folders, precision = job.spec.folders, job.spec.options.precision
+    if "source" in folders:
+        texts = source_texts(drawn, outline.metrics.units_per_em, precision)
+        documents["source"] = drawn_source(outline, drawn, texts, precision)
+        shown |= {name: bytes(text).decode("ascii") for name, text in texts._asdict().items()}
+    if "svg" in folders:
+        documents["svg"] = drawn_svg(outline, drawn, precision, job.spec.view_box)
+    if "curvature" in folders:
+        assert job.curvature_scale is not None
+        documents["curvature"] = drawn_map(outline, drawn, job.curvature_scale)
+    return documents, shown
 
 
 def work_one(job: Job, task: Task) -> tuple[Done, str]:
@@ -190,8 +212,12 @@ WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
     """Combs of a few glyphs, for the scale that all curvature maps of the run share; what fails is left out."""
     found: list[Comb] = []
-    for task in tasks:
+    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
+    for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
+        if short is not None:
+            found += combs_of(*short.curves, job.metrics.units_per_em)
+            continue
         try:
             outline = read(job, task)
             found += combs(convert(outline, job.spec.fitting(outline.metrics.units_per_em)))

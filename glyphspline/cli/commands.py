@@ -229,7 +229,7 @@ def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterato
     else:
         from ..batch.schedule import workers
 
-        executor = workers(jobs, spec.limits.seconds, spec.options)
+        executor = workers(jobs, spec.limits.seconds, spec.options, spec.formats)
     with executor:
         yield executor
 

@@ -24,12 +24,15 @@ def cubics_of(buffer, starts):
         (M, 4, 2) cubics of all contours; (K + 1,) where contours begin; (k + 1,) contours before each glyph;
         (k,) whether a glyph is odd: not finite, or too large. Lines and quadratics are raised to cubics, segments of
         no length dropped, open contours closed by a line, contours left out whose points are all on one line.
+        Then the segments as drawn: (P, 2) points and (M,) degrees in the way of
+        :class:`~glyphspline.outline.Contour`, and (K + 1,) where the contours' points begin.
     """
     room = (starts[-1] - starts[0]) // 3 + 16
     cubics = np.empty((room, 4, 2))
     offsets = np.zeros(room + 1, dtype=np.int64)
     before = np.zeros(len(starts), dtype=np.int64)
     odd = np.zeros(len(starts) - 1, dtype=np.bool_)
+    own, degrees, owns = np.empty((3 * room, 2)), np.empty(room, dtype=np.int64), np.zeros(room + 1, dtype=np.int64)
     contours = 0
     for glyph in range(len(starts) - 1):
         at, stop = starts[glyph], starts[glyph + 1]
@@ -37,13 +40,13 @@ def cubics_of(buffer, starts):
         odd[glyph] = stop >= buffer[1] or (stop - at) // 3 > MAX_SEGMENTS
         open_contour = False
         sx = sy = x = y = 0.0
-        m = offsets[contours]
+        m, p = offsets[contours], owns[contours]
         while at < stop and not odd[glyph]:
             kind = int(buffer[at])
             if kind == 0 or kind == 4:
                 if open_contour:
-                    contours = _closed(cubics, offsets, contours, m, x, y, sx, sy)
-                    m = offsets[contours]
+                    contours = _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy)
+                    m, p = offsets[contours], owns[contours]
                     open_contour = False
                 if kind == 0:
                     sx, sy = x, y = buffer[at + 1], buffer[at + 2]
@@ -59,16 +62,24 @@ def cubics_of(buffer, starts):
                 if not (abs(ex) < 1e12 and abs(ey) < 1e12):
                     odd[glyph] = True
             if moves:
+                degrees[m] = kind
+                own[p, 0], own[p, 1] = x, y
+                for k in range(1, kind):
+                    own[p + k, 0], own[p + k, 1] = buffer[at + 2 * k - 1], buffer[at + 2 * k]
+                p += kind
                 _raise(cubics[m], kind, x, y, buffer[at + 1 : at + 1 + 2 * kind])
                 m += 1
                 x, y = ex, ey
             at += 1 + 2 * kind
         if open_contour:
-            contours = _closed(cubics, offsets, contours, m, x, y, sx, sy)
+            contours = _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy)
         if odd[glyph]:
             contours = first
         before[glyph + 1] = contours
-    return cubics[: offsets[contours]], offsets[: contours + 1], before, odd
+    segments, points = offsets[contours], owns[contours]
+    return (
+        cubics[:segments], offsets[: contours + 1], before, odd, own[:points], degrees[:segments], owns[: contours + 1],
+    )  # fmt: skip
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -93,18 +104,20 @@ def _raise(cubic, kind, x, y, to):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _closed(cubics, offsets, contours, m, x, y, sx, sy):
-    """End a contour after m segments: the number of contours, which is one more if it encloses anything."""
+def _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy):
+    """End a contour after m segments of p points: the number of contours, which is one more if it encloses anything."""
     start = offsets[contours]
     if abs(x - sx) > COINCIDENT or abs(y - sy) > COINCIDENT:
         end = np.array([sx, sy])
         _raise(cubics[m], 1, x, y, end)
-        m += 1
+        degrees[m] = 1
+        own[p, 0], own[p, 1] = x, y
+        m, p = m + 1, p + 1
     elif m > start:
         cubics[m - 1, 3, 0], cubics[m - 1, 3, 1] = sx, sy
     if m == start or _collinear(cubics[start:m]):
         return contours
-    offsets[contours + 1] = m
+    offsets[contours + 1], owns[contours + 1] = m, p
     return contours + 1
 
 

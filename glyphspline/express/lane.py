@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
-from ..glyph import Measures, Options
+from ..glyph import Options
 from ..outline import Contour, Outline
-from ..writers.markup import Box, ink_bounds
+from ..writers.bounds import ink_box
+from ..writers.curvature_map import comb_precision, map_document
+from ..writers.figures import figures
+from ..writers.markup import Box, Chains, curves_data, ink_bounds, polylines_data
+from ..writers.source import SourceTexts, source_document
 from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
-from .curves import paths
+from .curves import cubics_of_splines, paths
 from .reading import BulkReader
 from .stepping import stepped_points, uneven
 
@@ -25,19 +30,114 @@ MOST_VERTICES = 100_000
 """Vertices of a contour above which it is left to the long way."""
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A glyph that went the short way.
+Solved = tuple[int, int, int, int, float, bool, float, int]
+"""Of a contour, what the interpolation itself has found out: the first of the :class:`~glyphspline.glyph.Measures`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """Everything known of a chunk of glyphs, as arrays laid end to end.
 
     Attributes:
-        advance: in font units. path: SVG path data. box: around the rounded Bézier points, so around the ink.
-        measures: of each contour; what sampling by step needs not know is None.
+        advances: of each glyph, in font units. left: (g,) which glyphs the long way has to take.
+        before: (g + 1,) contours before each glyph.
+        source: points and degrees of the source, and where each contour's begin in either; source_cubics: the same
+            raised to cubics.
+        polygons, polygon_starts: the vertices. controls, knots: of the splines, from the same places on (knots one
+            more a contour). cubics, cubic_starts: Bézier pieces of the splines.
+        text, text_ends: path data of the glyphs, as bytes. boxes: (g, 4) around the rounded Bézier points.
+        solved: of each contour.
     """
 
-    advance: float
-    path: str
-    box: Box
-    measures: list[Measures]
+    advances: list[int]
+    left: BoolArray
+    before: IntArray
+    source: tuple[FloatArray, IntArray, IntArray, IntArray]
+    source_cubics: FloatArray
+    polygons: FloatArray
+    polygon_starts: IntArray
+    controls: FloatArray
+    knots: FloatArray
+    cubics: FloatArray
+    cubic_starts: IntArray
+    text: memoryview
+    text_ends: list[int]
+    boxes: list[list[float]]
+    solved: list[Solved]
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A glyph of a chunk."""
+
+    chunk: Chunk
+    index: int
+
+    @property
+    def advance(self) -> float:
+        """In font units."""
+        return float(self.chunk.advances[self.index])
+
+    @property
+    def text(self) -> memoryview:
+        """SVG path data of the result, as bytes."""
+        ends = self.chunk.text_ends
+        return self.chunk.text[ends[self.index] : ends[self.index + 1]]
+
+    @property
+    def path(self) -> str:
+        """The same as text."""
+        return bytes(self.text).decode("ascii")
+
+    @property
+    def box(self) -> Box:
+        """Around the rounded Bézier points, so around the ink."""
+        left, bottom, right, top = self.chunk.boxes[self.index]
+        return left, bottom, right, top
+
+    @cached_property
+    def contours(self) -> tuple[int, int]:
+        """Its contours in the chunk: from and to."""
+        return int(self.chunk.before[self.index]), int(self.chunk.before[self.index + 1])
+
+    @property
+    def solved(self) -> list[Solved]:
+        """What the interpolation has found out, contour by contour."""
+        first, last = self.contours
+        return self.chunk.solved[first:last]
+
+    @cached_property
+    def curves(self) -> tuple[FloatArray, IntArray]:
+        """(m, 4, 2) Bézier pieces of the result, and (c + 1,) where each contour begins among them."""
+        first, last = self.contours
+        starts = self.chunk.cubic_starts[first : last + 1]
+        return self.chunk.cubics[starts[0] : starts[-1]], starts - starts[0]
+
+    @cached_property
+    def polygons(self) -> Chains:
+        """The vertices of all contours."""
+        first, last = self.contours
+        starts = self.chunk.polygon_starts[first : last + 1]
+        ends = starts - starts[0]
+        return Chains(self.chunk.polygons[starts[0] : starts[-1]], ends[:-1], ends[1:], np.ones(last - first, np.bool_))
+
+    @property
+    def controls(self) -> Chains:
+        """The control polygons: as many points as vertices, or less if some were merged."""
+        points, starts, _, closed = self.polygons
+        first = self.chunk.polygon_starts[self.contours[0]]
+        stops = starts + np.diff(self.curves[1])
+        return Chains(self.chunk.controls[first : first + len(points)], starts, stops, closed)
+
+    @property
+    def splines(self) -> list[tuple[FloatArray, FloatArray]]:
+        """(n, 2) control points and (n + 1,) knots of each contour; n is less than its vertices if some were merged."""
+        first, last = self.contours
+        places = zip(self.chunk.polygon_starts[first:last].tolist(), np.diff(self.curves[1]).tolist(), strict=True)
+        return [
+            (self.chunk.controls[at : at + n], self.chunk.knots[at + k : at + k + n + 1])
+            for k, (at, n) in enumerate(places, first)
+        ]
 
 
 def suits(options: Options) -> bool:
@@ -64,27 +164,21 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
     """
     assert options.step is not None
     buffer, starts, advances, broken = reader.read(gids)
-    cubics, contours, before, strange = cubics_of(buffer, starts)
-    points, offsets, unsampled = stepped_points(cubics, contours, options.step, options.max_ratio, MOST_VERTICES)
+    source_cubics, segments, before, strange, own, degrees, owns = cubics_of(buffer, starts)
+    points, offsets, unsampled = stepped_points(source_cubics, segments, options.step, options.max_ratio, MOST_VERTICES)
     ragged = interpolated(points, offsets, options)
     refused = (ragged.whole[:, 0] != 0) | unsampled
     counts = np.where(refused, 0, ragged.whole[:, 1])
     left = np.array([refused[a:b].any() for a, b in pairwise(before.tolist())], dtype=np.bool_)
-    text, ends, boxes, huge = paths(ragged.controls, ragged.knots, offsets, counts, before, options.precision)
+    cubics, cubic_starts = cubics_of_splines(ragged.controls, ragged.knots, offsets, counts)
+    text, ends, boxes, huge = paths(cubics, cubic_starts, before, *figures(options.precision))
     # A glyph that draws nothing may be a space or damaged: the long way tells them apart.
     left |= broken | strange | huge | (before[:-1] == before[1:])
-    measures = measures_of(ragged)
-    return [
-        None
-        if left[i]
-        else Drawn(
-            float(advances[i]),
-            text[ends[i] : ends[i + 1]].tobytes().decode("ascii"),
-            tuple(boxes[i].tolist()),
-            measures[before[i] : before[i + 1]],
-        )
-        for i in range(len(gids))
-    ]
+    chunk = Chunk(
+        advances, left, before, (own, degrees, segments, owns), source_cubics, points, offsets, ragged.controls,
+        ragged.knots, cubics, cubic_starts, memoryview(text), ends.tolist(), boxes.tolist(), solved(ragged),
+    )  # fmt: skip
+    return [None if alone else Drawn(chunk, i) for i, alone in enumerate(left.tolist())]
 
 
 def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Ragged:
@@ -124,13 +218,37 @@ def last_residuals(ragged: Ragged) -> FloatArray:
     return ragged.residuals[np.clip(ragged.residual_offsets[1:] - 1, 0, len(ragged.residuals) - 1)]
 
 
-def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> str:
+def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> bytes:
     """The SVG document of a glyph; of ``outline`` everything but its contours is needed."""
     box = shown_box(outline, drawn.box, "em")
     if view_box == "ink" or (view_box == "em" and box != shown_box(outline, None, "em")):
         ink = ink_bounds(path_contours(drawn.path))  # the box around Bézier points may be wider
         box = shown_box(outline, ink, view_box)
-    return svg_document(outline, drawn.path, box, precision, view_box)
+    return svg_document(outline, drawn.text, box, precision, view_box)
+
+
+def drawn_map(outline: Outline, drawn: Drawn, scale: float) -> bytes:
+    """The curvature map of a glyph, its vertices marked, as :func:`to_curvature_svg` writes it."""
+    return map_document(outline, *drawn.curves, drawn.text, scale, polygon=drawn.polygons.points)
+
+
+def source_texts(drawn: Drawn, em: float, precision: int) -> SourceTexts:
+    """The path data of a glyph's source drawing."""
+    points, degrees, segments, owns = drawn.chunk.source
+    first, last = drawn.contours
+    a, b = segments[first], segments[last]
+    path = curves_data(points[owns[first] : owns[last]], degrees[a:b], segments[first : last + 1] - a, precision)
+    return SourceTexts(
+        path, polylines_data(drawn.polygons, precision), polylines_data(drawn.controls, comb_precision(em))
+    )
+
+
+def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: int) -> bytes:
+    """The source drawing of a glyph, as :func:`to_source_svg` writes it."""
+    first, last = drawn.contours
+    segments = drawn.chunk.source[2]
+    left, bottom, right, top = ink_box(drawn.chunk.source_cubics[segments[first] : segments[last]]).tolist()
+    return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
 
 
 def path_contours(path: str) -> list[Contour]:
@@ -143,12 +261,13 @@ def path_contours(path: str) -> list[Contour]:
     return found
 
 
-def measures_of(ragged: Ragged) -> list[Measures]:
+def solved(ragged: Ragged) -> list[Solved]:
     """What the interpolation itself has found out, for each contour."""
     last = last_residuals(ragged)
     return [
-        Measures(n, n, 2 * n, iterations, residual, residual < tolerance, rate, fallbacks)
-        for (n, iterations, fallbacks), residual, tolerance, rate in zip(
-            ragged.whole[:, 1:4].tolist(), last.tolist(), ragged.tolerances.tolist(), ragged.rates.tolist(), strict=True
+        (n, n, 2 * n, iterations, residual, converged, rate, fallbacks)
+        for (n, iterations, fallbacks), residual, converged, rate in zip(
+            ragged.whole[:, 1:4].tolist(), last.tolist(), (last < ragged.tolerances).tolist(), ragged.rates.tolist(),
+            strict=True,
         )
-    ]
+    ]  # fmt: skip

@@ -6,7 +6,7 @@ const GS = {};
 (() => {
   const SVG = "http://www.w3.org/2000/svg";
   const TURN = Math.PI / 12; // a tooth at least every 15 degrees of turn, as in the curvature maps
-  const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 160; // in em and in units of the scale, as in the maps
+  const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
   const MOST_TEETH = 400; // a piece
 
   /** The colours of curvature, from the strongest right turn to the strongest left turn. */

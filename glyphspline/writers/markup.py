@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import cache, lru_cache
 from html import escape
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..outline import Contour, Outline
+from .figures import figures
+
+Text = str | memoryview
+"""Part of a document; what compiled code has written is bytes already, in ASCII."""
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top in font units, y up."""
@@ -23,6 +31,20 @@ _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
 _COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
 
 
+@cache
+def _compiled() -> Any:
+    """The compiled writers of path data, imported when they are first wanted: the package opens without a compiler."""
+    from . import path_text
+
+    return path_text
+
+
+def joined(parts: Iterable[Text]) -> bytes:
+    """A document from its parts, in UTF-8."""
+    return b"".join([part.encode() if isinstance(part, str) else part for part in parts])
+
+
+@lru_cache(maxsize=4096)
 def number(value: float, precision: int) -> str:
     """One number with at most ``precision`` decimals: no zeros at the end, no "-0"."""
     return NUMBER % (round(float(value), precision) + 0.0)
@@ -30,12 +52,14 @@ def number(value: float, precision: int) -> str:
 
 def text(value: str) -> str:
     """Text for element content or a quoted attribute; characters that XML forbids become U+FFFD."""
+    if value.isalnum() and value.isascii():
+        return value
     return escape(_NOT_XML.sub("\ufffd", value))
 
 
 def id_prefix(name: str, gid: int) -> str:
     """What the ids of a glyph's drawing begin with, so that several can stand in one document."""
-    return f"g{gid}-{_NOT_ID.sub('_', name)}"
+    return f"g{gid}-{name if name.isalnum() and name.isascii() else _NOT_ID.sub('_', name)}"
 
 
 def code_points(outline: Outline) -> str:
@@ -60,23 +84,72 @@ def data_attributes(outline: Outline, precision: int) -> str:
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
     """All contours as one SVG path: absolute lines, quadratics and cubics, (x, y) written as (x, -y)."""
-    return "".join(_contour_data(contour, precision) for contour in contours if len(contour))
+    drawn = [contour for contour in contours if len(contour)]
+    if not drawn:
+        return ""
+    points, degrees = (np.concatenate(parts) for parts in zip(*((c.points, c.degrees) for c in drawn), strict=True))
+    contours_at = np.cumsum([0, *map(len, drawn)], dtype=np.int64)
+    return bytes(curves_data(points, degrees, contours_at, precision)).decode("ascii")
+
+
+def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> memoryview:
+    """The same, as bytes, of contours one after the other.
+
+    Args:
+        points: (N, 2). degrees: (m,). contours: (c + 1,) where contours begin among these.
+    """
+    text = _compiled().curves_text(points, degrees, contours, *figures(precision))
+    if text is not None:
+        return memoryview(text)
+    ends = np.concatenate([[0], np.cumsum(degrees)])[contours]
+    parts = [Contour(points[ends[k] : ends[k + 1]], degrees[a:b]) for k, (a, b) in enumerate(pairwise(contours))]
+    return memoryview("".join([_contour_data(part, precision) for part in parts]).encode())
 
 
 def _contour_data(contour: Contour, precision: int) -> str:
+    """One contour with numbers of any size."""
     closed = np.concatenate([contour.points, contour.points[:1]])
     degrees = contour.degrees.tolist()
     if degrees[-1] == 1:  # Z draws the last line
         closed, degrees = closed[:-1], degrees[:-1]
     template = f"M{NUMBER} {NUMBER}" + "".join([_COMMANDS[d] for d in degrees]) + "Z"
-    # One % for the whole contour: number by number takes three times as long. Adding 0.0 turns -0.0 into 0.0.
     return template % tuple((np.round(closed * (1, -1), precision) + 0.0).ravel().tolist())
+
+
+class Chains(NamedTuple):
+    """Points (N, 2) of polygons; (p,) where each begins and where it stops; (p,) whether it is closed."""
+
+    points: FloatArray
+    starts: IntArray
+    stops: IntArray
+    closed: BoolArray
+
+
+def chains(parts: Sequence[FloatArray], closed: Sequence[bool]) -> Chains:
+    """Polygons laid end to end."""
+    ends = np.cumsum([0, *map(len, parts)], dtype=np.int64)
+    return Chains(np.concatenate([np.empty((0, 2)), *parts]), ends[:-1], ends[1:], np.array(closed, dtype=np.bool_))
 
 
 def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
     """Points (k, 2) joined by straight lines, as SVG path data; y flipped."""
+    return bytes(polylines_data(chains([points], [closed]), precision)).decode("ascii")
+
+
+def polylines_data(parts: Chains, precision: int) -> memoryview:
+    """The same of many, as bytes."""
+    text = _compiled().polylines_text(*parts, *figures(precision))
+    if text is not None:
+        return memoryview(text)
+    each = zip(parts.starts.tolist(), parts.stops.tolist(), parts.closed.tolist(), strict=True)
+    texts = [_polyline_data(parts.points[a:b], precision) + ("Z" if end else "") for a, b, end in each if b > a]
+    return memoryview("".join(texts).encode())
+
+
+def _polyline_data(points: FloatArray, precision: int) -> str:
+    """One chain with numbers of any size."""
     values = (np.round(points * (1, -1), precision) + 0.0).ravel().tolist()
-    return "M" + " ".join([NUMBER] * len(values)) % tuple(values) + ("Z" if closed else "")
+    return "M" + " ".join([NUMBER] * len(values)) % tuple(values)
 
 
 def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
@@ -92,28 +165,13 @@ def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
 
 def ink_bounds(contours: Iterable[Contour]) -> Box | None:
     """The tight box around all contours; None if there is nothing."""
-    points = [_extreme_points(contour.cubics()) for contour in contours if len(contour)]
-    if not points:
+    from .bounds import ink_box
+
+    pieces = [contour.cubics() for contour in contours if len(contour)]
+    if not pieces:
         return None
-    every = np.concatenate(points)
-    (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
-    return float(left), float(bottom), float(right), float(top)
-
-
-def _extreme_points(pieces: FloatArray) -> FloatArray:
-    """(4m, 2): for each cubic and each axis, its ends and the values where the derivative is zero."""
-    p0, p1, p2, p3 = np.moveaxis(pieces, 1, 0)
-    a, half_b, c = p3 - 3 * p2 + 3 * p1 - p0, p2 - 2 * p1 + p0, p1 - p0
-    root = np.sqrt(np.maximum(half_b * half_b - a * c, 0.0))
-    # The stable pair q/a and c/q: neither loses digits when a is small, as on a line or a quadratic raised.
-    q = -(half_b + np.where(half_b < 0, -root, root))
-    values = [p0, p3]
-    for numerator, denominator in ((q, a), (c, q)):
-        x = np.divide(numerator, denominator, out=np.zeros_like(q), where=np.abs(denominator) > np.abs(numerator))
-        x = np.clip(x, 0.0, 1.0)
-        y = 1 - x
-        values.append(y**3 * p0 + 3 * y * y * x * p1 + 3 * y * x * x * p2 + x**3 * p3)
-    return np.concatenate(values)
+    left, bottom, right, top = ink_box(np.concatenate(pieces)).tolist()
+    return left, bottom, right, top
 
 
 def union(a: Box, b: Box | None) -> Box:
@@ -124,7 +182,7 @@ def union(a: Box, b: Box | None) -> Box:
 def view_box_value(box: Box, precision: int) -> str:
     """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
     unit = 10.0**precision
-    left, bottom = np.floor(box[0] * unit) / unit, np.floor(box[1] * unit) / unit
-    right, top = np.ceil(box[2] * unit) / unit, np.ceil(box[3] * unit) / unit
+    left, bottom = math.floor(box[0] * unit) / unit, math.floor(box[1] * unit) / unit
+    right, top = math.ceil(box[2] * unit) / unit, math.ceil(box[3] * unit) / unit
     values = (left, -top, max(right - left, 1.0), max(top - bottom, 1.0))
     return " ".join(number(value, precision) for value in values)

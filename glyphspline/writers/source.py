@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import NamedTuple
 
+from ..arrays import FloatArray
 from ..glyph import GlyphResult
-from .curvature_map import comb_precision
+from ..outline import Outline
+from .curvature_map import comb_precision, dots
 from .markup import (
+    Box,
+    chains,
     data_attributes,
     id_prefix,
     ink_bounds,
+    joined,
     number,
     path_data,
-    polyline_data,
-    segments_data,
+    polylines_data,
     union,
     view_box_value,
 )
@@ -28,28 +32,56 @@ def to_source_svg(glyph: GlyphResult) -> str:
     polygons of the result for whoever wants them; it is not displayed.
     """
     outline, precision = glyph.outline, glyph.options.precision
-    em = outline.metrics.units_per_em
-    box = union(
-        (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink_bounds(outline.contours)
-    )
     polygons = [contour.polygon for contour in glyph.contours if len(contour.polygon)]
-    edges = "".join(polyline_data(polygon, precision, closed=True) for polygon in polygons)
     splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    control = "".join(polyline_data(s.control_points, comb_precision(em), closed=s.closed) for s in splines)
-    every = np.concatenate(polygons) if polygons else np.empty((0, 2))
+    corners = chains(polygons, [True] * len(polygons))
+    control = chains([spline.control_points for spline in splines], [spline.closed for spline in splines])
+    texts = SourceTexts(
+        memoryview(path_data(outline.contours, precision).encode()),
+        polylines_data(corners, precision),
+        polylines_data(control, comb_precision(outline.metrics.units_per_em)),
+    )
+    return source_document(outline, texts, ink_bounds(outline.contours), corners.points, precision).decode()
+
+
+class SourceTexts(NamedTuple):
+    """Path data of a source drawing: the source's outline, the polygons, the control polygons of the result."""
+
+    source: memoryview
+    polygon: memoryview
+    control: memoryview
+
+
+def source_document(
+    outline: Outline, texts: SourceTexts, ink: Box | None, vertices: FloatArray, precision: int
+) -> bytes:
+    """The drawing from its parts, in UTF-8.
+
+    Args:
+        outline: of which everything but the contours is written. ink: the box around these.
+        vertices: (n, 2) of all polygons. precision: decimals of the view box.
+    """
+    em = outline.metrics.units_per_em
+    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink)
     prefix = id_prefix(outline.name, outline.gid)
-    return (
+    head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" overflow="visible"'
         f' role="img" aria-labelledby="{prefix}-source-title" {data_attributes(outline, precision)}>\n'
         f'<title id="{prefix}-source-title">Source outline and polygon of {title(outline)}</title>\n'
         f"<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
         f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
-        f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero"'
-        f' d="{path_data(outline.contours, precision)}"/></g>\n'
-        f'<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
-        f' stroke-linecap="round" stroke-linejoin="round"><path d="{edges}"/>'
-        f'<path stroke-width="{number(em / 100, 3)}" d="{segments_data(every, every, precision)}"/></g>\n'
-        f'<g id="{prefix}-control" display="none" fill="none" stroke="#75c" stroke-width="{number(em / 600, 3)}">'
-        f'<path d="{control}"/></g>\n'
-        "</svg>\n"
+        f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero" d="'
     )
+    polygon = (
+        f'"/></g>\n<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
+        ' stroke-linecap="round" stroke-linejoin="round"><path d="'
+    )
+    control = (
+        f'"/></g>\n<g id="{prefix}-control" display="none" fill="none" stroke="#75c"'
+        f' stroke-width="{number(em / 600, 3)}"><path d="'
+    )
+    between = f'"/><path stroke-width="{number(em / 100, 3)}" d="'
+    return joined([
+        head, texts.source, polygon, texts.polygon, between, dots(vertices, comb_precision(em)), control, texts.control,
+        '"/></g>\n</svg>\n',
+    ])  # fmt: skip

@@ -6,7 +6,19 @@ from typing import Literal
 
 from ..glyph import GlyphResult
 from ..outline import Outline
-from .markup import Box, code_points, data_attributes, id_prefix, ink_bounds, path_data, text, union, view_box_value
+from .markup import (
+    Box,
+    Text,
+    code_points,
+    data_attributes,
+    id_prefix,
+    ink_bounds,
+    joined,
+    path_data,
+    text,
+    union,
+    view_box_value,
+)  # fmt: skip
 
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = ("em", "metrics", "ink")
@@ -31,20 +43,20 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
     precision = glyph.options.precision
     contours = [contour.curve.rounded(precision) for contour in glyph.contours]
     box = shown_box(glyph.outline, ink_bounds(contours), view_box)
-    return svg_document(glyph.outline, path_data(contours, precision), box, precision, view_box)
+    return svg_document(glyph.outline, path_data(contours, precision), box, precision, view_box).decode()
 
 
-def svg_document(outline: Outline, path: str, box: Box, precision: int, view_box: ViewBox) -> str:
-    """The document around path data; of ``outline`` everything but its contours is written."""
+def svg_document(outline: Outline, path: Text, box: Box, precision: int, view_box: ViewBox) -> bytes:
+    """The document around path data, in UTF-8; of ``outline`` everything but its contours is written."""
     overflow = ' overflow="visible"' if view_box == "metrics" else ""
     prefix = id_prefix(outline.name, outline.gid)
-    return (
+    head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}"{overflow}'
         f' role="img" aria-labelledby="{prefix}-title" {data_attributes(outline, precision)}>\n'
         f'<title id="{prefix}-title">{title(outline)}</title>\n'
-        f'<path id="{prefix}-outline" fill="currentColor" fill-rule="nonzero" d="{path}"/>\n'
-        "</svg>\n"
+        f'<path id="{prefix}-outline" fill="currentColor" fill-rule="nonzero" d="'
     )
+    return joined([head, path, '"/>\n</svg>\n'])
 
 
 def shown_box(outline: Outline, ink: Box | None, choice: ViewBox) -> Box:

@@ -55,7 +55,7 @@ def rows() -> list[Row]:
     many = range(FIRST, FIRST + GLYPHS)
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
-        ours(here / "warm", few, step, ("svg",), 1)
+        ours(here / "warm", few, step, ("svg", "curvature"), 1)
         rounds = []
         for k in range(2):  # in turn, so that what else the machine does falls on all
             rounds.append(
@@ -68,7 +68,7 @@ def rows() -> list[Row]:
             )
         source, stepped, two, bare = map(min, zip(*rounds, strict=True))
         resumed = ours(here / "one-0", many, step, ("svg",), 1) * len(many)
-        mapped = ours(here / "maps", few, step, ("svg", "curvature"), 1)
+        mapped = ours(here / "maps", many, step, ("svg", "curvature"), 1)
         certified = ours(here / "close", few, Options(tolerance=1.0), ("svg",), 1)
         forge = fontforge_export(here / "forge", few)
     return [

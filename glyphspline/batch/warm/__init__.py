@@ -6,6 +6,8 @@ start takes its time before the workers' time limits count, and is not made twic
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...glyph import Options
@@ -17,11 +19,13 @@ LEAF = Contour(
 )
 
 
-def modules_for(options: Options | None) -> list[str]:
+def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
     """Names of the modules of this package that a run with these options wants loaded; None: nothing is converted."""
     if options is None:
         return []
     wanted = ["stepped"]
     if options.step is None and options.count is None:
         wanted.append(options.corners)
+    if "curvature" in formats:
+        wanted.append("mapped")
     return [f"{__name__}.{name}" for name in wanted]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...convert import convert
 from ...glyph import Options
 from ...outline import Outline
+from ...writers.svg import to_svg
 from . import LEAF, SQUARE
 
-convert(Outline("leaf", contours=(LEAF, SQUARE)), Options(corners="smooth"))
+to_svg(convert(Outline("leaf", contours=(LEAF, SQUARE)), Options(corners="smooth")))

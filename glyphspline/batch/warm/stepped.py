@@ -6,10 +6,11 @@ import numpy as np
 
 from ...convert import convert
 from ...express.contours import cubics_of
-from ...express.curves import paths
+from ...express.curves import cubics_of_splines, paths
 from ...express.stepping import stepped_points, uneven
 from ...glyph import Options
 from ...outline import Outline
+from ...writers.figures import figures
 from .. import work as work
 from . import SQUARE
 
@@ -22,7 +23,8 @@ def warm() -> None:
     stepped_points(SQUARE.cubics(), np.array([0, 4]), 20.0, 4.0, 1000)
     uneven(result.contours[0].polygon, np.array([0, len(result.contours[0].polygon)]), 4.0)
     counts = np.array([len(spline.control_points)])
-    paths(spline.control_points, spline.knots, np.array([0, counts[0]]), counts, np.array([0, 1]), 2)
+    cubics, starts = cubics_of_splines(spline.control_points, spline.knots, np.array([0, counts[0]]), counts)
+    paths(cubics, starts, np.array([0, 1]), *figures(2))
 
 
 warm()

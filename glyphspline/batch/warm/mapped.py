@@ -1,0 +1,14 @@
+"""Curvature maps, and the source drawings beside them: those of a leaf of two cubics."""
+
+from __future__ import annotations
+
+from ...convert import convert
+from ...glyph import Options
+from ...outline import Outline
+from ...writers.curvature_map import to_curvature_svg
+from ...writers.source import to_source_svg
+from . import LEAF
+
+leaf = convert(Outline("leaf", contours=(LEAF,)), Options(step=20.0))
+to_curvature_svg(leaf)
+to_source_svg(leaf)
