@@ -26,7 +26,7 @@ test: lint
 paper: venv
 	$(BIN)/python -m scripts.paper
 
-# 5000 polygons through the compiled core and the plain reference, a quarter of an hour of two cores; the tests take 500.
+# 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
 check-reference: venv
 	$(BIN)/python scripts/check_reference.py
 
