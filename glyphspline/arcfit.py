@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arcs import jet, jit, solve_arc
+from .arcs import jet, jit, length, solve_arc
 from .arrays import FloatArray, IntArray
 
 SLIDE = 0.001
@@ -23,10 +23,13 @@ BAND = 8
 
 
 @jit
-def project(Q: FloatArray, n: int, b: FloatArray, k: int, span: IntArray, x: FloatArray, e: FloatArray) -> float:
+def project(
+    Q: FloatArray, n: int, b: FloatArray, k: int, known: bool, span: IntArray, x: FloatArray, e: FloatArray
+) -> float:  # fmt: skip
     """Pair samples Q[:n] of the outline with points of the curve, in order; the largest distance.
 
-    ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends.
+    ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends. If
+    ``known``, they hold the feet on a curve near this one, to begin from.
     """
     s, at = 0, 0.0
     worst = 0.0
@@ -34,18 +37,20 @@ def project(Q: FloatArray, n: int, b: FloatArray, k: int, span: IntArray, x: Flo
         if j == n - 1:
             s, at = k - 1, 1.0
         elif j > 0:
-            s, at = _next_foot(Q[j, 0], Q[j, 1], b, k, s, at)
+            later = known and (span[j] > s or (span[j] == s and x[j] > at))
+            s, at = _next_foot(Q[j, 0], Q[j, 1], b, k, s, at, span[j] if later else s, x[j] if later else at)
         cx, cy, _, _, _, _ = jet(b, s, at)
         span[j], x[j] = s, at
-        e[j] = np.hypot(Q[j, 0] - cx, Q[j, 1] - cy)
+        e[j] = length(Q[j, 0] - cx, Q[j, 1] - cy)
         worst = max(worst, e[j])
     return worst
 
 
 @jit
-def _next_foot(qx: float, qy: float, b: FloatArray, k: int, s: int, at: float) -> tuple[int, float]:
-    """The nearest point after (s, at), by Newton's method over the pieces."""
-    s0, at0 = s, at
+def _next_foot(
+    qx: float, qy: float, b: FloatArray, k: int, s0: int, at0: float, s: int, at: float
+) -> tuple[int, float]:  # fmt: skip
+    """The nearest point after (s0, at0), by Newton's method over the pieces from (s, at)."""
     for _ in range(12):
         cx, cy, dx, dy, ax, ay = jet(b, s, at)
         speed = dx * dx + dy * dy
@@ -93,7 +98,7 @@ def _normal_equations(
     for j in range(n):
         s, at = span[j], x[j]
         cx, cy, dx, dy, _, _ = jet(b, s, at)
-        speed = np.hypot(dx, dy)
+        speed = length(dx, dy)
         if speed <= 0:
             continue
         tx, ty = dx / speed, dy / speed
@@ -294,7 +299,7 @@ def fit_arc(
 
     Args:
         Q: (n, 2) samples in order, the ends being the arc's. D: (n,) integral of the wanted vertex density there.
-        k: number of spans.
+        k: number of spans, two or more (for one see :mod:`.cubicfit`).
         d0, d1: (2,) unit tangents at the ends, kept as directions unless free0, free1.
         tolerance: stop as soon as every sample is nearer than this.
         margin, residual: of the interpolation. rounds: most Gauss-Newton steps.
@@ -308,22 +313,14 @@ def fit_arc(
     A, step = np.empty((2 * (k + 3), BAND)), np.empty(2 * (k + 3))
     span, x, e, weight = np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.ones(n)
     q, v0, v1 = np.empty((k + 1, 2)), d0.copy(), d1.copy()
-    if k == 1 and Q[0, 0] == Q[n - 1, 0] and Q[0, 1] == Q[n - 1, 1]:
-        return np.inf
     place_vertices(Q, D, n, k, q)
-    if k == 1:
-        bulge = 0.0
-        for j in range(n - 1):
-            bulge += np.hypot(Q[j + 1, 0] - Q[j, 0], Q[j + 1, 1] - Q[j, 1])
-        bulge /= max(np.hypot(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1]), 1e-9)
-        v0 *= min(bulge, 3.0)
-        v1 *= min(bulge, 3.0)
-    best = np.inf
+    best, known = np.inf, False
     for m in range(rounds):
         left = solve_arc(q, k, v0, v1, margin, residual, u, M, P, b, t)
         if not left < 1.0:
             break
-        error = project(Q, n, b, k, span, x, e)
+        error = project(Q, n, b, k, known, span, x, e)
+        known = True
         if error < best and graded(q, k, 4.0):
             best = error
             p[: k + 1] = q
@@ -332,8 +329,9 @@ def fit_arc(
                 break
         if best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance:
             break
-        if k > 1 and m in (2, 5):
+        if m in (2, 5):
             respace(b, u, k, e, span, n, q, error)
+            known = False
             if m == 2:
                 continue
         if m >= 1:

@@ -13,7 +13,10 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .bspline import Spline
 
-jit = nb.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+jit = nb.njit(cache=True, nogil=True, error_model="numpy")
+"""No ``fastmath``: were products and sums fused, where they are would depend on what is inlined, which differs between
+code just compiled and code out of the cache, and so would the last bits of a result and, at a threshold, its vertices.
+"""
 
 PEAK_SHARE = 0.9
 """As in :mod:`.intervals`. It is asked of arcs of two spans, whose one free vertex has a peak of 1/2 at most.

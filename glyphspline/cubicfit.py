@@ -12,9 +12,6 @@ from .arcfit import HOPELESS, SLIDE
 from .arcs import jit, length
 from .arrays import FloatArray
 
-ENOUGH = 10
-"""Inner samples that tell whether a cubic can be fitted at all; only one that can is compared with every sample."""
-
 STEPS = 4
 """Newton steps to a foot, from the foot of the last round."""
 
@@ -37,8 +34,7 @@ def fit_cubic(
         start, end: receive the end tangents of the best fit, derivatives by chord length.
 
     Returns:
-        The largest distance of a sample from the best fit; infinite if there is none. Above the tolerance it is an
-        estimate.
+        The largest distance of a sample from the best fit; infinite if there is none.
     """
     n = len(Q)
     chord = length(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
@@ -56,15 +52,9 @@ def fit_cubic(
         handles[axis], handles[2 + axis] = d0[axis] * third, d1[axis] * third
     c, A, g = np.empty((3, 2)), np.empty((4, 4)), np.empty(4)
     best = np.inf
-    step = max(1, n // (ENOUGH + 1))
     for m in range(rounds):
         _coefficients(Q, handles, chord, c)
-        error = _project(Q, c, step, x, e)
-        if step > 1 and error <= tolerance:
-            step, best = 1, np.inf
-            for j in range(n):
-                weight[j] = 1.0
-            error = _project(Q, c, step, x, e)
+        error = _project(Q, c, x, e)
         if error < best:
             best = error
             for axis in range(2):
@@ -72,8 +62,8 @@ def fit_cubic(
         if best <= tolerance or best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance or m == rounds - 1:
             break
         if m >= 1:
-            _sharpen(weight, e, error, step)
-        _step(Q, c, step, x, weight, d0, free0, d1, free1, chord, handles, A, g)
+            _sharpen(weight, e, error)
+        _step(Q, c, x, weight, d0, free0, d1, free1, chord, handles, A, g)
     return best
 
 
@@ -88,12 +78,12 @@ def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArra
 
 
 @jit
-def _project(Q: FloatArray, c: FloatArray, step: int, x: FloatArray, e: FloatArray) -> float:
-    """Pair every so many samples with points of the cubic, in order, from the feet x on; the largest distance."""
+def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
     ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
     ay, by, cy = c[0, 1], c[1, 1], c[2, 1]
     worst, low = 0.0, 0.0
-    for j in range(step, len(Q) - 1, step):
+    for j in range(1, len(Q) - 1):
         qx, qy = Q[j, 0] - Q[0, 0], Q[j, 1] - Q[0, 1]
         t = max(x[j], low)
         for _ in range(STEPS):
@@ -115,20 +105,19 @@ def _project(Q: FloatArray, c: FloatArray, step: int, x: FloatArray, e: FloatArr
 
 
 @jit
-def _sharpen(weight: FloatArray, e: FloatArray, error: float, step: int) -> None:
+def _sharpen(weight: FloatArray, e: FloatArray, error: float) -> None:
     """Weights that grow with the error, their mean staying 1: least squares turn towards the least maximum."""
-    total, count = 0.0, 0
-    for j in range(step, len(e) - 1, step):
+    total = 0.0
+    for j in range(1, len(e) - 1):
         weight[j] *= 0.1 + e[j] / error
         total += weight[j]
-        count += 1
-    for j in range(step, len(e) - 1, step):
-        weight[j] *= count / total
+    for j in range(1, len(e) - 1):
+        weight[j] *= (len(e) - 2) / total
 
 
 @jit
 def _step(
-    Q: FloatArray, c: FloatArray, step: int, x: FloatArray, weight: FloatArray,
+    Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
     A: FloatArray, g: FloatArray,
 ) -> None:  # fmt: skip
@@ -138,7 +127,7 @@ def _step(
         for s in range(4):
             A[r, s] = 0.0
     total = 0.0
-    for j in range(step, len(Q) - 1, step):
+    for j in range(1, len(Q) - 1):
         t, w = x[j], weight[j]
         y = 1 - t
         dx, dy = (3 * c[2, 0] * t + 2 * c[1, 0]) * t + c[0, 0], (3 * c[2, 1] * t + 2 * c[1, 1]) * t + c[0, 1]

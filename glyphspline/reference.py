@@ -6,6 +6,7 @@ footpoint.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
@@ -76,8 +77,8 @@ def _stationary(spline: Spline, point: FloatArray, low: float, high: float) -> l
         slope = np.convolve(x, powers * x[:-1]) + np.convolve(y, powers * y[:-1])
         zeros = np.roots(slope)
         likely = (np.abs(zeros.imag) < NEARLY_REAL) & (np.abs(zeros.real - 0.5) < 0.5 + NEARLY_REAL)
-        polished = [_newton(slope.tolist(), y) for y in zeros.real[likely].tolist()]
-        found += [start, *(start + h * y for y in polished if 0 <= y <= 1)]
+        polished = [_newton(x.tolist(), y.tolist(), t) for t in zeros.real[likely].tolist()]
+        found += [start, *(start + h * t for t in polished if 0 <= t <= 1)]
     return found
 
 
@@ -102,28 +103,32 @@ def _power_basis(degree: int) -> FloatArray:
     return np.array(rows[::-1])
 
 
-def _newton(polynomial: list[float], x: float, steps: int = 12) -> float:
-    """Polish a zero that ``numpy.roots`` leaves a few digits short, until nothing improves; keep it if nothing does.
+def _newton(x: list[float], y: list[float], t: float, steps: int = 12) -> float:
+    """Polish a zero of x x' + y y' that ``numpy.roots`` leaves a few digits short, until nothing improves.
 
-    One that is on its way to a zero but has not arrived would tie with it.
+    It goes by the coordinates, as the product's coefficients have lost half of the digits where the curve is near its
+    vertex and slow. A start that is on its way to a zero but has not arrived would tie with it.
     """
-    value, slope = _horner(polynomial, x)
+    value, slope = _product(x, y, t)
     for _ in range(steps):
         if slope == 0:
             break
-        better = x - value / slope
-        left, slope = _horner(polynomial, better)
+        better = t - value / slope
+        left, slope = _product(x, y, better)
         if not abs(left) < abs(value):
             break
-        x, value = better, left
-    return x
+        t, value = better, left
+    return t
 
 
-def _horner(polynomial: list[float], x: float) -> tuple[float, float]:
-    """Value and derivative of a polynomial (coefficients by descending powers)."""
-    value, slope = 0.0, 0.0
-    for coefficient in polynomial:
-        value, slope = value * x + coefficient, slope * x + value
+def _product(x: list[float], y: list[float], t: float) -> tuple[float, float]:
+    """x x' + y y' at t and its derivative, for polynomials (coefficients by descending powers)."""
+    value = slope = 0.0
+    for polynomial in (x, y):
+        a = b = c = 0.0
+        for coefficient in polynomial:
+            a, b, c = a * t + coefficient, b * t + a, c * t + b  # the value, its derivative, half of the second
+        value, slope = value + a * b, slope + b * b + 2 * a * c
     return value, slope
 
 
@@ -228,8 +233,12 @@ def interpolate_reference(
     end_tangents: Tangents | None = None,
     finish: Literal["iterate", "solve"] = "iterate",
     diagnostics: bool = False,
+    disturb: Callable[[FloatArray], FloatArray] | None = None,
 ) -> Interpolation:
-    """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`."""
+    """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`.
+
+    ``disturb`` may change the free control points before each pass, to see what rounding errors come to.
+    """
     problem = prepare(
         points,
         variant,
@@ -246,6 +255,7 @@ def interpolate_reference(
     residuals: list[float] = []
     history: list[tuple[FloatArray, FloatArray]] = []
     while True:
+        free = disturb(free) if disturb else free
         t, updated, error = (_sweep if variant == 4 else _step)(problem, free)
         residuals.append(error)
         history.append((problem.spread @ free + problem.fixed, t))

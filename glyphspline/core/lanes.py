@@ -42,7 +42,14 @@ WIDTH = 8
 
 NEWTON_PASSES = 8
 SETTLED_STEP = 1e-6
-"""A step this small (share of the side's length) is the last: third-order convergence leaves its cube."""
+"""A step this small (share of the side's length) may be the last: third-order convergence leaves its cube."""
+
+LEFT = 1e-14
+"""It is the last if it leaves so little: about c² of the step, where c is the share of it that the correction adds.
+
+Near a cusp c is not small until steps are much smaller than above. Gauss and Newton's step has no correction, and may
+leave as much as it is itself.
+"""
 
 
 @inlined
@@ -165,6 +172,7 @@ def newton(S, first, m):
         correction = step * third * inverse
         correction = select(correction < 0.5, correction, 0.5)
         correction = select(correction > -0.5, correction, -0.5)
+        left = select(convex, correction * correction, 1.0)
         correction = select(convex, correction, 0.0)
         new = y - step * (1.0 + correction)
         new = select(new > low, new, low)
@@ -172,7 +180,8 @@ def newton(S, first, m):
         moved = new - y
         moved = select(moved > 0.0, moved, -moved)
         frozen = done > 0.0
-        settled = frozen | (moved <= SETTLED_STEP * (high - low))
+        length = high - low
+        settled = frozen | ((moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length))
         S[SY + j] = select(frozen, y, new)
         S[DONE + j] = select(settled, 1.0, 0.0)
         pending += select(settled, 0, 1)

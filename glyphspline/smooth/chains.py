@@ -14,7 +14,7 @@ from ..arcs import jet
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..orientation import farthest_joint, flip, runs_backwards
 
-compiled = nb.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+compiled = nb.njit(cache=True, nogil=True, error_model="numpy")
 
 TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
