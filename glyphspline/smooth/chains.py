@@ -7,14 +7,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba as nb
 import numpy as np
 
-from ..arcs import jet
+from ..arcs import jet, jit
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..orientation import farthest_joint, flip, runs_backwards
-
-compiled = nb.njit(cache=True, nogil=True, error_model="numpy")
 
 TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
@@ -42,7 +39,7 @@ def chains_of(parts: list[FloatArray]) -> Chains:
     return Chains(*_canonical(np.concatenate(parts), np.cumsum([0] + [len(part) for part in parts])))
 
 
-@compiled
+@jit
 def _canonical(given: FloatArray, offsets: IntArray) -> tuple[FloatArray, IntArray, BoolArray, FloatArray, FloatArray]:
     """The attributes of :class:`Chains`; segments that are points are left out."""
     count = len(offsets) - 1
@@ -73,7 +70,7 @@ def _canonical(given: FloatArray, offsets: IntArray) -> tuple[FloatArray, IntArr
     return cubics, starts, flipped, turns, lengths
 
 
-@compiled
+@jit
 def _direction(cubics: FloatArray, j: int, end: int) -> tuple[float, float]:
     """Direction of segment j at its first (0) or last (3) point, whatever handles have no length."""
     step = 1 if end == 0 else -1
@@ -84,7 +81,7 @@ def _direction(cubics: FloatArray, j: int, end: int) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-@compiled
+@jit
 def _turns(cubics: FloatArray, turns: FloatArray) -> None:
     m = len(cubics)
     for j in range(m):
@@ -93,7 +90,7 @@ def _turns(cubics: FloatArray, turns: FloatArray) -> None:
         turns[j] = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
-@compiled
+@jit
 def _lengths(cubics: FloatArray, lengths: FloatArray) -> None:
     total = 0.0
     for j in range(len(cubics)):
@@ -106,7 +103,7 @@ def _lengths(cubics: FloatArray, lengths: FloatArray) -> None:
             x, y = px, py
 
 
-@compiled
+@jit
 def length_at(lengths: FloatArray, place: float) -> float:
     """Distance along a contour from its first point; ``place`` may be laps ahead."""
     m = len(lengths)
@@ -117,7 +114,7 @@ def length_at(lengths: FloatArray, place: float) -> float:
     return j // m * lengths[m - 1, TABLE] + row[k] + (x - k) * (row[min(k + 1, TABLE)] - row[k])
 
 
-@compiled
+@jit
 def place_at(lengths: FloatArray, distance: float) -> float:
     """The inverse of :func:`length_at`."""
     m = len(lengths)
@@ -138,7 +135,7 @@ def place_at(lengths: FloatArray, distance: float) -> float:
     return lap * m + low + x
 
 
-@compiled
+@jit
 def vertices(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(n, 2) the points at places of a contour, all in its first lap."""
     points = np.empty((len(places), 2))

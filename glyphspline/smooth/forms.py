@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arcs import jet
+from ..arcs import jet, jit
 from ..arrays import FloatArray, IntArray
 from ..crossings import STEPS, _hull, _side
 from ..measure import CURVATURE_STEPS, NODES, WEIGHTS
-from .chains import compiled
 
 LENGTH, AREA, ENERGY, CURVATURE, OVERSHOOT, CROSSINGS = range(6)
 """Columns of what :func:`forms` gives."""
@@ -21,7 +20,7 @@ PLACES = np.concatenate([(NODES + 1) / 2, np.arange(CURVATURE_STEPS + 1) / CURVA
 """Parameters at which speed and curvature are looked at: for integrals, then for the largest curvature."""
 
 
-@compiled
+@jit
 def forms(pieces: FloatArray, offsets: IntArray, polygons: FloatArray, corners: IntArray) -> FloatArray:
     """(K, 6) measures of ragged closed chains of cubics.
 
@@ -39,7 +38,7 @@ def forms(pieces: FloatArray, offsets: IntArray, polygons: FloatArray, corners: 
     return found
 
 
-@compiled
+@jit
 def _shape(pieces: FloatArray, found: FloatArray) -> None:
     """Integrals by Gauss's rule over each piece, and the largest curvature at even parameters."""
     count = len(PLACES)
@@ -69,7 +68,7 @@ def _shape(pieces: FloatArray, found: FloatArray) -> None:
             found[CURVATURE] = max(found[CURVATURE], bends[k] if speeds[k] > 0 else np.inf)
 
 
-@compiled
+@jit
 def _overshoot(pieces: FloatArray, polygon: FloatArray) -> float:
     """Largest distance of points of the curve outside the convex hull of a polygon, in whose order its pieces are.
 
@@ -93,7 +92,7 @@ def _overshoot(pieces: FloatArray, polygon: FloatArray) -> float:
     return np.sqrt(worst)
 
 
-@compiled
+@jit
 def _from_side(points: FloatArray, i: int, j: int, x: float, y: float) -> float:
     """Squared distance of (x, y) from the line segment between points i and j."""
     ax, ay = points[i]
@@ -104,7 +103,7 @@ def _from_side(points: FloatArray, i: int, j: int, x: float, y: float) -> float:
     return (x - ax - along * bx) ** 2 + (y - ay - along * by) ** 2
 
 
-@compiled
+@jit
 def _outside(hull: FloatArray, x: float, y: float, enough: float) -> float:
     """Squared distance of (x, y) from a convex polygon that runs counter-clockwise; 0 if it is at most ``enough``."""
     n = len(hull)
@@ -118,7 +117,7 @@ def _outside(hull: FloatArray, x: float, y: float, enough: float) -> float:
     return nearest if outside else 0.0
 
 
-@compiled
+@jit
 def _crossings(pieces: FloatArray) -> int:
     """Number of places where a closed chain crosses itself, on chords as :func:`..crossings.flatten` has them.
 
@@ -153,7 +152,7 @@ def _crossings(pieces: FloatArray) -> int:
     return found
 
 
-@compiled
+@jit
 def _monotone(pieces: FloatArray, i: int, j: int) -> bool:
     """Whether pieces i and j both run forward all along the direction from the start of i to the end of j."""
     x, y = pieces[j, 3, 0] - pieces[i, 0, 0], pieces[j, 3, 1] - pieces[i, 0, 1]
@@ -164,7 +163,7 @@ def _monotone(pieces: FloatArray, i: int, j: int) -> bool:
     return True
 
 
-@compiled
+@jit
 def _chords(pieces: FloatArray, s: int, points: FloatArray) -> int:
     """Ends of the chords of a piece into ``points``; how many chords: one if it is straight."""
     c = pieces[s]
@@ -178,7 +177,7 @@ def _chords(pieces: FloatArray, s: int, points: FloatArray) -> int:
     return n
 
 
-@compiled
+@jit
 def _crossed(a: FloatArray, m: int, b: FloatArray, n: int, same: bool, follows: bool, ring: bool) -> int:
     """Chords of one piece that properly cross those of another, which is the ``same``, or ``follows`` it, or neither.
 

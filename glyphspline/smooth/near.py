@@ -14,10 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arcs import jet
+from ..arcs import jet, jit
 from ..arrays import FloatArray
 from ..distance import section
-from .chains import compiled
 
 ROUNDING = 1e-13
 """Share of the largest coordinate added to the bound for floating point."""
@@ -28,7 +27,7 @@ DEEPEST = 12
 NEWTON_STEPS = 4
 
 
-@compiled
+@jit
 def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, y: float) -> float:
     """A parameter in [low, high] of a cubic (4, 2) near (x, y): Newton's method from a guess."""
     at = guess
@@ -55,7 +54,7 @@ def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, 
     return at
 
 
-@compiled
+@jit
 def partner(cubics: FloatArray, place: float, low: float, high: float, x: float, y: float) -> float:
     """The place in [low, high] of a closed chain near which (x, y) has its nearest point, from one in between."""
     m = len(cubics)
@@ -83,7 +82,7 @@ def partner(cubics: FloatArray, place: float, low: float, high: float, x: float,
     return at
 
 
-@compiled
+@jit
 def stretches(pieces: FloatArray, cubics: FloatArray, places: FloatArray, ends: FloatArray) -> None:
     """Where on the outline the spans of a closed curve begin, into ``ends`` (n + 1,): near the vertices, in order.
 
@@ -101,7 +100,7 @@ def stretches(pieces: FloatArray, cubics: FloatArray, places: FloatArray, ends: 
     ends[n] = ends[0] + m
 
 
-@compiled
+@jit
 def span_distance(
     piece: FloatArray, cubics: FloatArray, start: float, end: float, enough: float, sharpness: float,
     work: FloatArray, marks: FloatArray,
@@ -136,7 +135,7 @@ def span_distance(
         x, y = cut, stop
 
 
-@compiled
+@jit
 def _halve(
     work: FloatArray, marks: FloatArray, start: float, end: float, enough: float, sharpness: float, bound: float,
     gap: float, where: float,
@@ -170,7 +169,7 @@ def _halve(
     return bound, gap, where
 
 
-@compiled
+@jit
 def _split(c: FloatArray, x: float, first: FloatArray) -> None:
     """Cut a cubic: its part before x into ``first``, that after x in its own place."""
     for k in range(2):
@@ -182,7 +181,7 @@ def _split(c: FloatArray, x: float, first: FloatArray) -> None:
         c[0, k], c[1, k], c[2, k], c[3, k] = middle, bde, de, e
 
 
-@compiled
+@jit
 def check(
     pieces: FloatArray, cubics: FloatArray, places: FloatArray, enough: float, sharpness: float, bounds: FloatArray,
     gaps: FloatArray, worst: FloatArray, ends: FloatArray,
@@ -199,7 +198,7 @@ def check(
         )
 
 
-@compiled
+@jit
 def sharpened(
     pieces: FloatArray, cubics: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
 ) -> tuple[float, float]:

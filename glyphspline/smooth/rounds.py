@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arcs import jit
 from ..arrays import BoolArray, FloatArray, IntArray
-from .chains import Chains, compiled, vertices
+from .chains import Chains, vertices
 from .near import check, sharpened
 from .places import MOST_VERTICES, graded, with_more
 from .prune import put_back, sparse
@@ -17,7 +18,7 @@ ROUGHLY = 0.1
 """While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
 
 
-@compiled
+@jit
 def first_places(
     chains: Chains, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
 ) -> tuple[FloatArray, IntArray]:
@@ -31,7 +32,7 @@ def first_places(
     return _joined(parts)
 
 
-@compiled
+@jit
 def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
     """All but the first of some arrays as one, and where each begins."""
     offsets = np.zeros(len(parts), dtype=np.int64)
@@ -43,7 +44,7 @@ def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
     return values, offsets
 
 
-@compiled
+@jit
 def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
     """Ragged points of the outline at the places."""
     points = np.empty((len(places), 2))
@@ -54,7 +55,7 @@ def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntAr
     return points
 
 
-@compiled
+@jit
 def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
     """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
 
@@ -89,7 +90,7 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
     return pieces, written
 
 
-@compiled
+@jit
 def examined(
     chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray, near: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -109,7 +110,7 @@ def examined(
     return bounds, gaps, worst, ends
 
 
-@compiled
+@jit
 def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> BoolArray:
     """(n,) which vertices of a contour are at corners."""
     corners = np.zeros(len(places), dtype=np.bool_)
@@ -119,7 +120,7 @@ def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> Bool
     return corners
 
 
-@compiled
+@jit
 def changed(
     chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray,
     gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray, corner_angle: float,
@@ -153,7 +154,7 @@ def changed(
     return those[: len(parts) - 1].copy(), values, new
 
 
-@compiled
+@jit
 def certificate(
     chains: Chains, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray,
     sharpness: float,
@@ -179,7 +180,7 @@ class Good(NamedTuple):
     needed: BoolArray
 
 
-@compiled
+@jit
 def thinned(
     chains: Chains, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
     places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, good: Good,
