@@ -24,10 +24,6 @@ def convert_contour(contour: Contour, options: Options, tolerance: float) -> Con
     return ContourResult(contour, fit.polygon, (fit.result,), curve, measures)
 
 
-CLOSER = (1.0, 0.5, 0.25)
-"""Shares of the tolerance tried until a result has no self-crossings of its own."""
-
-
 def _measures(contour: Contour, fit: Fit, curve: Contour, tolerance: float, new_crossings: int) -> Measures:
     """All that is known of one contour's result."""
     arc, distance = fit.result, fit.distance

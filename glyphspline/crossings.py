@@ -1,11 +1,15 @@
-"""Self-crossings of a closed contour, counted on a polyline that is straight to a small share of its size."""
+"""Self-crossings of closed contours, and how far they leave a convex hull, on a few chords a segment.
+
+Segments that cannot matter are told by their Bézier points: a segment lies in their hull, and one whose legs all run
+forward along a common direction crosses nothing by itself.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from .arcs import jet, jit
-from .arrays import FloatArray
+from .arrays import FloatArray, IntArray
 
 STEPS = 12
 """Chords a cubic; a straight one takes a single chord. Loops smaller than a twelfth of a segment go uncounted."""
@@ -13,28 +17,75 @@ STEPS = 12
 
 def self_crossings(cubics: FloatArray) -> int:
     """Number of places where a closed chain of cubics (m, 4, 2) crosses itself. Touching is not crossing."""
-    return int(_count(flatten(np.ascontiguousarray(cubics))))
+    return int(count_crossings(cubics, *chords(cubics)))
+
+
+def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
+    """Largest distance of points of a closed chain of cubics (m, 4, 2) outside the convex hull of a polygon (n, 2)."""
+    return float(farthest_outside(cubics, *chords(cubics), polygon))
 
 
 @jit
-def flatten(cubics: FloatArray) -> FloatArray:
-    """(N, 2) points of the polyline, the first not repeated at the end."""
-    points = np.empty((STEPS * len(cubics), 2))
+def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(N, 2) ends of the chords, the first not repeated at the end, and (m + 1,) where each segment's begin."""
+    m = len(cubics)
+    points, first = np.empty((STEPS * m, 2)), np.zeros(m + 1, dtype=np.int64)
     count = 0
-    for j in range(len(cubics)):
-        c = cubics[j]
+    for j in range(m):
+        b = cubics[j]
         bend = 0.0
         for k in (1, 2):
             bend = max(
-                bend, abs(c[k + 1, 0] - 2 * c[k, 0] + c[k - 1, 0]) + abs(c[k + 1, 1] - 2 * c[k, 1] + c[k - 1, 1])
+                bend, abs(b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0]) + abs(b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1])
             )
-        n = STEPS if bend > 1e-9 * (abs(c[3, 0] - c[0, 0]) + abs(c[3, 1] - c[0, 1])) else 1
+        n = STEPS if bend > 1e-9 * (abs(b[3, 0] - b[0, 0]) + abs(b[3, 1] - b[0, 1])) else 1
         for k in range(n):
             x, y, _, _, _, _ = jet(cubics, j, k / n)
             if count == 0 or points[count - 1, 0] != x or points[count - 1, 1] != y:
-                points[count] = x, y
+                points[count, 0], points[count, 1] = x, y
                 count += 1
-    return points[:count]
+        first[j + 1] = count
+    return points[:count], first
+
+
+@jit
+def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> int:
+    """Pairs of chords that cross properly, of a closed chain (m, 4, 2) and its :func:`chords`."""
+    m = len(cubics)
+    box = np.empty((m, 4))
+    for j in range(m):
+        b = cubics[j]
+        for axis in range(2):
+            box[j, 2 * axis] = min(min(b[0, axis], b[1, axis]), min(b[2, axis], b[3, axis]))
+            box[j, 2 * axis + 1] = max(max(b[0, axis], b[1, axis]), max(b[2, axis], b[3, axis]))
+    order = np.argsort(box[:, 0])
+    found = 0
+    for oi in range(m):
+        i = order[oi]
+        if not _forward(cubics, i, i):
+            found += _crossing_chords(points, first, i, i)
+        for oj in range(oi + 1, m):
+            j = order[oj]
+            if box[j, 0] > box[i, 1]:
+                break
+            if box[j, 2] > box[i, 3] or box[j, 3] < box[i, 2]:
+                continue
+            if (j == i + 1 and _forward(cubics, i, j)) or (i == j + 1 and _forward(cubics, j, i)):
+                continue
+            found += _crossing_chords(points, first, i, j)
+    return found
+
+
+@jit
+def _forward(cubics: FloatArray, i: int, j: int) -> bool:
+    """Whether all legs of segments i to j run along the chord from the first point to the last."""
+    x, y = cubics[j, 3, 0] - cubics[i, 0, 0], cubics[j, 3, 1] - cubics[i, 0, 1]
+    for s in range(i, j + 1):
+        for k in range(3):
+            dx, dy = cubics[s, k + 1, 0] - cubics[s, k, 0], cubics[s, k + 1, 1] - cubics[s, k, 1]
+            if dx * x + dy * y <= 0 and (dx != 0 or dy != 0):
+                return False
+    return True
 
 
 @jit
@@ -43,29 +94,20 @@ def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> f
 
 
 @jit
-def _count(p: FloatArray) -> int:
-    """Pairs of chords that cross properly: sorted by their left ends, only those that overlap in x are compared."""
+def _crossing_chords(p: FloatArray, first: IntArray, s: int, t: int) -> int:
+    """Pairs of a chord of segment s and one of segment t that cross; those within a segment once."""
     n = len(p)
-    left, right = np.empty(n), np.empty(n)
-    for i in range(n):
-        a, b = p[i, 0], p[(i + 1) % n, 0]
-        left[i], right[i] = min(a, b), max(a, b)
-    order = np.argsort(left)
     found = 0
-    for oi in range(n):
-        i = order[oi]
+    for i in range(first[s], first[s + 1]):
         ax, ay = p[i]
         bx, by = p[(i + 1) % n]
-        low, high = min(ay, by), max(ay, by)
-        for oj in range(oi + 1, n):
-            j = order[oj]
-            if left[j] > right[i]:
-                break
-            if j == (i + 1) % n or i == (j + 1) % n:
-                continue
+        left, right, low, high = min(ax, bx), max(ax, bx), min(ay, by), max(ay, by)
+        for j in range(i + 1 if s == t else first[t], first[t + 1]):
             cx, cy = p[j]
             dx, dy = p[(j + 1) % n]
-            if max(cy, dy) < low or min(cy, dy) > high:
+            if max(cx, dx) < left or min(cx, dx) > right or max(cy, dy) < low or min(cy, dy) > high:
+                continue
+            if j == (i + 1) % n or i == (j + 1) % n:
                 continue
             # A chord that only reaches the other one is counted at one of its ends: zero belongs to the left side.
             one = (_side(ax, ay, bx, by, cx, cy) >= 0) != (_side(ax, ay, bx, by, dx, dy) >= 0)
@@ -76,24 +118,37 @@ def _count(p: FloatArray) -> int:
 
 
 @jit
-def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
-    """Largest distance of points of the curve outside the convex hull of a polygon (n, 2)."""
+def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, polygon: FloatArray) -> float:
+    """Largest distance of ends of the chain's :func:`chords` outside a polygon's convex hull."""
     hull = _hull(polygon)
-    n = len(hull)
     worst = 0.0
-    for p in flatten(cubics):
-        outside, nearest = False, np.inf
-        for k in range(n):
-            ax, ay = hull[k]
-            bx, by = hull[(k + 1) % n]
-            outside |= _side(ax, ay, bx, by, p[0], p[1]) < 0
-            square = (bx - ax) ** 2 + (by - ay) ** 2
-            along = ((p[0] - ax) * (bx - ax) + (p[1] - ay) * (by - ay)) / square if square > 0 else 0.0
-            along = min(max(along, 0.0), 1.0)
-            nearest = min(nearest, np.hypot(p[0] - ax - along * (bx - ax), p[1] - ay - along * (by - ay)))
-        if outside or n < 3:
-            worst = max(worst, nearest)
+    for s in range(len(cubics)):
+        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
+        reach = 0.0
+        for k in range(4):
+            reach = max(reach, _outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
+        if reach > worst:
+            for k in range(first[s], first[s + 1]):
+                worst = max(worst, _outside(hull, points[k, 0], points[k, 1]))
     return worst
+
+
+@jit
+def _outside(hull: FloatArray, x: float, y: float) -> float:
+    """Distance of a point from a convex polygon, 0 within."""
+    n = len(hull)
+    nearest, outside = np.inf, False
+    for k in range(n):
+        ax, ay = hull[k, 0], hull[k, 1]
+        dx, dy = hull[k + 1 if k + 1 < n else 0, 0] - ax, hull[k + 1 if k + 1 < n else 0, 1] - ay
+        # The nearest point lies on a side that is seen from outside.
+        if n < 3 or dx * (y - ay) - dy * (x - ax) < 0:
+            outside = True
+            square = dx * dx + dy * dy
+            along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
+            along = min(max(along, 0.0), 1.0)
+            nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
+    return np.sqrt(nearest) if outside else 0.0
 
 
 @jit

@@ -9,7 +9,7 @@ import numpy as np
 
 from .arcs import jit
 from .arrays import FloatArray, IntArray
-from .crossings import flatten
+from .crossings import chords
 from .errors import GlyphsplineError
 from .measure import shape
 from .outline import Contour, Outline
@@ -95,7 +95,7 @@ def _outer_is_clockwise(outline: Outline) -> bool:
 
 def inked_area(contours: tuple[Contour, ...]) -> float:
     """Area filled by the nonzero winding rule, on evenly spaced scan lines."""
-    lines = [flatten(contour.cubics()) for contour in contours if len(contour)]
+    lines = [chords(contour.cubics())[0] for contour in contours if len(contour)]
     if not lines:
         return 0.0
     starts = np.cumsum([0, *(len(line) for line in lines)])

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .contours import CLOSER, certified_rate
+from .contours import certified_rate
 from .errors import GlyphsplineError
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
@@ -14,6 +14,9 @@ from .polygon import LARGEST, clean_polygon
 from .result import Interpolation
 from .sharp import SharpFit, fit_sharp, flattened, unflattened
 from .survey import Survey, survey
+
+CLOSER = (1.0, 0.5, 0.25)
+"""Shares of the tolerance tried until a result has no self-crossings of its own."""
 
 
 def convert_sharp(contours: Sequence[Contour], options: Options, tolerance: float, em: float) -> list[ContourResult]:

@@ -9,8 +9,8 @@ import numpy as np
 from .arcs import jit
 from .arrays import FloatArray, IntArray
 from .chains import Flat, contour_cubics
+from .crossings import chords, count_crossings, farthest_outside
 from .measure import NODES, WEIGHTS, _shape
-from .selfcrossings import chords, count_crossings, farthest_outside
 
 
 class Survey(NamedTuple):

@@ -41,7 +41,6 @@ ROOMS = [
         "frugal",
         "chains",
         "pieces",
-        "selfcrossings",
         "survey",
         "smooth",
     },

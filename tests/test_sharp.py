@@ -9,16 +9,13 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
 from glyphspline.bezier import evaluate
 from glyphspline.chains import Settings
-from glyphspline.crossings import overshoot, self_crossings
 from glyphspline.cubicfit import fit_cubic
 from glyphspline.distance import certified_distance
 from glyphspline.measure import shape
 from glyphspline.overlaps import remove_overlaps
 from glyphspline.pieces import certify, cut_closer, cut_contours, put_together
-from glyphspline.selfcrossings import chords, count_crossings, farthest_outside
 from glyphspline.sharp import flattened
 from glyphspline.survey import survey
 
@@ -153,27 +150,6 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
         np.testing.assert_array_equal(old, new)
     ends = closer.vertices[closer.starts[q]], closer.vertices[closer.starts[q + 1] - 1]
     np.testing.assert_array_equal(ends, pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]][[0, -1]])
-
-
-def chains_at_random() -> list[FloatArray]:
-    rng = np.random.default_rng(11)
-    found = []
-    for n in [2, 3, 4, 6, 9, 15] * 8:
-        joints, handles = rng.normal(0, 100, (n, 2)), rng.normal(0, 100 / n, (n, 2, 2))
-        ends = np.roll(joints, -1, axis=0)
-        found.append(np.stack([joints, joints + handles[:, 0], ends - handles[:, 1], ends], axis=1))
-    return found
-
-
-def test_crossings_and_overshoot_are_those_that_every_chord_gives() -> None:
-    counted = 0
-    for cubics in [*chains_at_random(), *(c.cubics() for c in glyph("龍").contours)]:
-        points, first = chords(cubics)
-        assert count_crossings(cubics, points, first) == self_crossings(cubics)
-        counted += self_crossings(cubics) > 0
-        polygon = np.ascontiguousarray(cubics[:, 0])
-        assert farthest_outside(cubics, points, first, polygon) == pytest.approx(overshoot(cubics, polygon), abs=1e-9)
-    assert counted > 20
 
 
 def test_measures_are_those_of_the_curve() -> None:
