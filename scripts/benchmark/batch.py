@@ -24,9 +24,6 @@ GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "10000"))
 FIRST = 10_000
 """The first glyph index taken; Noto Sans CJK has Han glyphs there."""
 
-FEW = 200
-"""Glyphs for what takes a hundred times as long; times are by the glyph."""
-
 FONTFORGE = """
 import sys, time, fontforge
 font = fontforge.open(sys.argv[1])
@@ -51,11 +48,12 @@ def rows() -> list[Row]:
     from glyphspline.glyph import Options
 
     step = Options(step=20.0)
-    few = range(FIRST, FIRST + FEW)
+    close = Options(tolerance=1.0, effort="fast"), Options(tolerance=1.0, effort="fast", corners="sharp")
     many = range(FIRST, FIRST + GLYPHS)
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
-        ours(here / "warm", few, step, ("svg", "curvature"), 1)
+        for k, options in enumerate((step, *close)):  # nothing is compiled while it is timed
+            ours(here / f"warm-{k}", many[:50], options, ("svg", "curvature"), 1)
         rounds = []
         for k in range(2):  # in turn, so that what else the machine does falls on all
             rounds.append(
@@ -69,11 +67,13 @@ def rows() -> list[Row]:
         source, stepped, two, bare = map(min, zip(*rounds, strict=True))
         resumed = ours(here / "one-0", many, step, ("svg",), 1) * len(many)
         mapped = ours(here / "maps", many, step, ("svg", "curvature"), 1)
-        certified = ours(here / "close", few, Options(tolerance=1.0), ("svg",), 1)
-        forge = fontforge_export(here / "forge", few)
+        certified = ours(here / "close", many, close[0], ("svg",), 1)
+        sharp = ours(here / "sharp", many, close[1], ("svg",), 1)
+        forge = fontforge_export(here / "forge", many)
     return [
         row("`--step 20`, one worker, against fontTools' export of the source", stepped, source, 1.5, 1.0),
         row("`--tolerance 1 --effort fast`, certified, against the same", certified, source, 8, 5),
+        row("the same with `--corners sharp`", sharp, source, 8, 5),
         row("`--step 20` against FontForge's export", stepped, forge, 4, 2),
         row("`--step 20` against the floor: HarfBuzz reads, empty files", stepped, bare, 9, 6),
         Row("two workers against one", stepped / two, "x", 1.8, note=f"{per(stepped)}, {per(two)}"),
