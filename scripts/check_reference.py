@@ -7,10 +7,10 @@ moved in each pass by one rounding unit of the extent, and the difference counts
 times the largest that this makes, with passes that differ by no more than they do there.
 
 Of the 5000 (``make check-reference``) two differ so, both near-duplicates by variant 1, which does not converge on
-them: polygons 1965 and 4435, by 1.9e-9 of the extent each; all others agree within 3e-10, and all counts are equal. In polygon 1965
-neighbours are 1.5e-9 of the extent apart; in pass 22 stationary points of a vertex lie within 1e-5 of each other, and
-polished zeros of ``numpy.roots`` leave the reference at a distance of 2.0e-10, where the compiled core is at the nearest
-point, at 1.2e-10. Polygon 4435 was not looked into further.
+them: polygons 1965 and 4435, by 1.9e-9 of the extent each; all others agree within 3e-10, and all counts are equal. In
+polygon 1965 neighbours are 1.5e-9 of the extent apart; in pass 22 stationary points of a vertex lie within 1e-5 of each
+other, and polished zeros of ``numpy.roots`` leave the reference at a distance of 2.0e-10, where the compiled core is at
+the nearest point, at 1.2e-10. Polygon 4435 was not looked into further.
 """
 
 from __future__ import annotations
