@@ -95,9 +95,13 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self._segments += 1
         if self._segments > MAX_SEGMENTS:
             raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
-        if any(not self._same(self._points[-1], point) for point in to):
-            self._points.extend(to)
-            self._degrees.append(len(to))
+        x, y = self._points[-1]
+        near = self._coincident
+        for a, b in to:  # most of the time of reading: no calls here
+            if not (abs(a - x) <= near and abs(b - y) <= near):
+                self._points.extend(to)
+                self._degrees.append(len(to))
+                return
 
     def _closePath(self) -> None:
         if not self._points:
