@@ -289,13 +289,17 @@ def progress(quiet: bool) -> Iterator[Any]:
         TextColumn("{task.fields[rate]:.0f}/s"),
         TimeRemainingColumn(),
         TextColumn("{task.fields[failed]} failed"),
+        TextColumn("{task.description}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=None, rate=0.0, failed=0)
+        task = bar.add_task(
+            "starting; the first run of all compiles for a minute or two", total=None, rate=0.0, failed=0
+        )
 
         def observe(done: int, total: int, failed: int) -> None:
             speed = bar.tasks[0].speed or 0.0
-            bar.update(task, completed=done, total=total, failed=failed, rate=speed)
+            said = "" if done else None
+            bar.update(task, completed=done, total=total, failed=failed, rate=speed, description=said)
 
         yield observe
 
