@@ -80,6 +80,10 @@ class Ragged:
         """Polygon k's share, as an object of its own."""
         return Interpolation.shared(self, k)
 
+    def results(self) -> list[Interpolation]:
+        """All polygons' shares."""
+        return Interpolation.all_shared(self, len(self))
+
     def read(self, k: int) -> dict[str, Any]:
         """The attributes of that object (views of the arrays)."""
         start, stop = int(self.offsets[k]), int(self.offsets[k + 1])

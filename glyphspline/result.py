@@ -62,6 +62,15 @@ class Interpolation:
         object.__setattr__(result, "_row", k)
         return result
 
+    @classmethod
+    def all_shared(cls, source: Shared, count: int) -> list[Interpolation]:
+        """The results of polygons 0 to ``count - 1``, as :meth:`shared` makes them one by one."""
+        results, place = [cls.__new__(cls) for _ in range(count)], object.__setattr__
+        for k, result in enumerate(results):
+            place(result, "_source", source)
+            place(result, "_row", k)
+        return results
+
     def __getstate__(self) -> dict[str, Any]:
         source = self.__dict__.get("_source")
         if source is not None:
