@@ -113,7 +113,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         points = np.array(self._points, dtype=np.float64)
         if not np.isfinite(points).all():
             raise GlyphsplineError("coordinates that are not finite", contour=self._number())
-        if self._degrees and not self._flat(points):
+        if self._degrees and (self._is_wide() or not self._flat(points)):
             self.contours.append(Contour(points, np.array(self._degrees, dtype=np.int64)))
         else:
             self.left_out.append(self._number())
@@ -127,6 +127,16 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
 
     def _same(self, a: Point, b: Point) -> bool:
         return abs(a[0] - b[0]) <= self._coincident and abs(a[1] - b[1]) <= self._coincident
+
+    def _is_wide(self) -> bool:
+        """Whether two of the points show that the contour is not flat, as in most: asked first, it is soon answered.
+
+        Two arms a, b whose ends are at most d from one line through their common start have |a × b| ≤ (|a| + |b|) d.
+        """
+        n = len(self._points)
+        (x, y), (ax, ay), (bx, by) = self._points[0], self._points[n // 3], self._points[2 * n // 3]
+        ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
+        return abs(ax * by - ay * bx) > self._coincident * (abs(ax) + abs(ay) + abs(bx) + abs(by))
 
     def _flat(self, points: FloatArray) -> bool:
         """Whether all (N, 2) points lie on the line from the first to the farthest."""
