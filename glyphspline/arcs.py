@@ -11,7 +11,6 @@ import numba as nb
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .bspline import Spline
 
 jit = nb.njit(cache=True, nogil=True, error_model="numpy")
 """No ``fastmath``: were products and sums fused, where they are would depend on what is inlined, which differs between
@@ -66,15 +65,6 @@ def bezier_points(M: FloatArray, P: FloatArray, k: int, b: FloatArray) -> None:
                 x += M[s, r, j] * P[s + j, 0]
                 y += M[s, r, j] * P[s + j, 1]
             b[s, r, 0], b[s, r, 1] = x, y
-
-
-def arc_segments(spline: Spline) -> FloatArray:
-    """(k, 4, 2) Bézier pieces of an open cubic spline: ``spline.to_bezier()`` without its overhead for few spans."""
-    k = len(spline.knots) - 1
-    M, b = np.empty((k, 4, 4)), np.empty((k, 4, 2))
-    bezier_weights(spline.knots, k, M)
-    bezier_points(M, spline.control_points, k, b)
-    return b
 
 
 @jit

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .crossings import overshoot, self_crossings
@@ -10,6 +12,7 @@ from .fit import Fit, fit_even
 from .glyph import ContourResult, Measures, Options
 from .measure import shape
 from .outline import Contour
+from .polygon import LARGEST, clean_polygon
 from .result import Interpolation
 
 
@@ -54,3 +57,21 @@ def certified_rate(arc: Interpolation) -> float:
     """Factor a step by Theorem 2, or by Theorem 1 for an arc of two spans, whose one free vertex moves alone."""
     alone = not arc.spline.closed and len(arc.parameters) == 3
     return arc.rate_bound / 2 if alone else arc.rate_bound
+
+
+def check_coordinates(contours: Sequence[Contour]) -> None:
+    """Refuse coordinates that are not finite, or too large.
+
+    Raises:
+        GlyphsplineError: its ``contour`` is the index in the list.
+    """
+    if np.abs(np.concatenate([contour.points for contour in contours])).max() < LARGEST / 4:
+        return
+    for k, contour in enumerate(contours):
+        if not np.abs(contour.points).max() < LARGEST / 4:
+            try:
+                if not np.isfinite(contour.points).all():
+                    raise GlyphsplineError("the outline has a coordinate that is not finite")
+                clean_polygon(contour.points)
+            except GlyphsplineError as error:
+                raise error.locate(contour=k) from None

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .contours import certified_rate
-from .errors import GlyphsplineError
+from .contours import certified_rate, check_coordinates
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
-from .polygon import LARGEST, clean_polygon
 from .result import Interpolation
 from .sharp import SharpFit, fit_sharp, flattened, unflattened
 from .survey import Survey, survey
@@ -28,6 +26,9 @@ def convert_sharp(contours: Sequence[Contour], options: Options, tolerance: floa
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
     """
+    if not contours:
+        return []
+    check_coordinates(contours)
     results: dict[int, ContourResult] = {}
     left = list(range(len(contours)))
     for share in CLOSER:
@@ -44,8 +45,6 @@ def _contour_results(
 ) -> list[ContourResult]:
     """Contours fitted to within a share of the tolerance, and measured."""
     source = flattened(contours)
-    if not np.abs(source.points).max() < LARGEST / 4:
-        _refuse(contours)
     fit = fit_sharp(source, options, share * tolerance, em)
     _, starts, vertices, _ = fit.pieces
     # Where two pieces meet, the vertex belongs to the second one.
@@ -57,17 +56,6 @@ def _contour_results(
         ContourResult(contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c), curves[c], measures[c])
         for c, contour in enumerate(contours)
     ]
-
-
-def _refuse(contours: Sequence[Contour]) -> None:
-    """Say of which contour the coordinates are not finite, or too large."""
-    for c, contour in enumerate(contours):
-        try:
-            if not np.isfinite(contour.points).all():
-                raise GlyphsplineError("the outline has a coordinate that is not finite")
-            clean_polygon(contour.points)
-        except GlyphsplineError as error:
-            raise error.locate(contour=c) from None
 
 
 def _measures(fit: SharpFit, found: Survey, tolerance: float) -> list[Measures]:

@@ -8,11 +8,10 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .closed import Backwards, turned
+from .contours import check_coordinates
 from .distance import certified_distance
-from .errors import GlyphsplineError
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
-from .polygon import LARGEST, clean_polygon
 from .refine import Round, refined
 from .result import Interpolation
 from .smooth import rounds
@@ -43,7 +42,7 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     """
     if not contours:
         return []
-    _check(contours)
+    check_coordinates(contours)
     chains = chains_of([contour.cubics() for contour in contours])
     source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
     near = np.full(len(contours), tolerance)
@@ -65,18 +64,6 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
 def _rank(measures: Measures) -> tuple[bool, int]:
     """The lower, the better: within the tolerance before all, then few crossings."""
     return not measures.within_tolerance, measures.new_crossings or 0
-
-
-def _check(contours: Sequence[Contour]) -> None:
-    """Refuse coordinates that are not finite, or too large."""
-    for k, contour in enumerate(contours):
-        if not np.abs(contour.points).max() < LARGEST / 4:
-            try:
-                if not np.isfinite(contour.points).all():
-                    raise GlyphsplineError("the outline has a coordinate that is not finite")
-                clean_polygon(contour.points)
-            except GlyphsplineError as error:
-                raise error.locate(contour=k) from None
 
 
 def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Measures) -> ContourResult:

@@ -85,6 +85,15 @@ def step(at, letter, dx, dy, figures):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _fit(whole):
+    """Whether all numbers can be written digit by digit."""
+    fine = True
+    for i in range(len(whole)):
+        fine &= abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST
+    return fine
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def curves_text(points, degrees, contours, precision, power, limit, words):
     """Path data of closed contours as bytes; None if a number is too large for it.
 
@@ -94,9 +103,8 @@ def curves_text(points, degrees, contours, precision, power, limit, words):
     """
     figures = (precision, power, limit, np.uint64(words.ctypes.data))
     whole = np.rint(points * power)
-    for i in range(len(whole)):
-        if not (abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST):
-            return None
+    if not _fit(whole):
+        return None
     text = np.empty((len(points) + len(contours)) * 2 * WIDEST + SLACK, dtype=np.uint8)
     start = np.uint64(text.ctypes.data)
     at, first = start, 0
@@ -119,9 +127,8 @@ def polylines_text(points, starts, stops, closed, precision, power, limit, words
     """
     figures = (precision, power, limit, np.uint64(words.ctypes.data))
     whole = np.rint(points * power)
-    for i in range(len(whole)):
-        if not (abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST):
-            return None
+    if not _fit(whole):
+        return None
     text = np.empty((len(points) + len(starts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
     start = np.uint64(text.ctypes.data)
     at = start
