@@ -128,9 +128,8 @@ def test_too_many_vertices_are_left_to_the_long_way() -> None:
      (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, "0.000000007")],
 )  # fmt: skip
 def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
-    points = np.array([[value, -value], [value, value]]) / 10.0**precision
-    turned = text.removeprefix("-") if value <= 0 else f"-{text}"
-    assert polyline_data(points, precision) == f"M{text} {text} {text} {turned}"
+    points = np.array([[value, -value]]) / 10.0**precision
+    assert polyline_data(points, precision) == f"M{text}{text if value < 0 else f' {text}'}"
 
 
 def test_only_plain_stepping_takes_the_short_way() -> None:

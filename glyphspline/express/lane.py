@@ -14,11 +14,11 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
 from ..glyph import Options
-from ..outline import Contour, Outline
+from ..outline import Outline
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import comb_precision, map_document
 from ..writers.figures import figures
-from ..writers.markup import Box, Chains, curves_data, ink_bounds, polylines_data
+from ..writers.markup import Box, Chains, curves_data, polylines_data
 from ..writers.source import SourceTexts, source_document
 from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
@@ -45,7 +45,7 @@ class Chunk:
             raised to cubics.
         polygons, polygon_starts: the vertices. controls, knots: of the splines, from the same places on (knots one
             more a contour). cubics, cubic_starts: Bézier pieces of the splines.
-        text, text_ends: path data of the glyphs, as bytes. boxes: (g, 4) around the rounded Bézier points.
+        text, text_ends: path data of the glyphs, as bytes. boxes: (g, 4) around the ink.
         solved: of each contour.
     """
 
@@ -91,7 +91,7 @@ class Drawn:
 
     @property
     def box(self) -> Box:
-        """Around the rounded Bézier points, so around the ink."""
+        """Around the ink."""
         left, bottom, right, top = self.chunk.boxes[self.index]
         return left, bottom, right, top
 
@@ -220,10 +220,7 @@ def last_residuals(ragged: Ragged) -> FloatArray:
 
 def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> bytes:
     """The SVG document of a glyph; of ``outline`` everything but its contours is needed."""
-    box = shown_box(outline, drawn.box, "em")
-    if view_box == "ink" or (view_box == "em" and box != shown_box(outline, None, "em")):
-        ink = ink_bounds(path_contours(drawn.path))  # the box around Bézier points may be wider
-        box = shown_box(outline, ink, view_box)
+    box = shown_box(outline, drawn.box, view_box)
     return svg_document(outline, drawn.text, box, precision, view_box)
 
 
@@ -249,16 +246,6 @@ def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: 
     segments = drawn.chunk.source[2]
     left, bottom, right, top = ink_box(drawn.chunk.source_cubics[segments[first] : segments[last]]).tolist()
     return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
-
-
-def path_contours(path: str) -> list[Contour]:
-    """The contours of path data as :func:`.curves.paths` writes it, y up again."""
-    found = []
-    for contour in path.split("Z")[:-1]:
-        values = contour[1:].replace("C", " ").split(" ")
-        points = np.array(values, dtype=np.float64).reshape(-1, 2)[:-1] * (1, -1) + 0.0
-        found.append(Contour(points, np.full(len(points) // 3, 3)))
-    return found
 
 
 def solved(ragged: Ragged) -> list[Solved]:

@@ -11,7 +11,7 @@ Drawing = dict[str, str]
 
 _GROUP = re.compile(r'<g id="[^"]*-(source|polygon|control)"[^>]*><path(?: [a-z-]+="[^"]*")*? d="([^"]*)"')
 _RESULT = re.compile(r'<path (?:id="[^"]*-outline"|class="outline")(?: [a-z-]+="[^"]*")*? d="([^"]*)"')
-_PATH = re.compile(r"[MLQCZ0-9 .e-]*")
+_PATH = re.compile(r"[MLQCZlqc0-9 .e+-]*")
 
 
 def read_drawing(folder: Path, files: Mapping[str, str]) -> Drawing:

@@ -83,7 +83,7 @@ def data_attributes(outline: Outline, precision: int) -> str:
 
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
-    """All contours as one SVG path: absolute lines, quadratics and cubics, (x, y) written as (x, -y)."""
+    """All contours as one SVG path of lines, quadratics and cubics, (x, y) written as (x, -y)."""
     drawn = [contour for contour in contours if len(contour)]
     if not drawn:
         return ""
@@ -107,7 +107,7 @@ def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, preci
 
 
 def _contour_data(contour: Contour, precision: int) -> str:
-    """One contour with numbers of any size."""
+    """One contour with numbers of any size, all of them absolute."""
     closed = np.concatenate([contour.points, contour.points[:1]])
     degrees = contour.degrees.tolist()
     if degrees[-1] == 1:  # Z draws the last line
@@ -147,7 +147,7 @@ def polylines_data(parts: Chains, precision: int) -> memoryview:
 
 
 def _polyline_data(points: FloatArray, precision: int) -> str:
-    """One chain with numbers of any size."""
+    """One chain with numbers of any size, all of them absolute."""
     values = (np.round(points * (1, -1), precision) + 0.0).ravel().tolist()
     return "M" + " ".join([NUMBER] * len(values)) % tuple(values)
 
