@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 from .arrays import FloatArray
@@ -90,6 +90,13 @@ class Measures:
     bending_energy: float | None = None
     max_curvature: float | None = None
     new_crossings: int | None = None
+
+
+Solved = tuple[int, int, int, int, float, bool, float, int]
+"""The first of the measures as a plain tuple: those that the interpolation itself knows."""
+
+SOLVED = tuple(field.name for field in fields(Measures))[:8]
+"""Their names."""
 
 
 @dataclass(frozen=True, eq=False)

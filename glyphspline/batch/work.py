@@ -6,7 +6,7 @@ The font is opened by the first glyph that needs more of it than HarfBuzz draws.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -20,12 +20,12 @@ from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
 from ..readers import Source, open_source
-from ..report.data import glyph_text, page_file, page_text
+from ..report.data import files_text, glyph_text, page_file, page_text
 from ..report.drawings import Drawing, drawing, drawing_of
 from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text, solved_text
+from .entry import measured, solved_text, told_of_solved
 from .files import write_whole
 from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
@@ -56,10 +56,11 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     started = time.perf_counter()
     drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
     share = (time.perf_counter() - started) / len(tasks)
+    folders = job.spec.folders
     found, shown = [], []
     for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
-        done, glyph = work_one(job, task) if short is None else write_drawn(job, task, short, share)
+        done, glyph = work_one(job, task) if short is None else write_drawn(job, folders, task, short, share)
         found.append(done)
         shown.append(glyph)
     page = page_of(tasks)
@@ -82,29 +83,35 @@ def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
     return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
 
 
-def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
+def write_drawn(job: Job, folders: Sequence[str], task: Task, drawn: Drawn, seconds: float) -> tuple[Done, bytes]:
     """Write what the short way has drawn; and the glyph as the gallery shows it."""
     started = time.perf_counter()
     outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
-    documents, shown = documents_of(job, outline, drawn)
-    files, sizes = {}, []
-    for name, document in documents.items():
-        files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
-        sizes.append(write_whole(f"{job.out}/{files[name]}", document))
-    contours = solved_text(drawn.solved)
+    documents, shown = documents_of(job, folders, outline, drawn)
+    files, sizes = write_documents(job, task, documents)
+    solved = drawn.solved
+    contours = solved_text(solved)
+    told = told_of_solved(task.name, task.gid, task.unicodes, drawn.advance, solved)
     seconds += time.perf_counter() - started
-    done = finished(task, "ok", drawn.advance, files, tuple(sizes), contours, None, seconds)
+    done = finished(task, "ok", drawn.advance, files, sizes, contours, None, seconds, told)
     return done, glyph_text(shown, files, contours, None)
 
 
-def documents_of(job: Job, outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
+def write_documents(job: Job, task: Task, documents: Mapping[str, str | bytes]) -> tuple[str, tuple[int, ...]]:
+    """Write a glyph's files: what they are called, as JSON, and their sizes."""
+    files = {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in documents}
+    sizes = [write_whole(f"{job.out}/{files[name]}", document) for name, document in documents.items()]
+    return files_text(files), tuple(sizes)
+
+
+def documents_of(job: Job, folders: Sequence[str], outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
     """A glyph's files in the order of ``WRITERS``; of ``outline`` everything but its contours is needed."""
-    documents, shown = {}, drawing(drawn.path)
-    folders, precision = job.spec.folders, job.spec.options.precision
+    documents, shown = {}, drawing(drawn.text)
+    precision = job.spec.options.precision
     if "source" in folders:
         texts = source_texts(drawn, outline.metrics.units_per_em, precision)
         documents["source"] = drawn_source(outline, drawn, texts, precision)
-        shown |= {name: bytes(text).decode("ascii") for name, text in texts._asdict().items()}
+        shown |= texts._asdict()
     if "svg" in folders:
         documents["svg"] = drawn_svg(outline, drawn, precision, job.spec.view_box)
     if "curvature" in folders:
@@ -113,24 +120,20 @@ def documents_of(job: Job, outline: Outline, drawn: Drawn) -> tuple[dict[str, by
     return documents, shown
 
 
-def work_one(job: Job, task: Task) -> tuple[Done, str]:
+def work_one(job: Job, task: Task) -> tuple[Done, bytes]:
     """Convert and write one glyph; and the glyph as the gallery shows it."""
     started = time.perf_counter()
-    files, written = {}, []
     try:
         outline = read(job, task)
         result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
         documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
     except Exception as error:
         why = reason(error)
-        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), {}, "", why)
-    for name, document in documents.items():
-        files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
-        written.append(write_whole(f"{job.out}/{files[name]}", document))
-    contours = contours_text((contour.measures for contour in result.contours), job.spec.options)
-    status = "ok" if files else "empty"
+        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), "", "", why)
+    files, sizes = write_documents(job, task, documents)
+    contours = measured((contour.measures for contour in result.contours), job.spec.options)
     seconds = time.perf_counter() - started
-    done = finished(task, status, outline.advance, files, tuple(written), contours, None, seconds)
+    done = finished(task, "ok" if files else "empty", outline.advance, files, sizes, contours, None, seconds)
     texts = {name: document for name, document in documents.items() if isinstance(document, str)}
     return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
 

@@ -101,11 +101,12 @@ def paths(cubics, starts, before, precision, power, limit, words):
 @njit(cache=True, nogil=True, error_model="numpy")
 def whole_units(cubics, power):
     """(3 m, 2) Bézier points, joints once, in whole units of the last digit; and (m, 4, 2) the pieces, rounded so."""
-    points, rounded = np.empty((3 * len(cubics), 2)), np.empty((len(cubics), 4, 2))
-    for j in range(len(cubics)):
-        for k in range(4):
-            x, y = np.rint(cubics[j, k, 0] * power), np.rint(cubics[j, k, 1] * power)
-            rounded[j, k, 0], rounded[j, k, 1] = x / power, y / power
-            if k < 3:
-                points[3 * j + k, 0], points[3 * j + k, 1] = x, y
-    return points, rounded
+    flat, unit = cubics.reshape(-1), np.float64(power)
+    whole, rounded, points = np.empty_like(flat), np.empty_like(flat), np.empty(6 * len(cubics))
+    for i in range(np.uint64(len(flat))):
+        whole[i] = np.rint(flat[i] * unit)
+        rounded[i] = whole[i] / unit
+    for j in range(np.uint64(len(cubics))):
+        for k in range(np.uint64(6)):
+            points[np.uint64(6) * j + k] = whole[np.uint64(8) * j + k]
+    return points.reshape(-1, 2), rounded.reshape(-1, 4, 2)

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
-from ..glyph import Options
+from ..glyph import Options, Solved
 from ..outline import Outline
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import comb_precision, map_document
@@ -28,10 +28,6 @@ from .stepping import stepped_points, uneven
 
 MOST_VERTICES = 100_000
 """Vertices of a contour above which it is left to the long way."""
-
-
-Solved = tuple[int, int, int, int, float, bool, float, int]
-"""Of a contour, what the interpolation itself has found out: the first of the :class:`~glyphspline.glyph.Measures`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +64,11 @@ class Chunk:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A glyph of a chunk."""
+    """A glyph of a chunk: its index in it, and from and to where among the chunk's contours its own are."""
 
     chunk: Chunk
     index: int
+    contours: tuple[int, int]
 
     @property
     def advance(self) -> float:
@@ -85,20 +82,10 @@ class Drawn:
         return self.chunk.text[ends[self.index] : ends[self.index + 1]]
 
     @property
-    def path(self) -> str:
-        """The same as text."""
-        return bytes(self.text).decode("ascii")
-
-    @property
     def box(self) -> Box:
         """Around the ink."""
         left, bottom, right, top = self.chunk.boxes[self.index]
         return left, bottom, right, top
-
-    @cached_property
-    def contours(self) -> tuple[int, int]:
-        """Its contours in the chunk: from and to."""
-        return int(self.chunk.before[self.index]), int(self.chunk.before[self.index + 1])
 
     @property
     def solved(self) -> list[Solved]:
@@ -178,7 +165,8 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
         advances, left, before, (own, degrees, segments, owns), source_cubics, points, offsets, ragged.controls,
         ragged.knots, cubics, cubic_starts, memoryview(text), ends.tolist(), boxes.tolist(), solved(ragged),
     )  # fmt: skip
-    return [None if alone else Drawn(chunk, i) for i, alone in enumerate(left.tolist())]
+    each = zip(left.tolist(), pairwise(before.tolist()), strict=True)
+    return [None if alone else Drawn(chunk, i, contours) for i, (alone, contours) in enumerate(each)]
 
 
 def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Ragged:

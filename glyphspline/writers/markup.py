@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..outline import Contour, Outline
+from ..outline import Contour, FontMetrics, Outline
 from .figures import figures
 
 Text = str | memoryview
@@ -64,22 +64,21 @@ def id_prefix(name: str, gid: int) -> str:
 
 def code_points(outline: Outline) -> str:
     """The glyph's code points as "U+0041 U+0391"."""
-    return " ".join(f"U+{code:04X}" for code in outline.unicodes)
+    return " ".join([f"U+{code:04X}" for code in outline.unicodes])
 
 
 def data_attributes(outline: Outline, precision: int) -> str:
     """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
-    metrics = outline.metrics
-    values = {
-        "glyph": text(outline.name),
-        "gid": str(outline.gid),
-        "unicodes": code_points(outline),
-        "advance": number(outline.advance, precision),
-        "units-per-em": number(metrics.units_per_em, precision),
-        "ascender": number(metrics.ascender, precision),
-        "descender": number(metrics.descender, precision),
-    }
-    return " ".join(f'data-{key}="{value}"' for key, value in values.items())
+    return (
+        f'data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
+        f' data-advance="{number(outline.advance, precision)}" {_font_attributes(outline.metrics, precision)}'
+    )
+
+
+@lru_cache(maxsize=64)
+def _font_attributes(metrics: FontMetrics, precision: int) -> str:
+    values = {"units-per-em": metrics.units_per_em, "ascender": metrics.ascender, "descender": metrics.descender}
+    return " ".join(f'data-{key}="{number(value, precision)}"' for key, value in values.items())
 
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
@@ -179,6 +178,7 @@ def union(a: Box, b: Box | None) -> Box:
     return a if b is None else (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
 
 
+@lru_cache(maxsize=4096)
 def view_box_value(box: Box, precision: int) -> str:
     """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
     unit = 10.0**precision
