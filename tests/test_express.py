@@ -124,8 +124,8 @@ def test_too_many_vertices_are_left_to_the_long_way() -> None:
 
 @pytest.mark.parametrize(
     ("value", "precision", "text"),
-    [(0, 2, "0"), (5, 2, "0.05"), (-5, 2, "-0.05"), (120, 2, "1.2"), (-100, 2, "-1"), (12345, 0, "12345"),
-     (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, "0.000000007")],
+    [(0, 2, "0"), (5, 2, ".05"), (-5, 2, "-.05"), (120, 2, "1.2"), (-100, 2, "-1"), (12345, 0, "12345"),
+     (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, ".000000007")],
 )  # fmt: skip
 def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
     points = np.array([[value, -value]]) / 10.0**precision

@@ -24,6 +24,7 @@ import numpy as np
 
 from .fields import FIELDS, STRIDE
 from .footpoint import GUARD, compiled, inlined
+from .fused import cubic, dot, fma
 from .select import select
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
@@ -55,10 +56,11 @@ leave as much as it is itself.
 @inlined
 def least_quartic(c0, c1, c2, c3, c4, L):
     """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b1 = c0 + 0.25 * k1
-    b2 = c0 + 0.5 * k1 + SIXTH * k2
-    b3 = c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3
+    squared = L * L
+    k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
+    b1 = fma(0.25, k1, c0)
+    b2 = fma(SIXTH, k2, fma(0.5, k1, c0))
+    b3 = fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
     b4 = c0 + k1 + k2 + k3 + k4
     least = select(c0 < b1, c0, b1)
     rest = select(b2 < b3, b2, b3)
@@ -69,17 +71,18 @@ def least_quartic(c0, c1, c2, c3, c4, L):
 @inlined
 def least_rise(slope, c0, c1, c2, c3, c4, L):
     """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b1 = 0.2 * L * c0
-    b2 = 0.4 * L * (c0 + 0.25 * k1)
-    b3 = 0.6 * L * (c0 + 0.5 * k1 + SIXTH * k2)
-    b4 = 0.8 * L * (c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3)
-    b5 = L * (c0 + k1 + k2 + k3 + k4)
+    squared = L * L
+    k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
+    b1 = 0.2 * c0
+    b2 = 0.4 * fma(0.25, k1, c0)
+    b3 = 0.6 * fma(SIXTH, k2, fma(0.5, k1, c0))
+    b4 = 0.8 * fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
+    b5 = c0 + k1 + k2 + k3 + k4
     least = select(b1 < b2, b1, b2)
     rest = select(b3 < b4, b3, b4)
     least = select(least < rest, least, rest)
     least = select(least < b5, least, b5)
-    return slope + least
+    return fma(L, least, slope)
 
 
 @inlined
@@ -95,12 +98,12 @@ def _taylor(B, S, m, step):
         S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
     for j in range(TWO * step, np.uint64(m) + TWO * step):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
-        ex = B[PX + j] - B[QX + j] + (a * S[DX + j + step] - b * S[DX + j])
-        ey = B[PY + j] - B[QY + j] + (a * S[DY + j + step] - b * S[DY + j])
-        vx = (1.0 - lam) * S[DX + j] + lam * S[DX + j + step]
-        vy = (1.0 - lam) * S[DY + j] + lam * S[DY + j + step]
+        ex = fma(a, S[DX + j + step], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
+        ey = fma(a, S[DY + j + step], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
+        vx = fma(lam, S[DX + j + step] - S[DX + j], S[DX + j])
+        vy = fma(lam, S[DY + j + step] - S[DY + j], S[DY + j])
         low, high = B[LOW + j], B[HIGH + j]
-        falling = ex * vx + ey * vy <= 0.0
+        falling = dot(ex, ey, vx, vy) <= 0.0
         forward = (low >= 0.0) | ((high > 0.0) & falling)
         side = select(forward, 1.0, -1.0)
         S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j] = ex, ey, side * vx, side * vy
@@ -158,23 +161,23 @@ def newton(S, first, m):
     for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
-        qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
-        px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-        sx, sy = 6.0 * zx * y + 2.0 * wx, 6.0 * zy * y + 2.0 * wy
-        speed = px * px + py * py
-        bend = speed + (qx * sx + qy * sy)
+        qx, qy = cubic(S[SEX + j], vx, wx, zx, y), cubic(S[SEY + j], vy, wy, zy, y)
+        ax, ay = fma(3.0 * y, zx, wx), fma(3.0 * y, zy, wy)  # half of q''
+        px, py = fma(ax + wx, y, vx), fma(ay + wy, y, vy)  # q'
+        speed = dot(px, py, px, py)
+        bend = fma(2.0, dot(qx, qy, ax, ay), speed)
         convex = bend > 0.05 * speed
         slope = select(convex, bend, speed)
         slope = select(slope > 0.0, slope, 1.0)
         inverse = 1.0 / slope
-        step = (qx * px + qy * py) * inverse
-        third = 1.5 * (px * sx + py * sy) + 3.0 * (qx * zx + qy * zy)
+        step = dot(qx, qy, px, py) * inverse
+        third = 3.0 * (dot(px, py, ax, ay) + dot(qx, qy, zx, zy))
         correction = step * third * inverse
         correction = select(correction < 0.5, correction, 0.5)
         correction = select(correction > -0.5, correction, -0.5)
         left = select(convex, correction * correction, 1.0)
         correction = select(convex, correction, 0.0)
-        new = y - step * (1.0 + correction)
+        new = y - fma(step, correction, step)
         new = select(new > low, new, low)
         new = select(new < high, new, high)
         moved = new - y
@@ -196,30 +199,30 @@ def certify(B, S, first, m):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
         ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
         zx, zy = S[SZX + j], S[SZY + j]
-        qx, qy = ((zx * y + wx) * y + vx) * y + ex, ((zy * y + wy) * y + vy) * y + ey
-        px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-        ax, ay = 3.0 * zx * y + wx, 3.0 * zy * y + wy
+        qx, qy = cubic(ex, vx, wx, zx, y), cubic(ey, vy, wy, zy, y)
+        ax, ay = fma(3.0 * y, zx, wx), fma(3.0 * y, zy, wy)
+        px, py = fma(ax + wx, y, vx), fma(ay + wy, y, vy)
         # Q = c0 + c1 x + … about y, and its Bernstein coefficients to the far and to the near end
-        speed = px * px + py * py
-        c0 = 2.0 * (qx * ax + qy * ay) + speed
-        c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-        c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-        c3 = 2.0 * (ax * zx + ay * zy)
-        c4 = zx * zx + zy * zy
+        speed = dot(px, py, px, py)
+        c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
+        c1 = 2.0 * (dot(qx, qy, zx, zy) + dot(px, py, ax, ay))
+        c2 = fma(2.0, dot(px, py, zx, zy), dot(ax, ay, ax, ay))
+        c3 = 2.0 * dot(ax, ay, zx, zy)
+        c4 = dot(zx, zy, zx, zy)
         ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
         size = select(speed > c0, speed, c0)
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
-        slope = -2.0 * (ex * vx + ey * vy)
-        o0 = 2.0 * (ex * wx + ey * wy) + vx * vx + vy * vy
-        o1 = 2.0 * (ex * ox + ey * oy - vx * wx - vy * wy)
-        o2 = wx * wx + wy * wy - 2.0 * (vx * ox + vy * oy)
-        o3 = 2.0 * (wx * ox + wy * oy)
-        o4 = ox * ox + oy * oy
+        slope = -2.0 * dot(ex, ey, vx, vy)
+        o0 = fma(2.0, dot(ex, ey, wx, wy), dot(vx, vy, vx, vy))
+        o1 = 2.0 * (dot(ex, ey, ox, oy) - dot(vx, vy, wx, wy))
+        o2 = fma(-2.0, dot(vx, vy, ox, oy), dot(wx, wy, wx, wy))
+        o3 = 2.0 * dot(wx, wy, ox, oy)
+        o4 = dot(ox, oy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
-        D = qx * qx + qy * qy
+        D = dot(qx, qy, qx, qy)
         main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
         other = (rise <= 0.0) & (L > 0.0)
         fails = main | other
@@ -258,9 +261,9 @@ def errors_at(B, S, first, m):
         sign = select(main, 1.0, -1.0)
         zx, zy = select(main, S[SZX + j], S[OZX + j]), select(main, S[SZY + j], S[OZY + j])
         z = sign * y
-        qx = ((zx * z + S[SWX + j]) * z + sign * S[SVX + j]) * z + S[SEX + j]
-        qy = ((zy * z + S[SWY + j]) * z + sign * S[SVY + j]) * z + S[SEY + j]
-        D = qx * qx + qy * qy
+        qx = cubic(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
+        qy = cubic(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
+        D = dot(qx, qy, qx, qy)
         wild += select(np.inf > D, 0, 1)
         B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
     return wild
