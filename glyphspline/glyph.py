@@ -92,11 +92,8 @@ class Measures:
     new_crossings: int | None = None
 
 
-Solved = tuple[int, int, int, int, float, bool, float, int]
-"""The first of the measures as a plain tuple: those that the interpolation itself knows."""
-
 SOLVED = tuple(field.name for field in fields(Measures))[:8]
-"""Their names."""
+"""The first of the measures: those that the interpolation itself knows."""
 
 
 @dataclass(frozen=True, eq=False)

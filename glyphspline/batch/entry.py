@@ -12,12 +12,15 @@ from itertools import chain
 from json.encoder import encode_basestring_ascii as quoted
 from math import isfinite
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..glyph import SOLVED, Measures, Options, Solved
+from ..glyph import SOLVED, Measures, Options
 from ..report.data import DIGITS, escaped, number
 from ..report.gallery import row_of
 from .summary import Facts, facts_of
+
+if TYPE_CHECKING:
+    from ..express.lane import Solved
 
 NAMES = tuple(field.name for field in fields(Measures))
 """The measures, in the order in which they are written: those of ``SOLVED`` are the first.
@@ -60,16 +63,20 @@ def measured(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
         return ",".join([_TEMPLATE % tuple(map(number, _ALL(item))) for item in measures])
-    return solved_text(list(map(_FEW, measures)))
+    return ",".join(solved_texts(list(zip(*map(_FEW, measures), strict=True))))
 
 
-def solved_text(rows: Sequence[Solved]) -> str:
-    """The same of what the interpolation itself knows."""
-    if not _finite(rows):
+def solved_texts(columns: Sequence[Sequence[Any]]) -> list[str]:
+    """The same of what the interpolation itself knows, a text a contour; ``columns`` are the measures of ``SOLVED``."""
+    if not columns:
+        return []
+    *counts, residuals, converged, rates, fallbacks = columns
+    if not isfinite(sum(residuals) + sum(rates)):
         nulls = ["null"] * (len(NAMES) - len(SOLVED))
-        return ",".join([_TEMPLATE % (*map(number, row), *nulls) for row in rows])
-    values = [(*row[:5], "true" if row[5] else "false", *row[6:]) for row in rows]
-    return ",".join([_QUICK] * len(rows)) % tuple(chain.from_iterable(values))
+        return [_TEMPLATE % (*map(number, row), *nulls) for row in zip(*columns, strict=True)]
+    words = ["true" if good else "false" for good in converged]
+    values = chain.from_iterable(zip(*counts, residuals, words, rates, fallbacks, strict=True))
+    return ((_QUICK + "\n") * len(words) % tuple(values)).splitlines()
 
 
 def told_of(entry: Mapping[str, Any]) -> Told:
@@ -78,26 +85,23 @@ def told_of(entry: Mapping[str, Any]) -> Told:
 
 
 def told_of_solved(
-    glyph: str, gid: int, unicodes: Sequence[int], advance: float, rows: Sequence[Solved]
+    glyph: str, gid: int, unicodes: Sequence[int], advance: float, solved: Solved, first: int, last: int
 ) -> Told | None:
-    """The same of a glyph all of whose contours are solved; None if its numbers are not all finite."""
-    if not _finite(rows):
+    """The same of a glyph whose contours are those from ``first`` to ``last``; None if its numbers are not finite."""
+    residuals, rates = solved.residual[first:last], solved.rate_bound[first:last]
+    if not isfinite(sum(residuals) + sum(rates)):
         return None
-    vertices, segments, numbers, iterations, residuals, converged, rates, fallbacks = zip(*rows, strict=True)
-    good = all(converged)
+    good = all(solved.converged[first:last])
     codes = " ".join([f"U+{code:04X}" for code in unicodes])
     row = (
-        f'[{escaped(quoted(glyph))},{gid},"{codes}",{number(advance)},"ok",{len(rows)},{sum(vertices)},{sum(segments)},'
-        f"{sum(numbers)},{max(iterations)},{_short(max(residuals))},{'true' if good else 'false'},"
-        f"{_short(max(rates))},{sum(fallbacks)}]"
+        f'[{escaped(quoted(glyph))},{gid},"{codes}",{number(advance)},"ok",{last - first},'
+        f"{sum(solved.vertices[first:last])},{sum(solved.segments[first:last])},{sum(solved.numbers[first:last])},"
+        f"{max(solved.iterations[first:last])},{_short(max(residuals))},{'true' if good else 'false'},"
+        f"{_short(max(rates))},{sum(solved.fallbacks[first:last])}]"
     )
     return row, (not good, False, None)
 
 
 def _short(value: float) -> str:
     """A number as it is in the table, which has it from the manifest."""
-    return number(float(f"{value:.7g}"), DIGITS)
-
-
-def _finite(rows: Sequence[Solved]) -> bool:
-    return isfinite(sum([row[4] + row[6] for row in rows]))
+    return f"{float(f'{value:.7g}'):.{DIGITS}g}"

@@ -25,7 +25,7 @@ from ..report.drawings import Drawing, drawing, drawing_of
 from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import measured, solved_text, told_of_solved
+from .entry import measured, solved_texts, told_of_solved
 from .files import write_whole
 from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
@@ -55,12 +55,14 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     """
     started = time.perf_counter()
     drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
+    chunk = next((short.chunk for short in drawn if short is not None), None)
+    lines = solved_texts(chunk.solved) if chunk is not None else []
     share = (time.perf_counter() - started) / len(tasks)
     folders = job.spec.folders
     found, shown = [], []
     for task, short in zip(tasks, drawn, strict=True):
         sign_of_life()
-        done, glyph = work_one(job, task) if short is None else write_drawn(job, folders, task, short, share)
+        done, glyph = work_one(job, task) if short is None else write_drawn(job, folders, task, short, lines, share)
         found.append(done)
         shown.append(glyph)
     page = page_of(tasks)
@@ -83,17 +85,19 @@ def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
     return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
 
 
-def write_drawn(job: Job, folders: Sequence[str], task: Task, drawn: Drawn, seconds: float) -> tuple[Done, bytes]:
-    """Write what the short way has drawn; and the glyph as the gallery shows it."""
+def write_drawn(
+    job: Job, folders: Sequence[str], task: Task, drawn: Drawn, lines: Sequence[str], seconds: float
+) -> tuple[Done, bytes]:
+    """Write what the short way has drawn; and the glyph as the gallery shows it. ``lines``: of its chunk's contours."""
     started = time.perf_counter()
-    outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
+    advance, (first, last) = drawn.advance, drawn.contours
+    outline = Outline(task.name, task.gid, task.unicodes, advance, (), job.metrics)
     documents, shown = documents_of(job, folders, outline, drawn)
     files, sizes = write_documents(job, task, documents)
-    solved = drawn.solved
-    contours = solved_text(solved)
-    told = told_of_solved(task.name, task.gid, task.unicodes, drawn.advance, solved)
+    contours = ",".join(lines[first:last])
+    told = told_of_solved(task.name, task.gid, task.unicodes, advance, drawn.chunk.solved, first, last)
     seconds += time.perf_counter() - started
-    done = finished(task, "ok", drawn.advance, files, sizes, contours, None, seconds, told)
+    done = finished(task, "ok", advance, files, sizes, contours, None, seconds, told)
     return done, glyph_text(shown, files, contours, None)
 
 

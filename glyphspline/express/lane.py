@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
-from ..glyph import Options, Solved
+from ..glyph import Options
 from ..outline import Outline
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import comb_precision, map_document
@@ -28,6 +28,19 @@ from .stepping import stepped_points, uneven
 
 MOST_VERTICES = 100_000
 """Vertices of a contour above which it is left to the long way."""
+
+
+class Solved(NamedTuple):
+    """What the interpolation itself has found out of contours, a list each: the first of the ``Measures``."""
+
+    vertices: list[int]
+    segments: list[int]
+    numbers: list[int]
+    iterations: list[int]
+    residual: list[float]
+    converged: list[bool]
+    rate_bound: list[float]
+    fallbacks: list[int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +72,7 @@ class Chunk:
     text: memoryview
     text_ends: list[int]
     boxes: list[list[float]]
-    solved: list[Solved]
+    solved: Solved
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +99,6 @@ class Drawn:
         """Around the ink."""
         left, bottom, right, top = self.chunk.boxes[self.index]
         return left, bottom, right, top
-
-    @property
-    def solved(self) -> list[Solved]:
-        """What the interpolation has found out, contour by contour."""
-        first, last = self.contours
-        return self.chunk.solved[first:last]
 
     @cached_property
     def curves(self) -> tuple[FloatArray, IntArray]:
@@ -236,13 +243,11 @@ def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: 
     return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
 
 
-def solved(ragged: Ragged) -> list[Solved]:
+def solved(ragged: Ragged) -> Solved:
     """What the interpolation itself has found out, for each contour."""
     last = last_residuals(ragged)
-    return [
-        (n, n, 2 * n, iterations, residual, converged, rate, fallbacks)
-        for (n, iterations, fallbacks), residual, converged, rate in zip(
-            ragged.whole[:, 1:4].tolist(), last.tolist(), (last < ragged.tolerances).tolist(), ragged.rates.tolist(),
-            strict=True,
-        )
-    ]  # fmt: skip
+    counts, iterations, fallbacks = ragged.whole[:, 1:4].T
+    return Solved(
+        counts.tolist(), counts.tolist(), (2 * counts).tolist(), iterations.tolist(), last.tolist(),
+        (last < ragged.tolerances).tolist(), ragged.rates.tolist(), fallbacks.tolist(),
+    )  # fmt: skip

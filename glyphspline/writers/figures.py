@@ -25,8 +25,8 @@ class Figures(NamedTuple):
 
     Attributes:
         precision: decimals. power: 10**precision. limit: smaller values are looked up.
-        words: those of whole parts, then those of decimals with the point before them: first as they follow a whole part
-            of 0, then as they follow another.
+        words: those of whole parts, then those of decimals with the point before them: first as they follow a whole
+            part of 0, then as they follow another.
     """
 
     precision: int
