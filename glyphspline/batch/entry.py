@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from functools import cache
 from itertools import chain
 from json.encoder import encode_basestring_ascii as quoted
 from math import isfinite
@@ -62,8 +63,24 @@ def manifest_line(
 def measured(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
-        return ",".join([_TEMPLATE % tuple(map(number, _ALL(item))) for item in measures])
+        return ",".join([_text_of(_ALL(item)) for item in measures])
     return ",".join(solved_texts(list(zip(*map(_FEW, measures), strict=True))))
+
+
+def _text_of(row: tuple[Any, ...]) -> str:
+    """What :func:`number` makes of all measures, in one go if they are finite: this is a good part of the time."""
+    quick = _template(tuple(map(type, row)))
+    if quick is None or not isfinite(sum([value for value in row if type(value) is float])):
+        return _TEMPLATE % tuple(map(number, row))
+    values = [("true" if value else "false") if type(value) is bool else value for value in row if value is not None]
+    return quick % tuple(values)
+
+
+@cache
+def _template(kinds: tuple[type, ...]) -> str | None:
+    """The template with a form for each kind of number, and nulls; None if there is another kind among them."""
+    forms = {int: "%d", float: "%.7g", bool: "%s", type(None): "null"}
+    return _TEMPLATE % tuple(forms[kind] for kind in kinds) if forms.keys() >= set(kinds) else None
 
 
 def solved_texts(columns: Sequence[Sequence[Any]]) -> list[str]:

@@ -6,7 +6,7 @@ The font is opened by the first glyph that needs more of it than HarfBuzz draws.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
 from ..express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
+from ..express.outlines import read_chunk
 from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
@@ -53,22 +54,34 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     Raises:
         OutputError: the output folder cannot be written to, which no other glyph would survive either.
     """
-    started = time.perf_counter()
-    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
-    chunk = next((short.chunk for short in drawn if short is not None), None)
-    lines = solved_texts(chunk.solved) if chunk is not None else []
-    share = (time.perf_counter() - started) / len(tasks)
-    folders = job.spec.folders
+    each = draw_and_write(job, tasks) if short_way(job) else read_and_work(job, tasks)
     found, shown = [], []
-    for task, short in zip(tasks, drawn, strict=True):
-        sign_of_life()
-        done, glyph = work_one(job, task) if short is None else write_drawn(job, folders, task, short, lines, share)
+    for done, glyph in each:
         found.append(done)
         shown.append(glyph)
+        sign_of_life()
     page = page_of(tasks)
     if page is not None:
         write_whole(f"{job.out}/{page_file(page)}", page_text(shown))
     return found
+
+
+def draw_and_write(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
+    """Glyphs the short way; those that it leaves, the long way."""
+    started = time.perf_counter()
+    drawn = draw(job, tasks)
+    chunk = next((short.chunk for short in drawn if short is not None), None)
+    lines = solved_texts(chunk.solved) if chunk is not None else []
+    share = (time.perf_counter() - started) / len(tasks)
+    folders = job.spec.folders
+    for task, short in zip(tasks, drawn, strict=True):
+        yield work_one(job, task) if short is None else write_drawn(job, folders, task, short, lines, share)
+
+
+def read_and_work(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
+    """Glyphs the long way."""
+    for task, outline in zip(tasks, outlines(job, tasks), strict=True):
+        yield work_one(job, task, outline)
 
 
 def short_way(job: Job) -> bool:
@@ -124,14 +137,18 @@ def documents_of(job: Job, folders: Sequence[str], outline: Outline, drawn: Draw
     return documents, shown
 
 
-def work_one(job: Job, task: Task) -> tuple[Done, bytes]:
-    """Convert and write one glyph; and the glyph as the gallery shows it."""
+def work_one(job: Job, task: Task, outline: Outline | None = None) -> tuple[Done, bytes]:
+    """Convert and write one glyph; and the glyph as the gallery shows it. None: its outline is still to be read."""
     started = time.perf_counter()
+    given = outline is not None
     try:
-        outline = read(job, task)
+        outline = outline or outline_of(job, task)
+        check_size(outline, job.spec)
         result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
         documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
     except Exception as error:
+        if given:  # the font's own reader knows better what is wrong
+            return work_one(job, task)
         why = reason(error)
         return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), "", "", why)
     files, sizes = write_documents(job, task, documents)
@@ -142,11 +159,20 @@ def work_one(job: Job, task: Task) -> tuple[Done, bytes]:
     return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
 
 
-def read(job: Job, task: Task) -> Outline:
-    """The glyph's outline, if it is within the limits."""
-    outline = source_of(job.path, job.face_index, job.location).outline(task.name)
-    check_size(outline, job.spec)
-    return outline
+def outline_of(job: Job, task: Task) -> Outline:
+    """The glyph's outline, by the font's own reader."""
+    return source_of(job.path, job.face_index, job.location).outline(task.name)
+
+
+def outlines(job: Job, tasks: Sequence[Task]) -> list[Outline | None]:
+    """What is read of glyphs in bulk; None where the font has to be opened for it."""
+    if not job.static or job.spec.whole or not tasks:  # files of a whole font say what a glyph had beside its contours
+        return [None] * len(tasks)
+    found = read_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks])
+    return [
+        Outline(task.name, task.gid, task.unicodes, *glyph, job.metrics) if glyph is not None else None
+        for task, glyph in zip(tasks, found, strict=True)
+    ]
 
 
 def check_size(outline: Outline, spec: RunSpec) -> None:
@@ -175,7 +201,8 @@ def reason(error: Exception) -> str:
 
 def writers(job: Job) -> dict[str, Callable[[Job, GlyphResult], str | bytes]]:
     """The writers of the formats asked for, in a fixed order."""
-    return {name: writer for name, writer in WRITERS.items() if name in job.spec.folders}
+    folders = job.spec.folders
+    return {name: writer for name, writer in WRITERS.items() if name in folders}
 
 
 def _source(job: Job, result: GlyphResult) -> str:
@@ -219,14 +246,16 @@ WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
     """Combs of a few glyphs, for the scale that all curvature maps of the run share; what fails is left out."""
     found: list[Comb] = []
-    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
-    for task, short in zip(tasks, drawn, strict=True):
+    if short_way(job):
+        drawn = draw(job, tasks)
+        for short in drawn:
+            found += combs_of(*short.curves, job.metrics.units_per_em) if short is not None else []
+        tasks = [task for task, short in zip(tasks, drawn, strict=True) if short is None]
+    for task, given in zip(tasks, outlines(job, tasks), strict=True):
         sign_of_life()
-        if short is not None:
-            found += combs_of(*short.curves, job.metrics.units_per_em)
-            continue
         try:
-            outline = read(job, task)
+            outline = given or outline_of(job, task)
+            check_size(outline, job.spec)
             found += combs(convert(outline, job.spec.fitting(outline.metrics.units_per_em)))
         except Exception:  # it will be reported when the glyph's own turn comes
             continue

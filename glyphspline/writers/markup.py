@@ -26,6 +26,8 @@ NUMBER = "%.15g"
 """A rounded coordinate. 15 digits never show the binary tail of a double, and %g drops zeros at the end; 17 would
 write 0.1 as 0.10000000000000001."""
 
+NO_DEGREES = np.empty(0, dtype=np.int64)
+
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
 _COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
@@ -83,12 +85,15 @@ def _font_attributes(metrics: FontMetrics, precision: int) -> str:
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
     """All contours as one SVG path of lines, quadratics and cubics, (x, y) written as (x, -y)."""
+    return bytes(curves_data(*laid_out(contours), precision)).decode("ascii")
+
+
+def laid_out(contours: Iterable[Contour]) -> tuple[FloatArray, IntArray, IntArray]:
+    """Contours one after the other: points (N, 2), degrees (m,), and (c + 1,) where each begins among these."""
     drawn = [contour for contour in contours if len(contour)]
-    if not drawn:
-        return ""
-    points, degrees = (np.concatenate(parts) for parts in zip(*((c.points, c.degrees) for c in drawn), strict=True))
-    contours_at = np.cumsum([0, *map(len, drawn)], dtype=np.int64)
-    return bytes(curves_data(points, degrees, contours_at, precision)).decode("ascii")
+    points = np.concatenate([np.empty((0, 2)), *(contour.points for contour in drawn)])
+    degrees = np.concatenate([NO_DEGREES, *(contour.degrees for contour in drawn)])
+    return points, degrees, np.cumsum([0, *map(len, drawn)], dtype=np.int64)
 
 
 def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> memoryview:
@@ -164,12 +169,16 @@ def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
 
 def ink_bounds(contours: Iterable[Contour]) -> Box | None:
     """The tight box around all contours; None if there is nothing."""
-    from .bounds import ink_box
+    return curves_bounds(*laid_out(contours))
 
-    pieces = [contour.cubics() for contour in contours if len(contour)]
-    if not pieces:
+
+def curves_bounds(points: FloatArray, degrees: IntArray, contours: IntArray) -> Box | None:
+    """The same of contours one after the other, as :func:`curves_data` has them."""
+    from .bounds import contours_box
+
+    if not len(points):
         return None
-    left, bottom, right, top = ink_box(np.concatenate(pieces)).tolist()
+    left, bottom, right, top = contours_box(points, degrees, contours).tolist()
     return left, bottom, right, top
 
 
