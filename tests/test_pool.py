@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import wait
 from pathlib import Path
 
@@ -49,6 +49,23 @@ def test_a_dead_worker_costs_one_call_and_is_replaced(pool: WorkerPool) -> None:
     assert isinstance(lost.exception(timeout=30), WorkerLostError)
     assert [future.result(timeout=30) for future in kept] == [3**k for k in range(20)]
     assert len({pool.submit(os.getpid).result(timeout=30) for _ in range(8)}) <= 2
+
+
+@pytest.mark.parametrize(("call", "limit"), [(die, WorkerLostError), (time.sleep, TimeLimitError)])
+def test_what_a_lost_worker_had_ahead_is_done_by_another(call: Callable[[float], None], limit: type[Exception]) -> None:
+    with WorkerPool(1, seconds=0.6) as pool:
+        first = pool.submit(os.getpid)
+        lost, kept = pool.submit(call, 0.1 if call is die else 600), [pool.submit(pow, 5, k) for k in range(6)]
+        last = pool.submit(os.getpid)
+        assert isinstance(lost.exception(timeout=30), limit)
+        assert [future.result(timeout=30) for future in kept] == [5**k for k in range(6)]
+        assert first.result(timeout=30) != last.result(timeout=30)
+
+
+def test_calls_too_large_for_a_pipe_are_not_handed_out_ahead() -> None:
+    with WorkerPool(1, seconds=600) as pool:
+        futures = [pool.submit(len, b"x" * 3_000_000) for _ in range(6)]
+        assert [future.result(timeout=30) for future in futures] == [3_000_000] * 6
 
 
 def test_a_hung_worker_is_killed_and_others_go_on(pool: WorkerPool) -> None:

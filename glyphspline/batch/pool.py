@@ -3,6 +3,9 @@
 The pools of the standard library break when one process dies, and cannot end one that hangs. Here a process that dies,
 or shows no sign of life for too long, costs only the call that it was at: that call's future gets the error, and
 another process takes the place.
+
+While a process is at a call it has the next one already, if there are enough of them: between two calls it would wait
+for a millisecond, which is as long as a glyph or two take.
 """
 
 from __future__ import annotations
@@ -19,12 +22,19 @@ from concurrent.futures import Executor, Future
 from contextlib import suppress
 from importlib import import_module
 from multiprocessing import connection, forkserver, resource_tracker
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from ..errors import GlyphsplineError
 
 POLL = 0.25
 """Seconds between looks for processes that have hung."""
+
+SMALL = 32_768
+"""Bytes of a call that a pipe takes in any case, even if nobody reads it for now."""
+
+Call = tuple[Future[Any], bytes]
+"""What is to be answered, and the function and its arguments, pickled."""
 
 
 class WorkerLostError(GlyphsplineError):
@@ -78,6 +88,7 @@ def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
         calls.send(None)
         while True:
             function, arguments = calls.recv()
+            sign_of_life()
             try:
                 answer = (True, function(*arguments))
             except Exception as error:
@@ -86,7 +97,7 @@ def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
 
 
 class _Worker:
-    """One process, its end of the pipe, and the future of the call that it is at."""
+    """One process, its end of the pipe, and the calls that it has: the first is the one that it is at."""
 
     def __init__(self, context: Any, preload: Sequence[str]) -> None:
         self.sign = context.RawValue("d", 0.0)
@@ -95,11 +106,15 @@ class _Worker:
         self.process.start()
         theirs.close()
         self.ready = False
-        self.future: Future[Any] | None = None
+        self.has: deque[Call] = deque()
 
-    @property
-    def idle(self) -> bool:
-        return self.ready and self.future is None
+    def give(self, call: Call) -> None:
+        """Hand a call over."""
+        if not self.has:
+            self.sign.value = time.monotonic()
+        self.has.append(call)
+        with suppress(OSError):  # a dead one shows when its end of the pipe is read
+            self.calls.send_bytes(call[1])
 
     def end(self) -> None:
         """Kill the process, whatever it is doing."""
@@ -125,7 +140,7 @@ class WorkerPool(Executor):
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         if os.name != "nt":
             start_forkserver(preload)
-        self._queue: deque[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._queue: deque[Call] = deque()
         self._wake, self._woken = self._context.Pipe()
         self._closing = False
         self._workers: list[_Worker] = []
@@ -137,7 +152,7 @@ class WorkerPool(Executor):
         if kwargs or self._closing:
             raise RuntimeError("the pool is closed, or was given keywords")
         future: Future[Any] = Future()
-        self._queue.append((future, fn, args))
+        self._queue.append((future, bytes(ForkingPickler.dumps((fn, args)))))
         self._wake.send_bytes(b"")
         return future
 
@@ -154,7 +169,7 @@ class WorkerPool(Executor):
             while not self._closing:
                 self._start()
                 self._assign()
-                busy = any(worker.future for worker in self._workers)
+                busy = any(worker.has for worker in self._workers)
                 awaited = [self._woken, *(worker.calls for worker in self._workers)]
                 for item in connection.wait(awaited, POLL if busy else None):
                     if item is self._woken:
@@ -171,21 +186,25 @@ class WorkerPool(Executor):
             self._fail_all(WorkerLostError("the pool was closed"))
 
     def _assign(self) -> None:
-        for worker in self._workers:
-            if not worker.idle:
-                continue
-            while self._queue:
-                future, function, arguments = self._queue.popleft()
-                if future.set_running_or_notify_cancel():
-                    worker.sign.value = time.monotonic()
-                    worker.future = future
-                    with suppress(OSError):  # a dead one shows when its end of the pipe is read
-                        worker.calls.send((function, arguments))
-                    break
+        """Calls to processes that have none; then, as long as there is one for each, the next ones ahead."""
+        ready = [worker for worker in self._workers if worker.ready]
+        for worker in ready:
+            if not worker.has:
+                self._give_next(worker)
+        for worker in ready:
+            if len(worker.has) == 1 and len(self._queue) >= self._max_workers and len(self._queue[0][1]) <= SMALL:
+                self._give_next(worker)
+
+    def _give_next(self, worker: _Worker) -> None:
+        while self._queue:
+            call = self._queue.popleft()
+            if call[0].running() or call[0].set_running_or_notify_cancel():
+                worker.give(call)
+                break
 
     def _start(self) -> None:
         """Processes as they are needed: as many as there are calls, up to the size."""
-        wanted = len(self._queue) + sum(worker.future is not None for worker in self._workers)
+        wanted = len(self._queue) + sum(len(worker.has) for worker in self._workers)
         while len(self._workers) < min(self._max_workers, wanted):
             self._workers.append(_Worker(self._context, self._preload))
 
@@ -200,26 +219,27 @@ class WorkerPool(Executor):
         if not worker.ready:
             worker.ready = True
             return
-        future, worker.future = worker.future, None
+        future, _ = worker.has.popleft()
         good, value = answer
-        if future is not None:
-            (future.set_result if good else future.set_exception)(value)
+        (future.set_result if good else future.set_exception)(value)
 
     def _end_hung(self) -> None:
         now = time.monotonic()
         for worker in list(self._workers):
-            if worker.future and now - worker.sign.value > self._seconds:
+            if worker.has and now - worker.sign.value > self._seconds:
                 self._replace(worker, TimeLimitError(f"took longer than {self._seconds:g} s"))
 
     def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
+        """Another process for one that is lost: the call that it was at gets the error, the next is queued again."""
         worker.end()
         self._workers[self._workers.index(worker)] = _Worker(self._context, self._preload)
-        if worker.future is not None:
-            worker.future.set_exception(error)
+        if worker.has:
+            worker.has.popleft()[0].set_exception(error)
+        self._queue.extendleft(reversed(worker.has))
 
     def _fail_all(self, error: Exception) -> None:
-        left = [worker.future for worker in self._workers if worker.future and not worker.future.done()]
-        left += [future for future, _, _ in self._queue if future.set_running_or_notify_cancel()]
+        left = [future for worker in self._workers for future, _ in worker.has if not future.done()]
+        left += [future for future, _ in self._queue if future.running() or future.set_running_or_notify_cancel()]
         self._queue.clear()
         for future in left:
             future.set_exception(error)

@@ -21,8 +21,8 @@ LARGEST_CHUNK = CHUNK
 """Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar. As many
 as a page of the gallery shows, so that the worker can write that, too."""
 
-AHEAD = 3
-"""Chunks in flight for each worker, so that none waits for the next."""
+AHEAD = 4
+"""Chunks in flight for each worker, so that none waits for the next: two that it has, and two to come."""
 
 TRIALS = 3
 """How often a glyph is tried whose worker died: a worker may be killed for no fault of the glyph's."""
