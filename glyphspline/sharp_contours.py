@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .chains import flattened, unflattened
 from .contours import certified_rate, check_coordinates
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .result import Interpolation
-from .sharp import SharpFit, fit_sharp, flattened, unflattened
+from .sharp import SharpFit, fit_sharp
 from .survey import Survey, survey
 
 CLOSER = (1.0, 0.5, 0.25)

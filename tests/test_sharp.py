@@ -10,13 +10,12 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.bezier import evaluate
-from glyphspline.chains import Settings
+from glyphspline.chains import Settings, flattened
 from glyphspline.cubicfit import fit_cubic
 from glyphspline.distance import certified_distance
 from glyphspline.measure import shape
 from glyphspline.overlaps import remove_overlaps
 from glyphspline.pieces import certify, cut_closer, cut_contours, put_together
-from glyphspline.sharp import flattened
 from glyphspline.survey import survey
 
 from .polygons import circle_contour, square_contour
