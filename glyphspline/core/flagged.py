@@ -31,6 +31,8 @@ from .lanes import (
     SZX,
     SZY,
     X,
+    expanded,
+    quartic,
 )
 from .select import select
 
@@ -87,16 +89,9 @@ def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
 def _second_look(S, j):
     """Whether the certificate holds on the main side after all, in parts."""
     y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
-    wx, wy, vx, vy = S[SWX + j], S[SWY + j], S[SVX + j], S[SVY + j]
-    qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
-    px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-    ax, ay = 3.0 * zx * y + wx, 3.0 * zy * y + wy
-    speed = px * px + py * py
-    c0 = 2.0 * (qx * ax + qy * ay) + speed
-    c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-    c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-    c3 = 2.0 * (ax * zx + ay * zy)
-    c4 = zx * zx + zy * zy
+    qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
+    qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
+    c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
     guard = GUARD * max(speed, c0)
     return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard

@@ -53,6 +53,24 @@ leave as much as it is itself.
 
 
 @inlined
+def expanded(e, v, w, z, y):
+    """Coefficients of e + v x + w x² + z x³, one coordinate of q, about y but for the last, which stays z."""
+    return ((z * y + w) * y + v) * y + e, (3.0 * z * y + 2.0 * w) * y + v, 3.0 * z * y + w
+
+
+@inlined
+def quartic(qx, qy, px, py, ax, ay, zx, zy):
+    """c0 to c4 of |q + p x + a x² + z x³|² = |q|² + 2 q·p x + x² (c0 + c1 x + … + c4 x⁴), and |p|²."""
+    speed = px * px + py * py
+    c0 = 2.0 * (qx * ax + qy * ay) + speed
+    c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
+    c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
+    c3 = 2.0 * (ax * zx + ay * zy)
+    c4 = zx * zx + zy * zy
+    return c0, c1, c2, c3, c4, speed
+
+
+@inlined
 def least_quartic(c0, c1, c2, c3, c4, L):
     """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
     k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
@@ -158,17 +176,16 @@ def newton(S, first, m):
     for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
-        qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
-        px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-        sx, sy = 6.0 * zx * y + 2.0 * wx, 6.0 * zy * y + 2.0 * wy
+        qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
+        qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
         speed = px * px + py * py
-        bend = speed + (qx * sx + qy * sy)
+        bend = speed + 2.0 * (qx * ax + qy * ay)
         convex = bend > 0.05 * speed
         slope = select(convex, bend, speed)
         slope = select(slope > 0.0, slope, 1.0)
         inverse = 1.0 / slope
         step = (qx * px + qy * py) * inverse
-        third = 1.5 * (px * sx + py * sy) + 3.0 * (qx * zx + qy * zy)
+        third = 3.0 * (px * ax + py * ay) + 3.0 * (qx * zx + qy * zy)
         correction = step * third * inverse
         correction = select(correction < 0.5, correction, 0.5)
         correction = select(correction > -0.5, correction, -0.5)
@@ -196,16 +213,10 @@ def certify(B, S, first, m):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
         ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
         zx, zy = S[SZX + j], S[SZY + j]
-        qx, qy = ((zx * y + wx) * y + vx) * y + ex, ((zy * y + wy) * y + vy) * y + ey
-        px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-        ax, ay = 3.0 * zx * y + wx, 3.0 * zy * y + wy
+        qx, px, ax = expanded(ex, vx, wx, zx, y)
+        qy, py, ay = expanded(ey, vy, wy, zy, y)
         # Q = c0 + c1 x + … about y, and its Bernstein coefficients to the far and to the near end
-        speed = px * px + py * py
-        c0 = 2.0 * (qx * ax + qy * ay) + speed
-        c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-        c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-        c3 = 2.0 * (ax * zx + ay * zy)
-        c4 = zx * zx + zy * zy
+        c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
         ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
@@ -213,11 +224,7 @@ def certify(B, S, first, m):
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
         slope = -2.0 * (ex * vx + ey * vy)
-        o0 = 2.0 * (ex * wx + ey * wy) + vx * vx + vy * vy
-        o1 = 2.0 * (ex * ox + ey * oy - vx * wx - vy * wy)
-        o2 = wx * wx + wy * wy - 2.0 * (vx * ox + vy * oy)
-        o3 = 2.0 * (wx * ox + wy * oy)
-        o4 = ox * ox + oy * oy
+        o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
         D = qx * qx + qy * qy
         main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
