@@ -71,13 +71,19 @@ def quartic(qx, qy, px, py, ax, ay, zx, zy):
 
 
 @inlined
-def least_quartic(c0, c1, c2, c3, c4, L):
-    """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
+def bernstein(c0, c1, c2, c3, c4, L):
+    """The Bernstein coefficients of c0 + c1 x + … + c4 x⁴ between 0 and L, but for the first, which is c0."""
     k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
     b1 = c0 + 0.25 * k1
     b2 = c0 + 0.5 * k1 + SIXTH * k2
     b3 = c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3
-    b4 = c0 + k1 + k2 + k3 + k4
+    return b1, b2, b3, c0 + k1 + k2 + k3 + k4
+
+
+@inlined
+def least_quartic(c0, c1, c2, c3, c4, L):
+    """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
     least = select(c0 < b1, c0, b1)
     rest = select(b2 < b3, b2, b3)
     least = select(least < rest, least, rest)
@@ -87,16 +93,12 @@ def least_quartic(c0, c1, c2, c3, c4, L):
 @inlined
 def least_rise(slope, c0, c1, c2, c3, c4, L):
     """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b1 = 0.2 * L * c0
-    b2 = 0.4 * L * (c0 + 0.25 * k1)
-    b3 = 0.6 * L * (c0 + 0.5 * k1 + SIXTH * k2)
-    b4 = 0.8 * L * (c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3)
-    b5 = L * (c0 + k1 + k2 + k3 + k4)
-    least = select(b1 < b2, b1, b2)
-    rest = select(b3 < b4, b3, b4)
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
+    r1, r2, r3, r4, r5 = 0.2 * L * c0, 0.4 * L * b1, 0.6 * L * b2, 0.8 * L * b3, L * b4
+    least = select(r1 < r2, r1, r2)
+    rest = select(r3 < r4, r3, r4)
     least = select(least < rest, least, rest)
-    least = select(least < b5, least, b5)
+    least = select(least < r5, least, r5)
     return slope + least
 
 
@@ -265,8 +267,8 @@ def errors_at(B, S, first, m):
         sign = select(main, 1.0, -1.0)
         zx, zy = select(main, S[SZX + j], S[OZX + j]), select(main, S[SZY + j], S[OZY + j])
         z = sign * y
-        qx = ((zx * z + S[SWX + j]) * z + sign * S[SVX + j]) * z + S[SEX + j]
-        qy = ((zy * z + S[SWY + j]) * z + sign * S[SVY + j]) * z + S[SEY + j]
+        qx, _, _ = expanded(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
+        qy, _, _ = expanded(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
         D = qx * qx + qy * qy
         wild += select(np.inf > D, 0, 1)
         B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
