@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 from .arrays import FloatArray
@@ -90,6 +90,10 @@ class Measures:
     bending_energy: float | None = None
     max_curvature: float | None = None
     new_crossings: int | None = None
+
+
+SOLVED = tuple(field.name for field in fields(Measures))[:8]
+"""The first of the measures: those that the interpolation itself knows."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from svgpathtools import parse_path
 
 import glyphspline as gs
 from glyphspline.report import write_index, write_report
@@ -61,12 +62,12 @@ def test_drawings_are_those_of_the_files(tmp_path: Path) -> None:
         (tmp_path / files[kind]).write_text(svg, encoding="utf-8")
     write_report(tmp_path, [entry(3, files=files)], RUN)
     (glyph,) = glyphs(tmp_path)
-    assert glyph["source"].count("C") == 8
-    assert glyph["result"].count("C") == 12
+    assert len(parse_path(glyph["source"])) == 8
+    assert len(parse_path(glyph["result"])) == 12
     for kind, points in [("polygon", result.contours[0].polygon),
                          ("control", result.contours[0].interpolations[0].spline.control_points)]:  # fmt: skip
         numbers = np.array(re.findall(r"-?[\d.]+", glyph[kind]), dtype=float).reshape(-1, 2)
-        np.testing.assert_allclose(numbers * (1, -1), points, atol=0.051)
+        np.testing.assert_allclose(np.cumsum(numbers, axis=0) * (1, -1), points, atol=0.051)
     without_svg = read_drawing(tmp_path, {"curvature": files["curvature"]})
     assert without_svg["result"] == glyph["result"]
 
@@ -74,7 +75,7 @@ def test_drawings_are_those_of_the_files(tmp_path: Path) -> None:
 def test_measures_of_contours_are_taken_together() -> None:
     worse = CONTOUR | {"iterations": 9, "deviation": 2.0, "within_tolerance": False, "area_change": -3.0}
     found = glyph_measures([CONTOUR | {"area_change": 1.0}, worse])
-    assert (found["contours"], found["vertices"], found["iterations"], found["deviation"]) == (2, 12, 9, 2.0)
+    assert (found["vertices"], found["iterations"], found["deviation"]) == (12, 9, 2.0)
     assert found["converged"] is True
     assert found["within_tolerance"] is False
     assert found["area_change"] == -3.0
@@ -134,7 +135,8 @@ def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [0, 1, 40, 41, 5001])
 def test_every_glyph_is_there_once_in_order(tmp_path: Path, count: int) -> None:
     write_report(tmp_path, (entry(gid) for gid in range(count)), RUN)
-    assert [gid for table in tables(tmp_path) for gid in table["gid"]] == list(range(count))
+    gids = [row[table["columns"].index("gid")] for table in tables(tmp_path) for row in table["rows"]]
+    assert gids == list(range(count))
     assert len(glyphs(tmp_path)) == count
     assert data(tmp_path / "gallery" / "run.js")["glyphs"] == count
 

@@ -1,11 +1,16 @@
 from __future__ import annotations
 
 import io
+import re
 import xml.etree.ElementTree as ElementTree
+from decimal import Decimal
+from random import Random
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
@@ -71,7 +76,7 @@ def test_lines_stay_lines_and_quadratics_quadratics() -> None:
     mixed = gs.Contour.from_segments(
         [np.array([[0, 0], [100, 0]]), np.array([[100, 0], [200, 50], [100, 100]]), np.array([[100, 100], [0, 0]])]
     )
-    assert path_of(to_svg(result(mixed))) == "M0 0L100 0Q200 -50 100 -100Z"
+    assert path_of(to_svg(result(mixed))) == "M0 0l100 0q100-50 0-100Z"
     read = parse_path(path_of(to_svg(result(mixed))))
     assert isinstance(read[-1], Line)
     assert read[-1].end == 0
@@ -92,11 +97,31 @@ def test_numbers_are_minimal(value: float, precision: int, expected: str) -> Non
     assert number(value, precision) == expected
     point = gs.Contour(np.array([[value, 1], [2, 3], [4, 5]]), np.ones(3, dtype=np.int64))
     if precision == 2:
-        assert path_of(to_svg(result(point))).startswith(f"M{expected} -1")
+        assert path_of(to_svg(result(point))).startswith(f"M{expected.removeprefix('0') or '0'}-1l")
 
 
 def test_no_negative_zero_is_written() -> None:
-    assert "-0 " not in path_of(to_svg(result(polygon_contour(L_SHAPE)))) + " "
+    drawn = polygon_contour(L_SHAPE - np.array([50.001, 79.999]))
+    assert not re.search(r"-0(?![.\d])", path_of(to_svg(result(drawn))))
+
+
+@given(st.lists(st.integers(1, 3), min_size=2, max_size=9), st.randoms(use_true_random=False))
+def test_relative_numbers_add_up_to_the_rounded_points(degrees: list[int], random: Random) -> None:
+    points = np.array([[random.uniform(-1500, 1500) for _ in range(2)] for _ in range(sum(degrees))])
+    data = path_of(to_svg(result(gs.Contour(points, np.array(degrees)))))
+    at, start, found = (Decimal(0), Decimal(0)), (Decimal(0), Decimal(0)), []
+    for command, text in re.findall(r"([MlqcLQC])([^MlqcLQCZ]*)", data):
+        values = [Decimal(number) for number in re.findall(r"-?[\d.]+", text)]
+        pairs = list(zip(values[::2], values[1::2], strict=True))
+        group = {"m": 1, "l": 1, "q": 2, "c": 3}[command.lower()]
+        for i in range(0, len(pairs), group):
+            x, y = at if command.islower() else (Decimal(0), Decimal(0))
+            found += [(x + dx, y + dy) for dx, dy in pairs[i : i + group]]
+            at = found[-1]
+        start = at if command == "M" else start
+    if degrees[-1] > 1:
+        assert found.pop() == start  # and not just nearly so
+    assert np.array(found, dtype=float) == pytest.approx(np.round(points, 2) * (1, -1), abs=1e-9)
 
 
 def raster(path: str, box: list[float]) -> FloatArray:

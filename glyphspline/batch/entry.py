@@ -1,31 +1,44 @@
-"""A glyph's line of the manifest."""
+"""What is said of a glyph: its line of the manifest, and shorter its row of the gallery's table and what is counted.
+
+There are two ways to say the same. Of any glyph, row and counts are made of what its line has. Of one that came the
+short way the numbers are at hand, and only those that the interpolation itself knows.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from functools import cache
+from itertools import chain
 from json.encoder import encode_basestring_ascii as quoted
 from math import isfinite
 from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
-from ..glyph import Measures, Options
-from ..report.data import number
+from ..glyph import SOLVED, Measures, Options
+from ..report.data import DIGITS, escaped, number
+from ..report.gallery import row_of
+from .summary import Facts, facts_of
+
+if TYPE_CHECKING:
+    from ..express.lane import Solved
 
 NAMES = tuple(field.name for field in fields(Measures))
-"""The measures, in the order in which they are written."""
+"""The measures, in the order in which they are written: those of ``SOLVED`` are the first.
 
-SOLVERS = NAMES.index("fallbacks") + 1
-"""How many of them the interpolation itself knows. With ``step`` or ``count`` and no ``measure`` the others are not
-computed, whichever way a glyph takes."""
+With ``step`` or ``count`` and no ``measure`` the others are not computed, whichever way a glyph takes."""
 
-_ALL, _FEW = attrgetter(*NAMES), attrgetter(*NAMES[:SOLVERS])
+_ALL, _FEW = attrgetter(*NAMES), attrgetter(*SOLVED)
 _TEMPLATE = "{" + ",".join(f'"{name}":%s' for name in NAMES) + "}"
-_NULLS = ",".join(f'"{name}":null' for name in NAMES[SOLVERS:]) + "}"
+_NULLS = ",".join(f'"{name}":null' for name in NAMES[len(SOLVED) :]) + "}"
 _QUICK = (
     '{"vertices":%d,"segments":%d,"numbers":%d,"iterations":%d,"residual":%.7g,"converged":%s,"rate_bound":%.7g,'
     '"fallbacks":%d,' + _NULLS
 )
 """What :func:`number` makes of numbers that are finite, in one go: of a short glyph this is a good part of the time."""
+
+Told = tuple[str, Facts]
+"""Of a glyph, its row of the gallery's table, and the facts that are counted."""
 
 
 def manifest_line(
@@ -34,34 +47,78 @@ def manifest_line(
     unicodes: Sequence[int],
     advance: float | None,
     status: str,
-    files: Mapping[str, str],
+    files: str,
     contours: str,
     error: str | None = None,
 ) -> str:
-    """One glyph's line, without the line end; ``contours`` is what :func:`contours_text` gave."""
+    """One glyph's line, without the line end; ``files`` and ``contours`` are JSON without the brackets."""
     codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
-    paths = ",".join([f'"{name}":{quoted(path)}' for name, path in files.items()])
     said = "null" if error is None else quoted(error)
     return (
         f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{paths}}},"contours":[{contours}],"error":{said}}}'
+        f'"status":"{status}","files":{{{files}}},"contours":[{contours}],"error":{said}}}'
     )
 
 
-def contours_text(measures: Iterable[Measures], options: Options) -> str:
+def measured(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
-        return ",".join([_TEMPLATE % tuple(map(number, _ALL(item))) for item in measures])
-    return solved_text(map(_FEW, measures))
+        return ",".join([_text_of(_ALL(item)) for item in measures])
+    return ",".join(solved_texts(list(zip(*map(_FEW, measures), strict=True))))
 
 
-def solved_text(rows: Iterable[Sequence[float]]) -> str:
-    """The same of what the interpolation itself knows: the first ``SOLVERS`` measures of each contour."""
-    return ",".join(map(_solved, rows))
+def _text_of(row: tuple[Any, ...]) -> str:
+    """What :func:`number` makes of all measures, in one go if they are finite: this is a good part of the time."""
+    quick = _template(tuple(map(type, row)))
+    if quick is None or not isfinite(sum([value for value in row if type(value) is float])):
+        return _TEMPLATE % tuple(map(number, row))
+    values = [("true" if value else "false") if type(value) is bool else value for value in row if value is not None]
+    return quick % tuple(values)
 
 
-def _solved(row: Sequence[float]) -> str:
-    *counts, residual, converged, rate, fallbacks = row
-    if isfinite(residual) and isfinite(rate):
-        return _QUICK % (*counts, residual, "true" if converged else "false", rate, fallbacks)
-    return _TEMPLATE % (*map(number, row), *["null"] * (len(NAMES) - SOLVERS))
+@cache
+def _template(kinds: tuple[type, ...]) -> str | None:
+    """The template with a form for each kind of number, and nulls; None if there is another kind among them."""
+    forms = {int: "%d", float: "%.7g", bool: "%s", type(None): "null"}
+    return _TEMPLATE % tuple(forms[kind] for kind in kinds) if forms.keys() >= set(kinds) else None
+
+
+def solved_texts(columns: Sequence[Sequence[Any]]) -> list[str]:
+    """The same of what the interpolation itself knows, a text a contour; ``columns`` are the measures of ``SOLVED``."""
+    if not columns:
+        return []
+    *counts, residuals, converged, rates, fallbacks = columns
+    if not isfinite(sum(residuals) + sum(rates)):
+        nulls = ["null"] * (len(NAMES) - len(SOLVED))
+        return [_TEMPLATE % (*map(number, row), *nulls) for row in zip(*columns, strict=True)]
+    words = ["true" if good else "false" for good in converged]
+    values = chain.from_iterable(zip(*counts, residuals, words, rates, fallbacks, strict=True))
+    return ((_QUICK + "\n") * len(words) % tuple(values)).splitlines()
+
+
+def told_of(entry: Mapping[str, Any]) -> Told:
+    """What else is told of a glyph, made of its line of the manifest, parsed."""
+    return row_of(entry), facts_of(entry["contours"])
+
+
+def told_of_solved(
+    glyph: str, gid: int, unicodes: Sequence[int], advance: float, solved: Solved, first: int, last: int
+) -> Told | None:
+    """The same of a glyph whose contours are those from ``first`` to ``last``; None if its numbers are not finite."""
+    residuals, rates = solved.residual[first:last], solved.rate_bound[first:last]
+    if not isfinite(sum(residuals) + sum(rates)):
+        return None
+    good = all(solved.converged[first:last])
+    codes = " ".join([f"U+{code:04X}" for code in unicodes])
+    row = (
+        f'[{escaped(quoted(glyph))},{gid},"{codes}",{number(advance)},"ok",{last - first},'
+        f"{sum(solved.vertices[first:last])},{sum(solved.segments[first:last])},{sum(solved.numbers[first:last])},"
+        f"{max(solved.iterations[first:last])},{_short(max(residuals))},{'true' if good else 'false'},"
+        f"{_short(max(rates))},{sum(solved.fallbacks[first:last])}]"
+    )
+    return row, (not good, False, None)
+
+
+def _short(value: float) -> str:
+    """A number as it is in the table, which has it from the manifest."""
+    return f"{float(f'{value:.7g}'):.{DIGITS}g}"

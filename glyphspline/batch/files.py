@@ -63,14 +63,14 @@ def _tame(name: str) -> str:
 def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
 
+    The temporary name is the process's: a file system makes and forgets the same name faster than ever new ones.
     Durable is one that is on the disk before it has its name, which takes some milliseconds.
 
     Raises:
         OutputError: it cannot be written; nothing is left under the final name but what was there.
     """
     data = content.encode() if isinstance(content, str) else content
-    folder, _, name = path.rpartition("/")
-    partial = f"{folder}/.{name}-{os.getpid()}{PARTIAL}"
+    partial = f"{path.rpartition('/')[0]}/.{os.getpid()}{PARTIAL}"
     try:
         # O_EXCL does not follow a link that somebody has put where the temporary file goes.
         handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | O_BINARY, 0o666)

@@ -7,16 +7,16 @@ where they are called.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..outline import FontMetrics
-from ..report.data import CHUNK, as_json, table_row
-from .entry import manifest_line
+from ..report.data import CHUNK
+from .entry import Told, manifest_line, told_of
 from .spec import RunSpec
-from .summary import Facts, facts_of
+from .summary import Facts
 
 if TYPE_CHECKING:
     from ..curvature import Comb
@@ -74,27 +74,23 @@ def page_of(tasks: Sequence[Task]) -> int | None:
 
 def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
     """A glyph that could not be converted, or that no worker lived to tell of."""
-    return finished(task, "failed", None, {}, (), "", error, seconds)
+    return finished(task, "failed", None, "", (), "", error, seconds)
 
 
 def finished(
     task: Task,
     status: str,
     advance: float | None,
-    files: Mapping[str, str],
+    files: str,
     sizes: tuple[int, ...],
     contours: str,
     error: str | None,
     seconds: float,
+    told: Told | None = None,
 ) -> Done:
-    """What is told of a glyph; ``contours`` is what :func:`.entry.contours_text` gave."""
+    """What is told of a glyph; ``files`` and ``contours`` are JSON as its line has it, ``told`` what else is known."""
     line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
-    entry = json.loads(line)
-    row = table_row(task.name, task.gid, entry["unicodes"], entry["advance"], status, entry["contours"])
-    return Done(
-        task.gid, task.name, status, line, sizes, seconds, as_json(row),
-        facts_of(entry["contours"]),
-    )  # fmt: skip
+    return Done(task.gid, task.name, status, line, sizes, seconds, *(told or told_of(json.loads(line))))
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:

@@ -28,6 +28,10 @@ MANIFEST = "manifest.jsonl"
 JOURNAL = ".journal.jsonl"
 
 
+Note = tuple[str, str, str, Facts]
+"""Of a glyph done now: its name and status, its row of the table, and its facts."""
+
+
 @dataclass
 class Record:
     """Where the lines of finished glyphs are: for each glyph index a file and an offset in it.
@@ -40,7 +44,7 @@ class Record:
     where: dict[int, tuple[str, int]] = field(default_factory=dict)
     failed: set[int] = field(default_factory=set)
     counts: Summary = field(default_factory=Summary)
-    notes: dict[int, tuple[str, Facts]] = field(default_factory=dict)
+    notes: dict[int, Note] = field(default_factory=dict)
     pages: set[int] = field(default_factory=set)
 
     def finished(self) -> set[int]:
@@ -129,7 +133,7 @@ class Journal:
             line = (",".join(map(str, glyph.sizes)) + "\t" + glyph.line + "\n").encode()
             lines.append(line)
             self.record.where[glyph.gid] = (JOURNAL, at)
-            self.record.notes[glyph.gid] = (glyph.row, glyph.facts)
+            self.record.notes[glyph.gid] = (glyph.name, glyph.status, glyph.row, glyph.facts)
             at += len(line)
         try:
             self._write(b"".join(lines))

@@ -10,18 +10,18 @@ from dataclasses import replace
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
 
 from ..curvature import robust_scale
 from ..readers import Font, Source
-from ..report.data import FOLDER, STATUS, as_json
-from ..report.gallery import Gallery, row_of, shown
+from ..report.data import FOLDER
+from ..report.gallery import Gallery, shown
+from .entry import told_of
 from .files import OutputError, file_names, make_folder, remove_partials
 from .job import Job, Task, failed, page_of, survey, work
-from .manifest import JOURNAL, MANIFEST, Journal, Record, finish, read_record, remove_written
+from .manifest import JOURNAL, MANIFEST, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
 from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
-from .summary import Facts, Summary, facts_of
+from .summary import Summary
 from .whole import check_possible, missing, write_fonts
 
 SCALE_SAMPLE = 200
@@ -173,18 +173,17 @@ def conclude(out: Path, record: Record, summary: Summary) -> None:
     gallery = Gallery(out, record.pages)
     with finish(out, record) as lines:
         for gid, line in lines:
-            text, facts = record.notes.get(gid) or _noted(json.loads(line))
-            row = json.loads(text)
-            error = json.loads(line)["error"] if row[STATUS] == "failed" else None
-            summary.count(row[0], row[STATUS], error, facts)
+            name, status, row, facts = record.notes.get(gid) or _noted(line)
+            summary.count(name, status, json.loads(line)["error"] if status == "failed" else None, facts)
             gallery.add(row, partial(_shown, out, line))
         gallery.close(read_run(out) or {})
 
 
-def _noted(entry: dict[str, Any]) -> tuple[str, Facts]:
+def _noted(line: bytes) -> Note:
     """Of a glyph that an earlier run has done, what is noted of those done now."""
-    return as_json(row_of(entry)), facts_of(entry["contours"])
+    entry = json.loads(line)
+    return entry["glyph"], entry["status"], *told_of(entry)
 
 
-def _shown(out: Path, line: bytes) -> str:
+def _shown(out: Path, line: bytes) -> bytes:
     return shown(out, json.loads(line))

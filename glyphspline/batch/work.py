@@ -6,7 +6,7 @@ The font is opened by the first glyph that needs more of it than HarfBuzz draws.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,16 +16,17 @@ from ..convert import convert
 from ..curvature import Comb
 from ..errors import GlyphsplineError
 from ..express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
+from ..express.outlines import read_chunk
 from ..express.reading import BulkReader
 from ..glyph import GlyphResult
 from ..outline import Outline
 from ..readers import Source, open_source
-from ..report.data import glyph_text, page_file, page_text
+from ..report.data import files_text, glyph_text, page_file, page_text
 from ..report.drawings import Drawing, drawing, drawing_of
 from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import contours_text, solved_text
+from .entry import measured, solved_texts, told_of_solved
 from .files import write_whole
 from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
@@ -53,19 +54,34 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
     Raises:
         OutputError: the output folder cannot be written to, which no other glyph would survive either.
     """
-    started = time.perf_counter()
-    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
-    share = (time.perf_counter() - started) / len(tasks)
+    each = draw_and_write(job, tasks) if short_way(job) else read_and_work(job, tasks)
     found, shown = [], []
-    for task, short in zip(tasks, drawn, strict=True):
-        sign_of_life()
-        done, glyph = work_one(job, task) if short is None else write_drawn(job, task, short, share)
+    for done, glyph in each:
         found.append(done)
         shown.append(glyph)
+        sign_of_life()
     page = page_of(tasks)
     if page is not None:
         write_whole(f"{job.out}/{page_file(page)}", page_text(shown))
     return found
+
+
+def draw_and_write(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
+    """Glyphs the short way; those that it leaves, the long way."""
+    started = time.perf_counter()
+    drawn = draw(job, tasks)
+    chunk = next((short.chunk for short in drawn if short is not None), None)
+    lines = solved_texts(chunk.solved) if chunk is not None else []
+    share = (time.perf_counter() - started) / len(tasks)
+    folders = job.spec.folders
+    for task, short in zip(tasks, drawn, strict=True):
+        yield work_one(job, task) if short is None else write_drawn(job, folders, task, short, lines, share)
+
+
+def read_and_work(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
+    """Glyphs the long way."""
+    for task, outline in zip(tasks, outlines(job, tasks), strict=True):
+        yield work_one(job, task, outline)
 
 
 def short_way(job: Job) -> bool:
@@ -82,29 +98,37 @@ def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
     return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
 
 
-def write_drawn(job: Job, task: Task, drawn: Drawn, seconds: float) -> tuple[Done, str]:
-    """Write what the short way has drawn; and the glyph as the gallery shows it."""
+def write_drawn(
+    job: Job, folders: Sequence[str], task: Task, drawn: Drawn, lines: Sequence[str], seconds: float
+) -> tuple[Done, bytes]:
+    """Write what the short way has drawn; and the glyph as the gallery shows it. ``lines``: of its chunk's contours."""
     started = time.perf_counter()
-    outline = Outline(task.name, task.gid, task.unicodes, drawn.advance, (), job.metrics)
-    documents, shown = documents_of(job, outline, drawn)
-    files, sizes = {}, []
-    for name, document in documents.items():
-        files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
-        sizes.append(write_whole(f"{job.out}/{files[name]}", document))
-    contours = solved_text(drawn.solved)
+    advance, (first, last) = drawn.advance, drawn.contours
+    outline = Outline(task.name, task.gid, task.unicodes, advance, (), job.metrics)
+    documents, shown = documents_of(job, folders, outline, drawn)
+    files, sizes = write_documents(job, task, documents)
+    contours = ",".join(lines[first:last])
+    told = told_of_solved(task.name, task.gid, task.unicodes, advance, drawn.chunk.solved, first, last)
     seconds += time.perf_counter() - started
-    done = finished(task, "ok", drawn.advance, files, tuple(sizes), contours, None, seconds)
+    done = finished(task, "ok", advance, files, sizes, contours, None, seconds, told)
     return done, glyph_text(shown, files, contours, None)
 
 
-def documents_of(job: Job, outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
+def write_documents(job: Job, task: Task, documents: Mapping[str, str | bytes]) -> tuple[str, tuple[int, ...]]:
+    """Write a glyph's files: what they are called, as JSON, and their sizes."""
+    files = {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in documents}
+    sizes = [write_whole(f"{job.out}/{files[name]}", document) for name, document in documents.items()]
+    return files_text(files), tuple(sizes)
+
+
+def documents_of(job: Job, folders: Sequence[str], outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
     """A glyph's files in the order of ``WRITERS``; of ``outline`` everything but its contours is needed."""
-    documents, shown = {}, drawing(drawn.path)
-    folders, precision = job.spec.folders, job.spec.options.precision
+    documents, shown = {}, drawing(drawn.text)
+    precision = job.spec.options.precision
     if "source" in folders:
         texts = source_texts(drawn, outline.metrics.units_per_em, precision)
         documents["source"] = drawn_source(outline, drawn, texts, precision)
-        shown |= {name: bytes(text).decode("ascii") for name, text in texts._asdict().items()}
+        shown |= texts._asdict()
     if "svg" in folders:
         documents["svg"] = drawn_svg(outline, drawn, precision, job.spec.view_box)
     if "curvature" in folders:
@@ -113,33 +137,42 @@ def documents_of(job: Job, outline: Outline, drawn: Drawn) -> tuple[dict[str, by
     return documents, shown
 
 
-def work_one(job: Job, task: Task) -> tuple[Done, str]:
-    """Convert and write one glyph; and the glyph as the gallery shows it."""
+def work_one(job: Job, task: Task, outline: Outline | None = None) -> tuple[Done, bytes]:
+    """Convert and write one glyph; and the glyph as the gallery shows it. None: its outline is still to be read."""
     started = time.perf_counter()
-    files, written = {}, []
+    given = outline is not None
     try:
-        outline = read(job, task)
+        outline = outline or outline_of(job, task)
+        check_size(outline, job.spec)
         result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
         documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
     except Exception as error:
+        if given:  # the font's own reader knows better what is wrong
+            return work_one(job, task)
         why = reason(error)
-        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), {}, "", why)
-    for name, document in documents.items():
-        files[name] = f"{name}/{task.stem}{SUFFIXES[name]}"
-        written.append(write_whole(f"{job.out}/{files[name]}", document))
-    contours = contours_text((contour.measures for contour in result.contours), job.spec.options)
-    status = "ok" if files else "empty"
+        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), "", "", why)
+    files, sizes = write_documents(job, task, documents)
+    contours = measured((contour.measures for contour in result.contours), job.spec.options)
     seconds = time.perf_counter() - started
-    done = finished(task, status, outline.advance, files, tuple(written), contours, None, seconds)
+    done = finished(task, "ok" if files else "empty", outline.advance, files, sizes, contours, None, seconds)
     texts = {name: document for name, document in documents.items() if isinstance(document, str)}
     return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
 
 
-def read(job: Job, task: Task) -> Outline:
-    """The glyph's outline, if it is within the limits."""
-    outline = source_of(job.path, job.face_index, job.location).outline(task.name)
-    check_size(outline, job.spec)
-    return outline
+def outline_of(job: Job, task: Task) -> Outline:
+    """The glyph's outline, by the font's own reader."""
+    return source_of(job.path, job.face_index, job.location).outline(task.name)
+
+
+def outlines(job: Job, tasks: Sequence[Task]) -> list[Outline | None]:
+    """What is read of glyphs in bulk; None where the font has to be opened for it."""
+    if not job.static or job.spec.whole or not tasks:  # files of a whole font say what a glyph had beside its contours
+        return [None] * len(tasks)
+    found = read_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks])
+    return [
+        Outline(task.name, task.gid, task.unicodes, *glyph, job.metrics) if glyph is not None else None
+        for task, glyph in zip(tasks, found, strict=True)
+    ]
 
 
 def check_size(outline: Outline, spec: RunSpec) -> None:
@@ -168,7 +201,8 @@ def reason(error: Exception) -> str:
 
 def writers(job: Job) -> dict[str, Callable[[Job, GlyphResult], str | bytes]]:
     """The writers of the formats asked for, in a fixed order."""
-    return {name: writer for name, writer in WRITERS.items() if name in job.spec.folders}
+    folders = job.spec.folders
+    return {name: writer for name, writer in WRITERS.items() if name in folders}
 
 
 def _source(job: Job, result: GlyphResult) -> str:
@@ -212,14 +246,16 @@ WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
     """Combs of a few glyphs, for the scale that all curvature maps of the run share; what fails is left out."""
     found: list[Comb] = []
-    drawn = draw(job, tasks) if short_way(job) else [None] * len(tasks)
-    for task, short in zip(tasks, drawn, strict=True):
+    if short_way(job):
+        drawn = draw(job, tasks)
+        for short in drawn:
+            found += combs_of(*short.curves, job.metrics.units_per_em) if short is not None else []
+        tasks = [task for task, short in zip(tasks, drawn, strict=True) if short is None]
+    for task, given in zip(tasks, outlines(job, tasks), strict=True):
         sign_of_life()
-        if short is not None:
-            found += combs_of(*short.curves, job.metrics.units_per_em)
-            continue
         try:
-            outline = read(job, task)
+            outline = given or outline_of(job, task)
+            check_size(outline, job.spec)
             found += combs(convert(outline, job.spec.fitting(outline.metrics.units_per_em)))
         except Exception:  # it will be reported when the glyph's own turn comes
             continue

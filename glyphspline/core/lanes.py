@@ -24,6 +24,7 @@ import numpy as np
 
 from .fields import FIELDS, STRIDE
 from .footpoint import GUARD, compiled, inlined
+from .fused import cubic, dot, fma
 from .select import select
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
@@ -55,28 +56,29 @@ leave as much as it is itself.
 @inlined
 def expanded(e, v, w, z, y):
     """Coefficients of e + v x + w x² + z x³, one coordinate of q, about y but for the last, which stays z."""
-    return ((z * y + w) * y + v) * y + e, (3.0 * z * y + 2.0 * w) * y + v, 3.0 * z * y + w
+    a = fma(3.0 * y, z, w)
+    return cubic(e, v, w, z, y), fma(a + w, y, v), a
 
 
 @inlined
 def quartic(qx, qy, px, py, ax, ay, zx, zy):
     """c0 to c4 of |q + p x + a x² + z x³|² = |q|² + 2 q·p x + x² (c0 + c1 x + … + c4 x⁴), and |p|²."""
-    speed = px * px + py * py
-    c0 = 2.0 * (qx * ax + qy * ay) + speed
-    c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-    c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-    c3 = 2.0 * (ax * zx + ay * zy)
-    c4 = zx * zx + zy * zy
-    return c0, c1, c2, c3, c4, speed
+    speed = dot(px, py, px, py)
+    c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
+    c1 = 2.0 * (dot(qx, qy, zx, zy) + dot(px, py, ax, ay))
+    c2 = fma(2.0, dot(px, py, zx, zy), dot(ax, ay, ax, ay))
+    c3 = 2.0 * dot(ax, ay, zx, zy)
+    return c0, c1, c2, c3, dot(zx, zy, zx, zy), speed
 
 
 @inlined
 def bernstein(c0, c1, c2, c3, c4, L):
     """The Bernstein coefficients of c0 + c1 x + … + c4 x⁴ between 0 and L, but for the first, which is c0."""
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b1 = c0 + 0.25 * k1
-    b2 = c0 + 0.5 * k1 + SIXTH * k2
-    b3 = c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3
+    squared = L * L
+    k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
+    b1 = fma(0.25, k1, c0)
+    b2 = fma(SIXTH, k2, fma(0.5, k1, c0))
+    b3 = fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
     return b1, b2, b3, c0 + k1 + k2 + k3 + k4
 
 
@@ -94,12 +96,12 @@ def least_quartic(c0, c1, c2, c3, c4, L):
 def least_rise(slope, c0, c1, c2, c3, c4, L):
     """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
     b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
-    r1, r2, r3, r4, r5 = 0.2 * L * c0, 0.4 * L * b1, 0.6 * L * b2, 0.8 * L * b3, L * b4
+    r1, r2, r3, r4 = 0.2 * c0, 0.4 * b1, 0.6 * b2, 0.8 * b3
     least = select(r1 < r2, r1, r2)
     rest = select(r3 < r4, r3, r4)
     least = select(least < rest, least, rest)
-    least = select(least < r5, least, r5)
-    return slope + least
+    least = select(least < b4, least, b4)
+    return fma(L, least, slope)
 
 
 @inlined
@@ -115,12 +117,12 @@ def _taylor(B, S, m, step):
         S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
     for j in range(TWO * step, np.uint64(m) + TWO * step):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
-        ex = B[PX + j] - B[QX + j] + (a * S[DX + j + step] - b * S[DX + j])
-        ey = B[PY + j] - B[QY + j] + (a * S[DY + j + step] - b * S[DY + j])
-        vx = (1.0 - lam) * S[DX + j] + lam * S[DX + j + step]
-        vy = (1.0 - lam) * S[DY + j] + lam * S[DY + j + step]
+        ex = fma(a, S[DX + j + step], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
+        ey = fma(a, S[DY + j + step], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
+        vx = fma(lam, S[DX + j + step] - S[DX + j], S[DX + j])
+        vy = fma(lam, S[DY + j + step] - S[DY + j], S[DY + j])
         low, high = B[LOW + j], B[HIGH + j]
-        falling = ex * vx + ey * vy <= 0.0
+        falling = dot(ex, ey, vx, vy) <= 0.0
         forward = (low >= 0.0) | ((high > 0.0) & falling)
         side = select(forward, 1.0, -1.0)
         S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j] = ex, ey, side * vx, side * vy
@@ -180,20 +182,20 @@ def newton(S, first, m):
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
         qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
         qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
-        speed = px * px + py * py
-        bend = speed + 2.0 * (qx * ax + qy * ay)
+        speed = dot(px, py, px, py)
+        bend = fma(2.0, dot(qx, qy, ax, ay), speed)
         convex = bend > 0.05 * speed
         slope = select(convex, bend, speed)
         slope = select(slope > 0.0, slope, 1.0)
         inverse = 1.0 / slope
-        step = (qx * px + qy * py) * inverse
-        third = 3.0 * (px * ax + py * ay) + 3.0 * (qx * zx + qy * zy)
+        step = dot(qx, qy, px, py) * inverse
+        third = 3.0 * (dot(px, py, ax, ay) + dot(qx, qy, zx, zy))
         correction = step * third * inverse
         correction = select(correction < 0.5, correction, 0.5)
         correction = select(correction > -0.5, correction, -0.5)
         left = select(convex, correction * correction, 1.0)
         correction = select(convex, correction, 0.0)
-        new = y - step * (1.0 + correction)
+        new = y - fma(step, correction, step)
         new = select(new > low, new, low)
         new = select(new < high, new, high)
         moved = new - y
@@ -225,10 +227,10 @@ def certify(B, S, first, m):
         size = select(speed > c0, speed, c0)
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
-        slope = -2.0 * (ex * vx + ey * vy)
+        slope = -2.0 * dot(ex, ey, vx, vy)
         o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
-        D = qx * qx + qy * qy
+        D = dot(qx, qy, qx, qy)
         main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
         other = (rise <= 0.0) & (L > 0.0)
         fails = main | other
@@ -267,9 +269,9 @@ def errors_at(B, S, first, m):
         sign = select(main, 1.0, -1.0)
         zx, zy = select(main, S[SZX + j], S[OZX + j]), select(main, S[SZY + j], S[OZY + j])
         z = sign * y
-        qx, _, _ = expanded(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
-        qy, _, _ = expanded(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
-        D = qx * qx + qy * qy
+        qx = cubic(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
+        qy = cubic(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
+        D = dot(qx, qy, qx, qy)
         wild += select(np.inf > D, 0, 1)
         B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
     return wild

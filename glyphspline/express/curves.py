@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ..writers.digits import LARGEST, SLACK, WIDEST
-from ..writers.path_text import curve
+from ..writers.bounds import ink_box
+from ..writers.digits import SLACK, WIDEST
+from ..writers.path_text import curve, fit
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -72,8 +73,8 @@ def paths(cubics, starts, before, precision, power, limit, words):
         precision, power, limit, words: the figures of so many decimals.
 
     Returns:
-        Text as bytes; (g + 1,) where in it each glyph begins; (g, 4) left, bottom, right, top of the rounded Bézier
-        points; (g,) whether a glyph has numbers too large to be written so.
+        Text as bytes; (g + 1,) where in it each glyph begins; (g, 4) left, bottom, right, top of the curves;
+        (g,) whether a glyph has numbers too large to be written so.
     """
     glyphs = len(before) - 1
     text = np.empty((3 * len(cubics) + len(starts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
@@ -86,30 +87,26 @@ def paths(cubics, starts, before, precision, power, limit, words):
     at = start
     for glyph in range(glyphs):
         first = starts[before[glyph]]
-        points = whole_units(cubics[first : starts[before[glyph + 1]]], power, boxes[glyph])
-        box = boxes[glyph]
-        if not max(box[2], box[3], -box[0], -box[1]) < LARGEST:
-            odd[glyph] = True
-        else:
-            for k in range(before[glyph], before[glyph + 1]):
-                a, b = starts[k] - first, starts[k + 1] - first
-                if b > a:
-                    at = curve(at, points[3 * a : 3 * b], degrees[: b - a], figures)
-        box /= power
+        points, rounded = whole_units(cubics[first : starts[before[glyph + 1]]], power)
+        boxes[glyph] = ink_box(rounded)
+        odd[glyph] = not fit(points)
+        for k in range(before[glyph], before[glyph] if odd[glyph] else before[glyph + 1]):
+            a, b = starts[k] - first, starts[k + 1] - first
+            if b > a:
+                at = curve(at, points[3 * a : 3 * b], degrees[: b - a], figures)
         ends[glyph + 1] = np.int64(at - start)
     return text[: np.int64(at - start)], ends, boxes, odd
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def whole_units(cubics, power, box):
-    """(3 m, 2) Bézier points, joints once, in whole units of the last digit; and the box around them, filled in."""
-    points = np.empty((3 * len(cubics), 2))
-    left = bottom = np.inf
-    right = top = -np.inf
-    for j in range(len(cubics)):
-        for k in range(3):
-            x, y = np.rint(cubics[j, k, 0] * power), np.rint(cubics[j, k, 1] * power)
-            points[3 * j + k, 0], points[3 * j + k, 1] = x, y
-            left, bottom, right, top = min(left, x), min(bottom, y), max(right, x), max(top, y)
-    box[0], box[1], box[2], box[3] = left, bottom, right, top
-    return points
+def whole_units(cubics, power):
+    """(3 m, 2) Bézier points, joints once, in whole units of the last digit; and (m, 4, 2) the pieces, rounded so."""
+    flat, unit = cubics.reshape(-1), np.float64(power)
+    whole, rounded, points = np.empty_like(flat), np.empty_like(flat), np.empty(6 * len(cubics))
+    for i in range(np.uint64(len(flat))):
+        whole[i] = np.rint(flat[i] * unit)
+        rounded[i] = whole[i] / unit
+    for j in range(np.uint64(len(cubics))):
+        for k in range(np.uint64(6)):
+            points[np.uint64(6) * j + k] = whole[np.uint64(8) * j + k]
+    return points.reshape(-1, 2), rounded.reshape(-1, 4, 2)

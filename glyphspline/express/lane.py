@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
 from ..glyph import Options
-from ..outline import Contour, Outline
+from ..outline import Outline
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import comb_precision, map_document
 from ..writers.figures import figures
-from ..writers.markup import Box, Chains, curves_data, ink_bounds, polylines_data
+from ..writers.markup import Box, Chains, curves_data, polylines_data
 from ..writers.source import SourceTexts, source_document
 from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
@@ -30,8 +30,17 @@ MOST_VERTICES = 100_000
 """Vertices of a contour above which it is left to the long way."""
 
 
-Solved = tuple[int, int, int, int, float, bool, float, int]
-"""Of a contour, what the interpolation itself has found out: the first of the :class:`~glyphspline.glyph.Measures`."""
+class Solved(NamedTuple):
+    """What the interpolation itself has found out of contours, a list each: the first of the ``Measures``."""
+
+    vertices: list[int]
+    segments: list[int]
+    numbers: list[int]
+    iterations: list[int]
+    residual: list[float]
+    converged: list[bool]
+    rate_bound: list[float]
+    fallbacks: list[int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +54,7 @@ class Chunk:
             raised to cubics.
         polygons, polygon_starts: the vertices. controls, knots: of the splines, from the same places on (knots one
             more a contour). cubics, cubic_starts: Bézier pieces of the splines.
-        text, text_ends: path data of the glyphs, as bytes. boxes: (g, 4) around the rounded Bézier points.
+        text, text_ends: path data of the glyphs, as bytes. boxes: (g, 4) around the ink.
         solved: of each contour.
     """
 
@@ -63,15 +72,16 @@ class Chunk:
     text: memoryview
     text_ends: list[int]
     boxes: list[list[float]]
-    solved: list[Solved]
+    solved: Solved
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A glyph of a chunk."""
+    """A glyph of a chunk: its index in it, and from and to where among the chunk's contours its own are."""
 
     chunk: Chunk
     index: int
+    contours: tuple[int, int]
 
     @property
     def advance(self) -> float:
@@ -85,26 +95,10 @@ class Drawn:
         return self.chunk.text[ends[self.index] : ends[self.index + 1]]
 
     @property
-    def path(self) -> str:
-        """The same as text."""
-        return bytes(self.text).decode("ascii")
-
-    @property
     def box(self) -> Box:
-        """Around the rounded Bézier points, so around the ink."""
+        """Around the ink."""
         left, bottom, right, top = self.chunk.boxes[self.index]
         return left, bottom, right, top
-
-    @cached_property
-    def contours(self) -> tuple[int, int]:
-        """Its contours in the chunk: from and to."""
-        return int(self.chunk.before[self.index]), int(self.chunk.before[self.index + 1])
-
-    @property
-    def solved(self) -> list[Solved]:
-        """What the interpolation has found out, contour by contour."""
-        first, last = self.contours
-        return self.chunk.solved[first:last]
 
     @cached_property
     def curves(self) -> tuple[FloatArray, IntArray]:
@@ -178,7 +172,8 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
         advances, left, before, (own, degrees, segments, owns), source_cubics, points, offsets, ragged.controls,
         ragged.knots, cubics, cubic_starts, memoryview(text), ends.tolist(), boxes.tolist(), solved(ragged),
     )  # fmt: skip
-    return [None if alone else Drawn(chunk, i) for i, alone in enumerate(left.tolist())]
+    each = zip(left.tolist(), pairwise(before.tolist()), strict=True)
+    return [None if alone else Drawn(chunk, i, contours) for i, (alone, contours) in enumerate(each)]
 
 
 def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Ragged:
@@ -220,10 +215,7 @@ def last_residuals(ragged: Ragged) -> FloatArray:
 
 def drawn_svg(outline: Outline, drawn: Drawn, precision: int, view_box: ViewBox) -> bytes:
     """The SVG document of a glyph; of ``outline`` everything but its contours is needed."""
-    box = shown_box(outline, drawn.box, "em")
-    if view_box == "ink" or (view_box == "em" and box != shown_box(outline, None, "em")):
-        ink = ink_bounds(path_contours(drawn.path))  # the box around Bézier points may be wider
-        box = shown_box(outline, ink, view_box)
+    box = shown_box(outline, drawn.box, view_box)
     return svg_document(outline, drawn.text, box, precision, view_box)
 
 
@@ -251,23 +243,11 @@ def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: 
     return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
 
 
-def path_contours(path: str) -> list[Contour]:
-    """The contours of path data as :func:`.curves.paths` writes it, y up again."""
-    found = []
-    for contour in path.split("Z")[:-1]:
-        values = contour[1:].replace("C", " ").split(" ")
-        points = np.array(values, dtype=np.float64).reshape(-1, 2)[:-1] * (1, -1) + 0.0
-        found.append(Contour(points, np.full(len(points) // 3, 3)))
-    return found
-
-
-def solved(ragged: Ragged) -> list[Solved]:
+def solved(ragged: Ragged) -> Solved:
     """What the interpolation itself has found out, for each contour."""
     last = last_residuals(ragged)
-    return [
-        (n, n, 2 * n, iterations, residual, converged, rate, fallbacks)
-        for (n, iterations, fallbacks), residual, converged, rate in zip(
-            ragged.whole[:, 1:4].tolist(), last.tolist(), (last < ragged.tolerances).tolist(), ragged.rates.tolist(),
-            strict=True,
-        )
-    ]  # fmt: skip
+    counts, iterations, fallbacks = ragged.whole[:, 1:4].T
+    return Solved(
+        counts.tolist(), counts.tolist(), (2 * counts).tolist(), iterations.tolist(), last.tolist(),
+        (last < ragged.tolerances).tolist(), ragged.rates.tolist(), fallbacks.tolist(),
+    )  # fmt: skip

@@ -7,12 +7,26 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ..arrays import FloatArray
 from ..sampling import CORNER_ANGLE, TABLE, TIE
 
 TURN = np.cos(np.radians(CORNER_ANGLE))
 
 ROUNDS = 64
 """Gradings after which a contour is left to the long way: each halves, and no length is halved more often."""
+
+
+ONE = np.uint64(1)
+
+
+def _weights() -> FloatArray:
+    """(4, TABLE + 1) Bernstein polynomials at the places of the table."""
+    t = np.arange(TABLE + 1) / TABLE
+    s = 1.0 - t
+    return np.array([s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t])
+
+
+WEIGHTS = _weights()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -53,20 +67,20 @@ def _arc_lengths(pieces):
     """(TABLE m + 1,) chord lengths summed along a contour."""
     m = len(pieces)
     table = np.empty(m * TABLE + 1)
+    xs, ys, chords = np.empty(TABLE + 1), np.empty(TABLE + 1), np.empty(TABLE)
     table[0] = total = 0.0
     for j in range(m):
         ax, ay, bx, by = pieces[j, 0, 0], pieces[j, 0, 1], pieces[j, 1, 0], pieces[j, 1, 1]
         cx, cy, dx, dy = pieces[j, 2, 0], pieces[j, 2, 1], pieces[j, 3, 0], pieces[j, 3, 1]
-        lx, ly = ax, ay
-        for i in range(1, TABLE + 1):
-            t = i / TABLE
-            s = 1.0 - t
-            u, v, w, z = s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
-            x = u * ax + v * bx + w * cx + z * dx
-            y = u * ay + v * by + w * cy + z * dy
-            total += np.sqrt((x - lx) ** 2 + (y - ly) ** 2)
-            table[j * TABLE + i] = total
-            lx, ly = x, y
+        for i in range(np.uint64(TABLE + 1)):  # one kind of work a loop, and unsigned: such loops become SIMD
+            u, v, w, z = WEIGHTS[0, i], WEIGHTS[1, i], WEIGHTS[2, i], WEIGHTS[3, i]
+            xs[i] = u * ax + v * bx + w * cx + z * dx
+            ys[i] = u * ay + v * by + w * cy + z * dy
+        for i in range(np.uint64(TABLE)):
+            chords[i] = np.sqrt((xs[i + ONE] - xs[i]) ** 2 + (ys[i + ONE] - ys[i]) ** 2)
+        for i in range(np.uint64(TABLE)):
+            total += chords[i]
+            table[np.uint64(j * TABLE + 1) + i] = total
     return table
 
 

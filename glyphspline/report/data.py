@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from json.encoder import encode_basestring_ascii as quoted
 from typing import Any
 
+from ..glyph import SOLVED
+from ..writers.markup import Text, joined
 from .drawings import Drawing
 from .measures import MEASURES, glyph_measures
 
@@ -17,15 +20,14 @@ FOLDER = "gallery"
 CHUNK = 40
 """Glyphs on a page, a file of drawings: about half a megabyte of CJK outlines, a tenth of a second to load."""
 
-COLUMNS = ("glyph", "gid", "unicodes", "advance", "status", "contours", *MEASURES)
-"""What a row of the table has, in order."""
+COLUMNS = (
+    "glyph", "gid", "unicodes", "advance", "status", "contours",
+    *SOLVED, *(name for name in MEASURES if name not in SOLVED),
+)  # fmt: skip
+"""What a row of the table has, in order; what is not known is null, and left out at a row's end."""
 
-STATUS = COLUMNS.index("status")
-
-ALWAYS = COLUMNS.index("contours")
-"""How many columns are there in any case; the others only if a glyph has something in them."""
-
-Row = list[Any]
+DIGITS = 5
+"""Significant digits of the table's measures."""
 
 _encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
 
@@ -35,20 +37,29 @@ def page_file(number: int) -> str:
     return f"{FOLDER}/glyphs-{number:05}.js"
 
 
-def page_text(glyphs: Iterable[str]) -> str:
+def page_text(glyphs: Iterable[bytes]) -> bytes:
     """A page of drawings, each as :func:`glyph_text` gives it."""
-    return f"glyphsplineData([{','.join(glyphs)}]);\n"
+    return b"glyphsplineData([" + b",".join(glyphs) + b"]);\n"
 
 
-def glyph_text(drawing: Drawing, files: Mapping[str, str], contours: str, error: str | None) -> str:
+def glyph_text(drawing: Drawing, files: str, contours: str, error: str | None) -> bytes:
     """A glyph on its page, as JSON.
 
     Args:
-        drawing: its path data. files: by format, relative to the run's folder. error: what went wrong.
+        drawing: its path data. files: its files as :func:`files_text` gives them. error: what went wrong.
         contours: the measures of its contours as the manifest has them, without the brackets.
     """
-    paths = "".join([f'"{name}":"{data}",' for name, data in drawing.items()])
-    return f'{{{paths}"files":{as_json(files)},"contours":[{escaped(contours)}],"error":{as_json(error)}}}'
+    parts: list[Text] = ["{"]
+    for name, data in drawing.items():
+        parts += [f'"{name}":"', data, '",']
+    said = "null" if error is None else as_json(error)
+    parts.append(f'"files":{{{escaped(files)}}},"contours":[{escaped(contours)}],"error":{said}}}')
+    return joined(parts)
+
+
+def files_text(files: Mapping[str, str]) -> str:
+    """Files by format, relative to the run's folder, as JSON without the braces."""
+    return ",".join([f"{quoted(name)}:{quoted(path)}" for name, path in files.items()])
 
 
 def contours_text(contours: Iterable[Mapping[str, Any]]) -> str:
@@ -63,7 +74,7 @@ def _value(value: Any) -> str:
     return number(value) if value is None or isinstance(value, int | float) else as_json(value)
 
 
-def number(value: float | None) -> str:
+def number(value: float | None, digits: int = 7) -> str:
     """A number as JSON: seven significant digits, beyond which measures are rounding noise; not finite is null."""
     if value is None:
         return "null"
@@ -71,7 +82,7 @@ def number(value: float | None) -> str:
         return "true" if value else "false"
     if isinstance(value, int):
         return str(value)
-    text = f"{value:.7g}"
+    text = f"{value:.{digits}g}"
     return "null" if "n" in text else text
 
 
@@ -82,17 +93,19 @@ def table_row(
     advance: float | None,
     status: str,
     contours: Sequence[Mapping[str, Any]],
-) -> Row:
-    """A glyph's row of the table; the arguments are what its line of the manifest has."""
+) -> str:
+    """A glyph's row of the table, as JSON; the arguments are what its line of the manifest has."""
     measures = glyph_measures(contours)
-    return [glyph, gid, " ".join(map(str, unicodes)), advance, status, *map(measures.get, COLUMNS[ALWAYS:])]
+    row = [as_json(glyph), str(gid), as_json(" ".join(map(str, unicodes))), number(advance), as_json(status)]
+    row += [str(len(contours)), *(number(measures[name], DIGITS) for name in COLUMNS[len(row) + 1 :])]
+    while row[-1] == "null":
+        row.pop()
+    return f"[{','.join(row)}]"
 
 
-def table_text(rows: Sequence[Row]) -> str:
-    """A file of the table: columns, which are a third of the size of rows with names."""
-    columns = dict(zip(COLUMNS, zip(*rows, strict=True), strict=True))
-    empty = [name for name in COLUMNS[ALWAYS:] if all(value is None for value in columns[name])]
-    return script({name: column for name, column in columns.items() if name not in empty})
+def table_text(rows: Iterable[str]) -> str:
+    """A file of the table."""
+    return f'glyphsplineData({{"columns":{as_json(COLUMNS)},"rows":[{",".join(rows)}]}});\n'
 
 
 def script(data: Any) -> str:

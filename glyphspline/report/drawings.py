@@ -6,12 +6,14 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 
-Drawing = dict[str, str]
+from ..writers.markup import Text
+
+Drawing = dict[str, Text]
 """Path data of ``source``, ``result``, ``polygon`` and ``control``; "" for what was not written."""
 
 _GROUP = re.compile(r'<g id="[^"]*-(source|polygon|control)"[^>]*><path(?: [a-z-]+="[^"]*")*? d="([^"]*)"')
 _RESULT = re.compile(r'<path (?:id="[^"]*-outline"|class="outline")(?: [a-z-]+="[^"]*")*? d="([^"]*)"')
-_PATH = re.compile(r"[MLQCZ0-9 .e-]*")
+_PATH = re.compile(r"[MLQCZlqc0-9 .e+-]*")
 
 
 def read_drawing(folder: Path, files: Mapping[str, str]) -> Drawing:
@@ -33,7 +35,7 @@ def drawing_of(content: Callable[[str], str]) -> Drawing:
     return found
 
 
-def drawing(result: str = "") -> Drawing:
+def drawing(result: Text = "") -> Drawing:
     """A glyph of which no more than its outline is drawn."""
     return {"source": "", "result": result, "polygon": "", "control": ""}
 

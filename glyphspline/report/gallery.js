@@ -31,8 +31,8 @@
   }
   const rows = GS.rows(runs);
   const labels = Object.fromEntries(setup.measures);
-  const present = new Set(setup.measures.map(([key]) => key).filter((key) => runs.some((run) => run.tables.some(
-    (table) => table[key]?.some((value) => typeof value === "number")))));
+  const present = new Set(setup.measures.map(([key]) => key)
+    .filter((key) => rows.some((row) => typeof GS.value(row, key) === "number")));
   for (const [key, label] of setup.measures) if (present.has(key)) at("sort").append(new Option(label, key));
   for (const run of runs) at("run").append(new Option(`${run.family} ${run.style}`, run.folder));
   at("run").closest("label").hidden = runs.length < 2;

@@ -23,9 +23,9 @@ from ..writers.markup import text
 from .data import (
     CHUNK,
     FOLDER,
-    Row,
     as_json,
     contours_text,
+    files_text,
     glyph_text,
     page_file,
     page_text,
@@ -77,12 +77,12 @@ class Gallery:
 
     def __init__(self, out_dir: Path, pages: Container[int] = ()) -> None:
         self._out, self._there = out_dir, pages
-        self._rows: list[Row] = []
-        self._glyphs: list[Callable[[], str]] = []
+        self._rows: list[str] = []
+        self._glyphs: list[Callable[[], bytes]] = []
         self._count = self._tables = self._pages = 0
         (out_dir / FOLDER).mkdir(exist_ok=True)
 
-    def add(self, row: Row, glyph: Callable[[], str]) -> None:
+    def add(self, row: str, glyph: Callable[[], bytes]) -> None:
         """The next glyph: its row of the table, and what gives its drawing if its page has to be written."""
         self._rows.append(row)
         self._glyphs.append(glyph)
@@ -115,7 +115,7 @@ class Gallery:
         self._tables += 1
 
 
-def row_of(entry: Entry) -> Row:
+def row_of(entry: Entry) -> str:
     """An entry's row of the table."""
     return table_row(
         str(entry["glyph"]), int(entry["gid"]), entry.get("unicodes") or (), entry.get("advance"),
@@ -123,11 +123,11 @@ def row_of(entry: Entry) -> Row:
     )  # fmt: skip
 
 
-def shown(out_dir: Path, entry: Entry) -> str:
+def shown(out_dir: Path, entry: Entry) -> bytes:
     """An entry on its page, its drawing read from the files."""
     named = {str(kind): path for kind, path in (entry.get("files") or {}).items() if inside(path)}
     contours = contours_text(entry.get("contours") or ())
-    return glyph_text(read_drawing(out_dir, named), named, contours, entry.get("error"))
+    return glyph_text(read_drawing(out_dir, named), files_text(named), contours, entry.get("error"))
 
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
@@ -182,10 +182,10 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
     }
 
 
-def _replace(path: Path, content: str) -> None:
+def _replace(path: Path, content: str | bytes) -> None:
     """Write under a temporary name, then rename: a file is there whole or not at all."""
     temporary = path.with_name(f".{path.name}.part")
-    temporary.write_text(content, encoding="utf-8", newline="\n")
+    temporary.write_bytes(content.encode() if isinstance(content, str) else content)
     os.replace(temporary, path)
 
 

@@ -35,7 +35,7 @@
       const run = Object.assign(await load(folder, "run.js"), { folder, tables: [] });
       for (let i = 0; i * run.table < run.glyphs; i++) {
         run.tables.push(await load(folder, numbered("table", i)));
-        rows += run.tables[i].gid.length;
+        rows += run.tables[i].rows.length;
         progress(rows);
       }
       runs.push(run);

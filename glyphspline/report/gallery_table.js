@@ -8,12 +8,13 @@
     for (const run of runs) {
       let index = 0;
       for (const table of run.tables) {
-        for (let i = 0; i < table.gid.length; i++) {
-          const codes = table.unicodes[i];
+        const at = Object.fromEntries(table.columns.map((name, column) => [name, column]));
+        for (const values of table.rows) {
+          const codes = values[at.unicodes];
           const text = codes.split(" ").filter(Boolean).map((code) => String.fromCodePoint(parseInt(code.slice(2), 16))).join("");
           rows.push({
-            run, index: index++, name: table.glyph[i], gid: table.gid[i], unicodes: codes, text, advance: table.advance[i],
-            status: table.status[i], values: table, at: i,
+            run, index: index++, name: values[at.glyph], gid: values[at.gid], unicodes: codes, text, advance: values[at.advance],
+            status: values[at.status], values, at,
           });
         }
       }
@@ -21,7 +22,7 @@
     return rows;
   };
 
-  GS.value = (row, measure) => (measure === "gid" ? row.gid : row.values[measure]?.[row.at] ?? null);
+  GS.value = (row, measure) => (measure === "gid" ? row.gid : row.values[row.at[measure]] ?? null);
 
   const WANTED = {
     all: () => true,

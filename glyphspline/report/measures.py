@@ -26,19 +26,13 @@ MEASURES: dict[str, tuple[str, Callable[[Sequence[Any]], Any]]] = {
 }
 """For each measure of a contour what it is called, and how contours make a glyph: the worst of them, or the sum."""
 
-DIGITS = 5
-
 
 def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """All of ``MEASURES`` for one glyph, None where no contour has it."""
-    found: dict[str, Any] = {"contours": len(contours)} | dict.fromkeys(MEASURES)
+    found: dict[str, Any] = dict.fromkeys(MEASURES)
     columns = zip(*[map(contour.get, MEASURES) for contour in contours], strict=True)
     for (key, (_, together)), column in zip(MEASURES.items(), columns, strict=False):
         values = [value for value in column if value is not None] if None in column else column
         if values:
-            found[key] = _short(together(values))
+            found[key] = together(values)
     return found
-
-
-def _short(value: Any) -> Any:
-    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value

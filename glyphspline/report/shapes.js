@@ -34,32 +34,41 @@ const GS = {};
     return node;
   };
 
-  /** Absolute M, L, Q, C, Z path data as contours, each a list of pieces [[x, y], …] of 2 to 4 points. */
+  const numbers = (text) => (text.match(/-?[\d.]+(?:e[-+]?\d+)?/g) || []).map(Number);
+  const pairs = (text) => {
+    const values = numbers(text);
+    return Array.from({ length: values.length >> 1 }, (_, i) => [values[2 * i], values[2 * i + 1]]);
+  };
+  const LENGTHS = { M: 1, L: 1, Q: 2, C: 3 };
+
+  /** Path data of M and Z and of l, q, c or L, Q, C as contours, each a list of pieces [[x, y], …] of 2 to 4 points. */
   GS.contours = (data) => {
     const contours = [];
     let pieces = null, start = null, at = null;
-    for (const [, command, rest] of data.matchAll(/([MLQCZ])([^MLQCZ]*)/g)) {
-      const numbers = (rest.match(/-?[\d.]+(?:e-?\d+)?/g) || []).map(Number);
-      const points = [];
-      for (let i = 0; i + 1 < numbers.length; i += 2) points.push([numbers[i], numbers[i + 1]]);
+    for (const [, command, rest] of data.matchAll(/([MLQCZlqc])([^MLQCZlqc]*)/g)) {
+      const points = pairs(rest), absolute = command.toUpperCase(), step = LENGTHS[absolute];
       if (command === "M") {
         at = start = points.shift();
         contours.push((pieces = []));
       }
-      const step = { M: 1, L: 1, Q: 2, C: 3 }[command];
       for (let i = 0; i < points.length; i += step) {
-        pieces.push([at, ...points.slice(i, i + step)]);
-        at = points[i + step - 1];
+        const own = points.slice(i, i + step), [x, y] = at;
+        pieces.push([at, ...(command === absolute ? own : own.map(([dx, dy]) => [x + dx, y + dy]))]);
+        at = pieces[pieces.length - 1][step];
       }
       if (command === "Z" && (at[0] !== start[0] || at[1] !== start[1])) pieces.push([at, start]);
     }
     return contours;
   };
 
-  /** The points of "M x y x y … Z" data, one list a polygon. */
+  /** The points of "M x y l dx dy … Z" data, one list a polygon; "M x y x y … Z" will do, too. */
   GS.polygons = (data) => data.split("M").slice(1).map((part) => {
-    const numbers = (part.match(/-?[\d.]+(?:e-?\d+)?/g) || []).map(Number);
-    return Array.from({ length: numbers.length >> 1 }, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
+    const [first, rest = ""] = part.split("l"), points = pairs(first);
+    for (const [dx, dy] of pairs(rest)) {
+      const [x, y] = points[points.length - 1];
+      points.push([x + dx, y + dy]);
+    }
+    return points;
   });
 
   const cubic = (p) => {

@@ -1,4 +1,4 @@
-"""The tight box around cubic pieces, compiled."""
+"""The tight box around curves, compiled."""
 
 # mypy: disable-error-code="no-untyped-def, no-any-return"
 
@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+
+from ..arcs import raised
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -22,6 +24,23 @@ def ink_box(cubics):
             if min(p1, p2) < box[axis] or max(p1, p2) > box[axis + 2]:
                 for value in _turning(p0, p1, p2, p3):
                     box[axis], box[axis + 2] = min(box[axis], value), max(box[axis + 2], value)
+    return box
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def contours_box(points, degrees, contours):
+    """The same around closed contours one after the other: ``points`` (N, 2), ``degrees`` (m,), and (c + 1,) where
+    those of each contour begin among these."""
+    box = np.array([np.inf, np.inf, -np.inf, -np.inf])
+    first = 0
+    for c in range(len(contours) - 1):
+        own = degrees[contours[c] : contours[c + 1]]
+        n = own.sum()
+        if n:
+            around = ink_box(raised(points[first : first + n], own))
+            for k in range(2):
+                box[k], box[k + 2] = min(box[k], around[k]), max(box[k + 2], around[k + 2])
+        first += n
     return box
 
 

@@ -12,8 +12,8 @@ from numba import njit
 
 from ..combing import CURVATURE, NX, NY, X, Y, control_length, sampled
 from .colours import SIDES
-from .digits import LARGEST, SLACK, SPACE, WIDEST, decimal
-from .path_text import DOT, LINE_BY, MOVE, MOVE_BY, nearest, step
+from .digits import LARGEST, SLACK, WIDEST
+from .path_text import DOT, LINE_BY, MOVE, MOVE_BY, more, nearest, step
 from .words import store
 
 __all__ = ["comb_text", "control_length", "dots_text", "sampled"]
@@ -149,22 +149,13 @@ def _line(at, points, classes, ends, figures):
                 continue
             dx, dy = points[j, 2] - points[i, 2], points[j, 3] - points[i, 3]
             if down:
-                store(at, SPACE)
-                at = _more(at + np.uint64(dx >= 0), dx, dy, figures)
+                at = more(at, dx, dy, figures)
             else:
                 at = step(at, letter, points[i, 2] - x, points[i, 3] - y, figures)
                 at = step(at, LINE_BY, dx, dy, figures)
             letter, down = MOVE_BY, True
             x, y = points[j, 2], points[j, 3]
     return at
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _more(at, dx, dy, figures):
-    """One more pair of numbers of the command before."""
-    at = decimal(at, np.int64(dx), figures)
-    store(at, SPACE)
-    return decimal(at + np.uint64(dy <= 0), -np.int64(dy), figures)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

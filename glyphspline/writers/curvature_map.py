@@ -137,7 +137,7 @@ def to_curvature_svg(
         control_polygon: draw the control polygon of each interpolation.
     """
     scale = curvature_scale([glyph]) if scale is None else scale
-    curves = (contour.curve.rounded(glyph.options.precision) for contour in glyph.contours)
+    curves = (contour.curve for contour in glyph.contours)
     splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
     document = map_document(
         glyph.outline,

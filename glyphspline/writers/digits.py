@@ -30,7 +30,7 @@ PARTS = np.uint64(8 * WHOLE)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def decimal(at, value, figures):
-    """Write value / power with no zeros at its end.
+    """Write value / power with no zeros at its end, and none before its point.
 
     Args:
         at: address. value: int64. figures: a tuple, what :class:`.figures.Figures` has, but of the words their address.
@@ -49,7 +49,7 @@ def decimal(at, value, figures):
     word = load(words + EIGHT * whole)
     store(at, word)
     at += word >> TOP
-    word = load(words + PARTS + EIGHT * part)
+    word = load(words + PARTS + EIGHT * (part + np.uint64(power) * np.uint64(whole > 0)))
     store(at, word)
     return at + (word >> TOP)
 
@@ -67,7 +67,7 @@ def by_digits(at, value, precision, power):
     for k in range(digits):
         store(at + np.uint64(digits - 1 - k), np.uint8(48 + whole % 10))
         whole //= 10
-    at += np.uint64(digits)
+    at += np.uint64(digits if value >= power or part == 0 else 0)
     if part:
         decimals = precision
         while part % 10 == 0:

@@ -1,7 +1,8 @@
 """Tables of figures, from which compiled code writes numbers: see ``digits``.
 
-An ordinary number is written as two words, its whole part and its decimals. A word is characters in order, lowest byte
-first, and how many they are in the highest byte.
+An ordinary number is written as two words, its whole part and its decimals: "12" and ".5", or nothing and ".5", as a
+zero before the point is left out. A word is characters in order, lowest byte first, and how many they are in the
+highest byte.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ class Figures(NamedTuple):
 
     Attributes:
         precision: decimals. power: 10**precision. limit: smaller values are looked up.
-        words: those of whole parts, then those of decimals with the point before them.
+        words: those of whole parts, then those of decimals with the point before them: first as they follow a whole
+            part of 0, then as they follow another.
     """
 
     precision: int
@@ -39,5 +41,6 @@ def figures(precision: int) -> Figures:
     power = 10**precision
     looked_up = precision <= MOST_DECIMALS
     parts = [f".{value:0{precision}d}".rstrip("0").rstrip(".") for value in range(power if looked_up else 0)]
-    words = [int.from_bytes(text.encode(), "little") | len(text) << 56 for text in (*map(str, range(WHOLE)), *parts)]
+    texts = ["", *map(str, range(1, WHOLE)), *(part or "0" for part in parts), *parts]
+    words = [int.from_bytes(text.encode(), "little") | len(text) << 56 for text in texts]
     return Figures(precision, power, WHOLE * power if looked_up else 0, np.array(words, dtype=np.uint64))

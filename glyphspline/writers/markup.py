@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..outline import Contour, Outline
+from ..outline import Contour, FontMetrics, Outline
 from .figures import figures
 
 Text = str | memoryview
@@ -25,6 +25,8 @@ Box = tuple[float, float, float, float]
 NUMBER = "%.15g"
 """A rounded coordinate. 15 digits never show the binary tail of a double, and %g drops zeros at the end; 17 would
 write 0.1 as 0.10000000000000001."""
+
+NO_DEGREES = np.empty(0, dtype=np.int64)
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
@@ -64,32 +66,34 @@ def id_prefix(name: str, gid: int) -> str:
 
 def code_points(outline: Outline) -> str:
     """The glyph's code points as "U+0041 U+0391"."""
-    return " ".join(f"U+{code:04X}" for code in outline.unicodes)
+    return " ".join([f"U+{code:04X}" for code in outline.unicodes])
 
 
 def data_attributes(outline: Outline, precision: int) -> str:
     """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
-    metrics = outline.metrics
-    values = {
-        "glyph": text(outline.name),
-        "gid": str(outline.gid),
-        "unicodes": code_points(outline),
-        "advance": number(outline.advance, precision),
-        "units-per-em": number(metrics.units_per_em, precision),
-        "ascender": number(metrics.ascender, precision),
-        "descender": number(metrics.descender, precision),
-    }
-    return " ".join(f'data-{key}="{value}"' for key, value in values.items())
+    return (
+        f'data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
+        f' data-advance="{number(outline.advance, precision)}" {_font_attributes(outline.metrics, precision)}'
+    )
+
+
+@lru_cache(maxsize=64)
+def _font_attributes(metrics: FontMetrics, precision: int) -> str:
+    values = {"units-per-em": metrics.units_per_em, "ascender": metrics.ascender, "descender": metrics.descender}
+    return " ".join(f'data-{key}="{number(value, precision)}"' for key, value in values.items())
 
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
-    """All contours as one SVG path: absolute lines, quadratics and cubics, (x, y) written as (x, -y)."""
+    """All contours as one SVG path of lines, quadratics and cubics, (x, y) written as (x, -y)."""
+    return bytes(curves_data(*laid_out(contours), precision)).decode("ascii")
+
+
+def laid_out(contours: Iterable[Contour]) -> tuple[FloatArray, IntArray, IntArray]:
+    """Contours one after the other: points (N, 2), degrees (m,), and (c + 1,) where each begins among these."""
     drawn = [contour for contour in contours if len(contour)]
-    if not drawn:
-        return ""
-    points, degrees = (np.concatenate(parts) for parts in zip(*((c.points, c.degrees) for c in drawn), strict=True))
-    contours_at = np.cumsum([0, *map(len, drawn)], dtype=np.int64)
-    return bytes(curves_data(points, degrees, contours_at, precision)).decode("ascii")
+    points = np.concatenate([np.empty((0, 2)), *(contour.points for contour in drawn)])
+    degrees = np.concatenate([NO_DEGREES, *(contour.degrees for contour in drawn)])
+    return points, degrees, np.cumsum([0, *map(len, drawn)], dtype=np.int64)
 
 
 def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, precision: int) -> memoryview:
@@ -107,7 +111,7 @@ def curves_data(points: FloatArray, degrees: IntArray, contours: IntArray, preci
 
 
 def _contour_data(contour: Contour, precision: int) -> str:
-    """One contour with numbers of any size."""
+    """One contour with numbers of any size, all of them absolute."""
     closed = np.concatenate([contour.points, contour.points[:1]])
     degrees = contour.degrees.tolist()
     if degrees[-1] == 1:  # Z draws the last line
@@ -147,7 +151,7 @@ def polylines_data(parts: Chains, precision: int) -> memoryview:
 
 
 def _polyline_data(points: FloatArray, precision: int) -> str:
-    """One chain with numbers of any size."""
+    """One chain with numbers of any size, all of them absolute."""
     values = (np.round(points * (1, -1), precision) + 0.0).ravel().tolist()
     return "M" + " ".join([NUMBER] * len(values)) % tuple(values)
 
@@ -165,12 +169,16 @@ def segments_data(starts: FloatArray, ends: FloatArray, precision: int) -> str:
 
 def ink_bounds(contours: Iterable[Contour]) -> Box | None:
     """The tight box around all contours; None if there is nothing."""
-    from .bounds import ink_box
+    return curves_bounds(*laid_out(contours))
 
-    pieces = [contour.cubics() for contour in contours if len(contour)]
-    if not pieces:
+
+def curves_bounds(points: FloatArray, degrees: IntArray, contours: IntArray) -> Box | None:
+    """The same of contours one after the other, as :func:`curves_data` has them."""
+    from .bounds import contours_box
+
+    if not len(points):
         return None
-    left, bottom, right, top = ink_box(np.concatenate(pieces)).tolist()
+    left, bottom, right, top = contours_box(points, degrees, contours).tolist()
     return left, bottom, right, top
 
 
@@ -179,6 +187,7 @@ def union(a: Box, b: Box | None) -> Box:
     return a if b is None else (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
 
 
+@lru_cache(maxsize=4096)
 def view_box_value(box: Box, precision: int) -> str:
     """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
     unit = 10.0**precision

@@ -14,7 +14,8 @@ from numba import njit
 from .digits import LARGEST, ONE, SLACK, SPACE, WIDEST, decimal
 from .words import store
 
-MOVE, LINE, QUADRATIC, CUBIC, CLOSE, MOVE_BY, LINE_BY = (np.uint8(ord(c)) for c in "MLQCZml")
+MOVE, QUADRATIC, CUBIC, CLOSE = (np.uint8(ord(c)) for c in "MQCZ")
+MOVE_BY, LINE_BY, QUADRATIC_BY, CUBIC_BY = (np.uint8(ord(c)) for c in "mlqc")
 DOT = np.uint16(int.from_bytes(b"h0", "little"))
 """A stroke of no length, which round caps make a dot."""
 
@@ -30,44 +31,67 @@ def nearest(value):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def pair(at, x, y, figures):
-    """ "x y"."""
-    at = decimal(at, np.int64(x), figures)
+def apart(at, value, figures):
+    """One more number: a minus sets it apart from the one before as well as a space."""
     store(at, SPACE)
-    return decimal(at + ONE, -np.int64(y), figures)
+    return decimal(at + np.uint64(value >= 0), value, figures)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def more(at, dx, dy, figures):
+    """One more pair of numbers of the command before."""
+    at = apart(at, np.int64(dx), figures)
+    return apart(at, -np.int64(dy), figures)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def step(at, letter, dx, dy, figures):
+    """A command with one pair of numbers."""
+    store(at, letter)
+    at = decimal(at + ONE, np.int64(dx), figures)
+    return apart(at, -np.int64(dy), figures)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def curve(at, points, degrees, figures):
-    """A closed chain of Bézier segments: M, then L, Q or C for each, then Z, which also draws a last line.
+    """A closed chain of Bézier segments: M, then l, q or c, then Z, which also draws a last line.
+
+    Relative numbers take two thirds of the room. A last curve is absolute, so that it ends where the chain begins for
+    a reader, too, who has added up binary fractions.
 
     Args:
         points: (N, 2). degrees: (m,) whose sum is N, as :class:`~glyphspline.outline.Contour` has them.
     """
-    store(at, MOVE)
-    at = pair(at + ONE, points[0, 0], points[0, 1], figures)
-    i, n, m = 0, len(points), len(degrees)
-    for j in range(m if degrees[m - 1] > 1 else m - 1):
+    at = step(at, MOVE, points[0, 0], points[0, 1], figures)
+    m = len(degrees)
+    i, before = 0, 0
+    for j in range(m - 1):
         degree = degrees[j]
-        store(at, CUBIC if degree == 3 else (LINE if degree == 1 else QUADRATIC))
+        x, y = points[i, 0], points[i, 1]
         for k in range(1, degree + 1):
-            at += ONE
-            e = i + k if i + k < n else 0
-            at = pair(at, points[e, 0], points[e, 1], figures)
-            store(at, SPACE)
-        i += degree
+            dx, dy = points[i + k, 0] - x, points[i + k, 1] - y
+            if k > 1 or degree == before:
+                at = more(at, dx, dy, figures)
+            else:
+                at = step(at, CUBIC_BY if degree == 3 else LINE_BY if degree == 1 else QUADRATIC_BY, dx, dy, figures)
+        i, before = i + degree, degree
+    degree = degrees[m - 1]
+    if degree > 1:
+        at = step(at, CUBIC if degree == 3 else QUADRATIC, points[i + 1, 0], points[i + 1, 1], figures)
+        if degree == 3:
+            at = more(at, points[i + 2, 0], points[i + 2, 1], figures)
+        at = more(at, points[0, 0], points[0, 1], figures)
     store(at, CLOSE)
     return at + ONE
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def polyline(at, points, closed, figures):
-    """Points joined by straight lines: "M x y x y …"."""
-    store(at, MOVE)
-    for i in range(len(points)):
-        at += ONE
-        at = pair(at, points[i, 0], points[i, 1], figures)
-        store(at, SPACE)
+    """Points joined by straight lines: M, then l."""
+    at = step(at, MOVE, points[0, 0], points[0, 1], figures)
+    for i in range(1, len(points)):
+        dx, dy = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
+        at = more(at, dx, dy, figures) if i > 1 else step(at, LINE_BY, dx, dy, figures)
     if closed:
         store(at, CLOSE)
         at += ONE
@@ -75,18 +99,8 @@ def polyline(at, points, closed, figures):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def step(at, letter, dx, dy, figures):
-    """A command with one pair of numbers, as short as can be."""
-    store(at, letter)
-    at = decimal(at + ONE, np.int64(dx), figures)
-    store(at, SPACE)
-    at += np.uint64(dy <= 0)  # a minus sets numbers apart; y is turned
-    return decimal(at, -np.int64(dy), figures)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _fit(whole):
-    """Whether all numbers can be written digit by digit."""
+def fit(whole):
+    """Whether all numbers of an array (N, 2) can be written digit by digit."""
     fine = True
     for i in range(len(whole)):
         fine &= abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST
@@ -103,7 +117,7 @@ def curves_text(points, degrees, contours, precision, power, limit, words):
     """
     figures = (precision, power, limit, np.uint64(words.ctypes.data))
     whole = np.rint(points * power)
-    if not _fit(whole):
+    if not fit(whole):
         return None
     text = np.empty((len(points) + len(contours)) * 2 * WIDEST + SLACK, dtype=np.uint8)
     start = np.uint64(text.ctypes.data)
@@ -127,7 +141,7 @@ def polylines_text(points, starts, stops, closed, precision, power, limit, words
     """
     figures = (precision, power, limit, np.uint64(words.ctypes.data))
     whole = np.rint(points * power)
-    if not _fit(whole):
+    if not fit(whole):
         return None
     text = np.empty((len(points) + len(starts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
     start = np.uint64(text.ctypes.data)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from ..glyph import GlyphResult
 from ..outline import Outline
 from .markup import (
     Box,
     Text,
     code_points,
+    curves_bounds,
+    curves_data,
     data_attributes,
     id_prefix,
-    ink_bounds,
     joined,
-    path_data,
+    laid_out,
     text,
     union,
     view_box_value,
@@ -41,9 +44,10 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
         ValueError: ``view_box`` is none of these.
     """
     precision = glyph.options.precision
-    contours = [contour.curve.rounded(precision) for contour in glyph.contours]
-    box = shown_box(glyph.outline, ink_bounds(contours), view_box)
-    return svg_document(glyph.outline, path_data(contours, precision), box, precision, view_box).decode()
+    points, degrees, contours = laid_out(contour.curve for contour in glyph.contours)
+    ink = curves_bounds(np.round(points, precision), degrees, contours)
+    path = curves_data(points, degrees, contours, precision)
+    return svg_document(glyph.outline, path, shown_box(glyph.outline, ink, view_box), precision, view_box).decode()
 
 
 def svg_document(outline: Outline, path: Text, box: Box, precision: int, view_box: ViewBox) -> bytes:
