@@ -26,6 +26,7 @@ from .fields import FIELDS, STRIDE
 from .footpoint import GUARD, compiled, inlined
 from .fused import cubic, dot, fma
 from .select import select
+from .wide import wide
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
@@ -149,16 +150,19 @@ def _taylor(B, S, m, step):
 
 @compiled
 def _taylor_1(B, S, m):
+    wide()
     _taylor(B, S, m, ONE)
 
 
 @compiled
 def _taylor_4(B, S, m):
+    wide()
     _taylor(B, S, m, FOUR)
 
 
 @compiled
 def _taylor_8(B, S, m):
+    wide()
     _taylor(B, S, m, EIGHT)
 
 
@@ -176,6 +180,7 @@ def taylor(B, S, first, m):
 @compiled
 def newton(S, first, m):
     """One step for every vertex that has not settled; the number of those that still have not."""
+    wide()
     pending = 0
     for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
@@ -212,6 +217,7 @@ def newton(S, first, m):
 @compiled
 def certify(B, S, first, m):
     """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
+    wide()
     bad, wild = 0, 0
     for j in range(first, np.uint64(m) + first):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]

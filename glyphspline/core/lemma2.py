@@ -13,8 +13,10 @@ import numpy as np
 from . import fields
 from .fields import HALO, LANES, STRIDE
 from .footpoint import compiled, inlined
+from .fused import cubic, fma
 from .layout import PAD
 from .select import select
+from .wide import wide
 
 ONE, TWO, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 4, 8))
 LOW, HIGH, X = np.uint64(fields.LOW), np.uint64(fields.HIGH), np.uint64(fields.X)
@@ -65,16 +67,19 @@ def _prepare(h, S, m, margin, peak_share, step):
 
 @compiled
 def _prepare_1(h, S, m, margin, peak_share):
+    wide()
     _prepare(h, S, m, margin, peak_share, ONE)
 
 
 @compiled
 def _prepare_4(h, S, m, margin, peak_share):
+    wide()
     _prepare(h, S, m, margin, peak_share, FOUR)
 
 
 @compiled
 def _prepare_8(h, S, m, margin, peak_share):
+    wide()
     _prepare(h, S, m, margin, peak_share, EIGHT)
 
 
@@ -92,13 +97,15 @@ def _start(S, problem, first, m):
 @compiled
 def _newton(S, problem, first, m):
     """One step for every crossing; the number of those still under way."""
+    wide()
     pending = 0
     for j in range(first, np.uint64(m) + first):
         b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]
         inside, outside, y, done = S[problem + INSIDE + j], S[problem + OUTSIDE + j], S[R1 + j], S[R2 + j]
-        z = 1.0 - y
-        excess = z * z * (z * b0 + 3.0 * y * b1) + y * y * (3.0 * z * b2 + y * b3) - S[LEVEL + j]
-        slope = 3.0 * ((b1 - b0) * z * z + 2.0 * (b2 - b1) * y * z + (b3 - b2) * y * y)
+        d0, d1 = b1 - b0, b2 - b1
+        c1, c2, c3 = 3.0 * d0, 3.0 * (d1 - d0), fma(-3.0, d1, b3 - b0)
+        excess = cubic(b0 - S[LEVEL + j], c1, c2, c3, y)
+        slope = fma(fma(3.0, c3 * y, 2.0 * c2), y, c1)
         enough = excess >= 0.0
         inside, outside = select(enough, y, inside), select(enough, outside, y)
         step = excess / select(slope == 0.0, 1.0, slope)
