@@ -13,8 +13,9 @@ import numpy as np
 
 from .arcs import bezier_points, bezier_weights, jit
 from .arrays import BoolArray, FloatArray, IntArray
-from .chains import Chains, Flat, Settings, contour_cubics, laid_out
+from .chains import Chains, Settings, laid_out
 from .distance import ROUNDING, extent, pair
+from .flat import Flat, contour_cubics
 from .frugal import MOST_SPANS, cut, fit_between
 from .joints import find_joints
 from .orientation import flip

@@ -14,8 +14,9 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .bspline import Spline
-from .chains import Chains, Flat, Settings
+from .chains import Chains, Settings
 from .errors import PolygonError
+from .flat import Flat
 from .frugal import MOST_SPANS
 from .glyph import Options
 from .interpolation import check_options, interpolate_many

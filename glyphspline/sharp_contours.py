@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .chains import flattened, unflattened
 from .contours import certified_rate, check_coordinates
+from .flat import flattened, unflattened
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .result import Interpolation

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .chains import flattened
 from .closed import Backwards, turned
 from .contours import check_coordinates
 from .distance import certified_distance
+from .flat import flattened
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .refine import Round, refined

@@ -11,8 +11,8 @@ import numpy as np
 
 from .arcs import jit
 from .arrays import FloatArray, IntArray
-from .chains import Flat, contour_cubics
 from .crossings import crossings_and_overshoot
+from .flat import Flat, contour_cubics
 from .measure import integrals
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.chains import flattened
 from glyphspline.closed import interpolated, turned
 from glyphspline.crossings import overshoot, self_crossings
 from glyphspline.fit import chords
+from glyphspline.flat import flattened
 from glyphspline.measure import shape
 from glyphspline.smooth import rounds
 from glyphspline.smooth.chains import chains_of

@@ -10,9 +10,10 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.bezier import evaluate
-from glyphspline.chains import Settings, flattened
+from glyphspline.chains import Settings
 from glyphspline.cubicfit import fit_cubic
 from glyphspline.distance import certified_distance
+from glyphspline.flat import flattened
 from glyphspline.measure import shape
 from glyphspline.overlaps import remove_overlaps
 from glyphspline.pieces import certify, cut_closer, cut_contours, put_together

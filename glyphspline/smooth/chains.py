@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arcs import jet, jit
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..chains import Flat, contour_cubics, lasting
+from ..flat import Flat, contour_cubics, lasting
 from ..orientation import directed, direction, farthest_joint, turn
 
 TABLE = 16
