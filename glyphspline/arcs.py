@@ -112,6 +112,13 @@ def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
 
 
 @jit
+def _within(x: float, f: float, slope: float, low: float, high: float) -> float:
+    """Newton's next estimate of a zero between ``low`` and ``high``, or their middle where that leads out of them."""
+    new = x - f / slope if slope != 0 else (low + high) / 2
+    return new if low < new < high else (low + high) / 2
+
+
+@jit
 def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
     """Where a cubic that is monotone on [low, high] takes a value between those at the ends."""
     rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)
@@ -124,9 +131,7 @@ def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: flo
             low = x
         y = 1 - x
         slope = 3 * (y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2))
-        new = x - f / slope if slope != 0 else (low + high) / 2
-        if not (low < new < high):
-            new = (low + high) / 2
+        new = _within(x, f, slope, low, high)
         if abs(new - x) < 1e-12:
             return new
         x = new
@@ -146,9 +151,7 @@ def _top(c0: float, c1: float, c2: float, c3: float) -> float:
         else:
             high = x
         bend = 2 * (y * ((c2 - c1) - (c1 - c0)) + x * ((c3 - c2) - (c2 - c1)))
-        new = x - slope / bend if bend != 0 else (low + high) / 2
-        if not (low < new < high):
-            new = (low + high) / 2
+        new = _within(x, slope, bend, low, high)
         if abs(new - x) < 1e-12:
             return new
         x = new

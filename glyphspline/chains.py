@@ -1,6 +1,6 @@
 """The contours of a glyph as the sharp mode takes them up: chains of cubics, each begun and directed by its shape.
 
-All contours lie one after the other in flat arrays, so that compiled code sees a glyph and Python a single call.
+:mod:`.smooth.chains` has those of the smooth mode.
 """
 
 from __future__ import annotations
@@ -9,24 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arcs import jit, raised
+from .arcs import jit
 from .arrays import BoolArray, FloatArray, IntArray
+from .flat import lasting
 from .joints import Joints, begun_at, find_joints
-from .orientation import farthest_joint, flip, runs_backwards
-
-
-class Flat(NamedTuple):
-    """Contours end to end.
-
-    Attributes:
-        points: (N, 2) and degrees: (m,) of all contours, each as :class:`.outline.Contour` has them.
-        offsets: (C + 1,) where in ``degrees``, starts: (C + 1,) where in ``points`` each contour begins.
-    """
-
-    points: FloatArray
-    degrees: IntArray
-    offsets: IntArray
-    starts: IntArray
+from .orientation import directed, farthest_joint
 
 
 class Settings(NamedTuple):
@@ -52,6 +39,8 @@ class Settings(NamedTuple):
 class Chains(NamedTuple):
     """Contours made ready to be cut: segments of no length dropped, the first joint a hard one if there is any.
 
+    They keep their own direction, in which lines and arcs are put together, and have no use for lengths.
+
     Attributes:
         cubics: (M, 4, 2) and degrees: (M,) of all, in their own direction; offsets: (C + 1,) where each begins.
         flipped: (C,) whether it is fitted the other way round.
@@ -64,42 +53,32 @@ class Chains(NamedTuple):
 
 
 @jit
-def contour_cubics(flat: Flat, c: int) -> FloatArray:
-    """(m, 4, 2) the segments of contour c as cubics."""
-    return raised(flat.points[flat.starts[c] : flat.starts[c + 1]], flat.degrees[flat.offsets[c] : flat.offsets[c + 1]])
+def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
+    """The segments that have a length, those that end where they begin cut in two: an arc needs two ends."""
+    those = lasting(cubics)
+    found, kept = np.empty((2 * len(those), 4, 2)), np.empty(2 * len(those), dtype=np.int64)
+    count = 0
+    for j in those:
+        b = cubics[j]
+        parts = 2 if b[0, 0] == b[3, 0] and b[0, 1] == b[3, 1] else 1
+        if parts == 2:
+            _halve(b, found[count], found[count + 1])
+        else:
+            found[count] = b
+        kept[count : count + parts] = degrees[j]
+        count += parts
+    return found[:count].copy(), kept[:count].copy()
 
 
 @jit
-def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
-    """The segments that have a length, those that end where they begin cut in two: an arc needs two ends."""
-    m = len(cubics)
-    found, kept = np.empty((2 * m, 4, 2)), np.empty(2 * m, dtype=np.int64)
-    count = 0
-    for j in range(m):
-        b = cubics[j]
-        still = closed = True
-        for axis in range(2):
-            closed &= b[0, axis] == b[3, axis]
-            for k in range(1, 4):
-                still &= b[k, axis] == b[0, axis]
-        if still:
-            continue
-        kept[count] = degrees[j]
-        for axis in range(2):
-            p, q, r, s = b[0, axis], b[1, axis], b[2, axis], b[3, axis]
-            pq, qr, rs = (p + q) / 2, (q + r) / 2, (r + s) / 2
-            left, right = (pq + qr) / 2, (qr + rs) / 2
-            middle = (left + right) / 2
-            whole, halves = (p, q, r, s), (p, pq, left, middle, right, rs, s)
-            for k in range(4):
-                found[count, k, axis] = halves[k] if closed else whole[k]
-                if closed:
-                    found[count + 1, k, axis] = halves[3 + k]
-        if closed:
-            count += 1
-            kept[count] = degrees[j]
-        count += 1
-    return found[:count].copy(), kept[:count].copy()
+def _halve(cubic: FloatArray, first: FloatArray, second: FloatArray) -> None:
+    for axis in range(2):
+        p, q, r, s = cubic[0, axis], cubic[1, axis], cubic[2, axis], cubic[3, axis]
+        pq, qr, rs = (p + q) / 2, (q + r) / 2, (r + s) / 2
+        left, right = (pq + qr) / 2, (qr + rs) / 2
+        middle = (left + right) / 2
+        first[0, axis], first[1, axis], first[2, axis], first[3, axis] = p, pq, left, middle
+        second[0, axis], second[1, axis], second[2, axis], second[3, axis] = middle, right, rs, s
 
 
 @jit
@@ -118,9 +97,9 @@ def laid_out(
 ) -> tuple[FloatArray, IntArray, bool, Joints]:  # fmt: skip
     """A contour as it is fitted: its chain, whether that runs the other way, and its joints."""
     cubics, degrees = with_ends(cubics, degrees)
-    flipped = runs_backwards(cubics)
+    cubics, flipped = directed(cubics)
     if flipped:
-        cubics, degrees = flip(cubics), degrees[::-1].copy()
+        degrees = degrees[::-1].copy()
     joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line)
     k = first_joint(joints)
     if k > 0:

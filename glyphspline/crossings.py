@@ -26,6 +26,14 @@ def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
 
 
 @jit
+def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[int, float]:
+    """Both of a closed chain of cubics (m, 4, 2), from the same chords; no overshoot over a polygon of no vertices."""
+    points, first = chords(cubics)
+    beyond = farthest_outside(cubics, points, first, polygon) if len(polygon) > 0 else 0.0
+    return count_crossings(cubics, points, first), beyond
+
+
+@jit
 def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
     """(N, 2) ends of the chords, the first not repeated at the end, and (m + 1,) where each segment's begin."""
     m = len(cubics)

@@ -11,6 +11,9 @@ numbers bounds the two-sided (Hausdorff) distance of the contours, and their Fr�
 for *every* way of cutting that runs once round both: hints and Newton's method only serve to make the bound sharp, and
 sections are halved until it is.
 
+Here any two stretches are paired, whatever lies between their ends. :mod:`.smooth.near` pairs the spans of a curve
+whose vertices are on the outline: from better guesses and less sharply, as every round of a fit asks it again.
+
 Floating point: a Bézier point of a section is a convex combination, in three rounds, of points of size at most L, so
 that its error is below 16 units in the last place of L. ``ROUNDING`` times L, far more than that,
 is added to the bound.
@@ -74,8 +77,27 @@ def certified_distance(
     bounds, gaps = _pair_all(
         np.ascontiguousarray(result), np.ascontiguousarray(source), np.ascontiguousarray(anchors), sharpness, limit
     )
-    extent = max(np.abs(result).max(initial=0.0), np.abs(source).max(initial=0.0))
-    return Distance(bounds + ROUNDING * extent, gaps)
+    return Distance(bounds + ROUNDING * max(extent(result), extent(source)), gaps)
+
+
+@jit
+def extent(cubics: FloatArray) -> float:
+    """The largest coordinate of (m, 4, 2) Bézier points."""
+    most = 0.0
+    for b in cubics:
+        for k in range(4):
+            most = max(most, abs(b[k, 0]), abs(b[k, 1]))
+    return most
+
+
+@jit
+def apart(A: FloatArray, B: FloatArray) -> tuple[float, float, float]:
+    """The largest distance of the Bézier points (4, 2) of a pair, which bounds its own, and those of its two ends."""
+    first, last = length(A[0, 0] - B[0, 0], A[0, 1] - B[0, 1]), length(A[3, 0] - B[3, 0], A[3, 1] - B[3, 1])
+    most = max(first, last)
+    for k in (1, 2):
+        most = max(most, length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1]))
+    return most, first, last
 
 
 @jit
@@ -93,6 +115,16 @@ def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
 
 
 @jit
+def newton_step(at: float, slope: float, speed: float, bend: float, low: float, high: float) -> float:
+    """Newton's next estimate of a nearest point, in [low, high]; Gauss and Newton's where the distance is not convex.
+
+    Args:
+        slope, bend: half the first and second derivative of the squared distance. speed: the square of it.
+    """
+    return min(max(at - slope / (bend if bend > 0.2 * speed else speed), low), high)
+
+
+@jit
 def nearest(cubics: FloatArray, s: int, low: float, high: float, guess: float, x: float, y: float) -> float:
     """A parameter in [low, high] of cubic s near (x, y): Newton's method from a guess."""
     at = guess
@@ -102,12 +134,9 @@ def nearest(cubics: FloatArray, s: int, low: float, high: float, guess: float, x
         bend = speed + (px - x) * ax + (py - y) * ay
         if speed <= 0:
             break
-        new = at - ((px - x) * dx + (py - y) * dy) / (bend if bend > 0.2 * speed else speed)
-        new = min(max(new, low), high)
-        if abs(new - at) < 1e-7:
-            at = new
+        before, at = at, newton_step(at, (px - x) * dx + (py - y) * dy, speed, bend, low, high)
+        if abs(at - before) < 1e-7:
             break
-        at = new
     return at
 
 
@@ -142,16 +171,26 @@ def _pair_all(
     for k in range(n):
         a, s = anchors[k]
         a_end, s_end = anchors[k + 1]
-        bounds[k], gaps[k] = pair(result, a, a_end, source, s, s_end, sharpness)
-        if bounds[k] > limit:
-            bound, gap = pair(source, s, s_end, result, a, a_end, sharpness)
-            if bound < bounds[k]:
-                bounds[k], gaps[k] = bound, gap
+        bounds[k], gaps[k] = pair(result, a, a_end, source, s, s_end, sharpness, limit)
     return bounds, gaps
 
 
 @jit
 def pair(
+    result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float,
+    limit: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Bound and gap between two stretches; see :func:`certified_distance` for sharpness and limit."""
+    bound, gap = _pair(result, a, a_end, source, s, s_end, sharpness)
+    if bound > limit:
+        other, gap_there = _pair(source, s, s_end, result, a, a_end, sharpness)
+        if other < bound:
+            return other, gap_there
+    return bound, gap
+
+
+@jit
+def _pair(
     result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float
 ) -> tuple[float, float]:
     """Bound and gap between two stretches, cut where segments of the first end, at the second's nearest points."""
@@ -215,12 +254,8 @@ def _sections(
         x0, x1, y0, y1, depth = stack[count]
         section(a, x0, x1, A)
         section(b, y0, y1, B)
-        most = 0.0
-        for k in range(4):
-            d = length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
-            most = max(most, d)
-            if k == 0 or k == 3:
-                gap = max(gap, d)
+        most, first, last = apart(A, B)
+        gap = max(gap, max(first, last))
         if most <= max(bound, gap + sharpness) or depth >= DEEPEST:
             bound = max(bound, most)
             continue

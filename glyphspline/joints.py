@@ -11,6 +11,10 @@ import numpy as np
 
 from .arcs import jet, jit
 from .arrays import BoolArray, FloatArray, IntArray
+from .orientation import direction, turn
+
+NO_HANDLE = 1e-9
+"""Handles up to this long, in font units, may be rounding's alone, and give no tangent."""
 
 SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
@@ -41,15 +45,8 @@ class Joints(NamedTuple):
 @jit
 def unit_tangent(cubic: FloatArray, at_end: bool) -> tuple[float, float]:
     """Direction of travel at an end of a cubic, whatever handles have no length."""
-    for j in range(1, 4):
-        if at_end:
-            x, y = cubic[3, 0] - cubic[3 - j, 0], cubic[3, 1] - cubic[3 - j, 1]
-        else:
-            x, y = cubic[j, 0] - cubic[0, 0], cubic[j, 1] - cubic[0, 1]
-        length = np.hypot(x, y)
-        if length > 1e-9:
-            return x / length, y / length
-    return 1.0, 0.0
+    x, y, length = direction(cubic, at_end, NO_HANDLE)
+    return (x / length, y / length) if length > 0 else (1.0, 0.0)
 
 
 @jit
@@ -97,16 +94,14 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
     samples[N - 1] = cubics[0, 0]
     leaving[m], arriving[0] = leaving[0], arriving[m]
     for j in range(m):
-        cross = arriving[j, 0] * leaving[j, 1] - arriving[j, 1] * leaving[j, 0]
-        dot = arriving[j, 0] * leaving[j, 0] + arriving[j, 1] * leaving[j, 1]
-        turn = abs(np.arctan2(cross, dot))
-        corner[j] = turn >= angle
+        bend = turn(arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1])
+        corner[j] = bend >= angle
         hard[j] = (corner[j] and shows(samples, first[j], tolerance, angle)) or line[j] or line[j - 1]
-        density[first[j]] += np.sqrt(turn * 4 * tolerance)
+        density[first[j]] += np.sqrt(bend * 4 * tolerance)
         if corner[j]:
             continue
         if line[j] or line[j - 1]:
-            if turn < SMOOTH_KINK:
+            if bend < SMOOTH_KINK:
                 if line[j]:
                     arriving[j] = leaving[j]
                 else:
@@ -186,7 +181,6 @@ def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     p = samples[at % N]
     ax, ay = p[0] - ends[0, 0], p[1] - ends[0, 1]
     bx, by = ends[1, 0] - p[0], ends[1, 1] - p[1]
-    turn = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
     chord = np.hypot(ax + bx, ay + by)
     height = abs(ax * by - ay * bx) / max(chord, 1e-9)
-    return turn >= angle and height >= HEIGHT * tolerance
+    return turn(ax, ay, bx, by) >= angle and height >= HEIGHT * tolerance

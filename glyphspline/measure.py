@@ -33,20 +33,21 @@ class Shape(NamedTuple):
 
 def shape(pieces: FloatArray) -> Shape:
     """Measure a closed chain of cubics (m, 4, 2)."""
-    return Shape(*_shape(np.ascontiguousarray(pieces), NODES, WEIGHTS))
+    return Shape(*integrals(np.ascontiguousarray(pieces)))
 
 
 @jit
-def _shape(pieces: FloatArray, nodes: FloatArray, weights: FloatArray) -> tuple[float, float, float, float]:
+def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
+    """The numbers of a :class:`Shape`, of some cubics (m, 4, 2), closed or not."""
     length = area = energy = highest = 0.0
     for s in range(len(pieces)):
-        for k in range(len(nodes)):
-            x, y, dx, dy, ax, ay = jet(pieces, s, (nodes[k] + 1) / 2)
+        for k in range(len(NODES)):
+            x, y, dx, dy, ax, ay = jet(pieces, s, (NODES[k] + 1) / 2)
             speed = np.hypot(dx, dy)
-            length += weights[k] * speed / 2
-            area += weights[k] * (x * dy - y * dx) / 4
+            length += WEIGHTS[k] * speed / 2
+            area += WEIGHTS[k] * (x * dy - y * dx) / 4
             curvature = _curvature(dx, dy, ax, ay)
-            energy += weights[k] * curvature * curvature * speed / 2 if speed > 0 else np.inf
+            energy += WEIGHTS[k] * curvature * curvature * speed / 2 if speed > 0 else np.inf
         for k in range(CURVATURE_STEPS + 1):
             _, _, dx, dy, ax, ay = jet(pieces, s, k / CURVATURE_STEPS)
             highest = max(highest, _curvature(dx, dy, ax, ay))

@@ -42,3 +42,33 @@ def runs_backwards(cubics: FloatArray) -> bool:
 def flip(cubics: FloatArray) -> FloatArray:
     """The same chain of cubics run the other way, beginning at the same point."""
     return cubics[::-1, ::-1].copy()
+
+
+@jit
+def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
+    """A chain of cubics in the direction in which it is fitted, and whether that is not its own."""
+    flipped = runs_backwards(cubics)
+    return flip(cubics) if flipped else cubics, flipped
+
+
+@jit
+def direction(cubic: FloatArray, at_end: bool, least: float) -> tuple[float, float, float]:
+    """Where a cubic (4, 2) goes at an end: a vector along it and its length, all 0 if there is none.
+
+    Handles of length ``least`` or less are passed over.
+    """
+    for j in range(1, 4):
+        if at_end:
+            x, y = cubic[3, 0] - cubic[3 - j, 0], cubic[3, 1] - cubic[3 - j, 1]
+        else:
+            x, y = cubic[j, 0] - cubic[0, 0], cubic[j, 1] - cubic[0, 1]
+        length = np.hypot(x, y)
+        if length > least:
+            return x, y, length
+    return 0.0, 0.0, 0.0
+
+
+@jit
+def turn(ax: float, ay: float, bx: float, by: float) -> float:
+    """Angle between two directions, 0 to pi."""
+    return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))

@@ -13,8 +13,9 @@ import numpy as np
 
 from .arcs import bezier_points, bezier_weights, jit
 from .arrays import BoolArray, FloatArray, IntArray
-from .chains import Chains, Flat, Settings, contour_cubics, laid_out
-from .distance import ROUNDING, pair
+from .chains import Chains, Settings, laid_out
+from .distance import ROUNDING, extent, pair
+from .flat import Flat, contour_cubics
 from .frugal import MOST_SPANS, cut, fit_between
 from .joints import find_joints
 from .orientation import flip
@@ -238,27 +239,13 @@ def certify(
     for c in range(len(chains.offsets) - 1):
         result = contour_cubics(written, c)
         source = chains.cubics[chains.offsets[c] : chains.offsets[c + 1]]
-        rounding = ROUNDING * max(_extent(result), _extent(source))
+        rounding = ROUNDING * max(extent(result), extent(source))
         at = 0.0
         while q < len(bounds) and pieces.where[q, 0] == c:
             _, i, j, k = pieces.where[q]
             to = at + max(k, 1)
-            bound, gap = pair(result, at, to, source, float(i), float(j), sharpness)
-            if bound > limit:
-                other, gap_there = pair(source, float(i), float(j), result, at, to, sharpness)
-                if other < bound:
-                    bound, gap = other, gap_there
+            bound, gap = pair(result, at, to, source, float(i), float(j), sharpness, limit)
             bounds[q], gaps[q] = bound + rounding, gap
             at = to
             q += 1
     return bounds, gaps
-
-
-@jit
-def _extent(cubics: FloatArray) -> float:
-    """The largest coordinate."""
-    most = 0.0
-    for b in cubics:
-        for k in range(4):
-            most = max(most, abs(b[k, 0]), abs(b[k, 1]))
-    return most

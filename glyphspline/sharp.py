@@ -6,21 +6,20 @@ together again, and this file sees to it that the result is within the tolerance
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .bspline import Spline
-from .chains import Chains, Flat, Settings
+from .chains import Chains, Settings
 from .errors import PolygonError
+from .flat import Flat
 from .frugal import MOST_SPANS
 from .glyph import Options
 from .interpolation import check_options, interpolate_many
-from .outline import Contour
 from .pieces import Pieces, certify, cut_closer, cut_contours, put_together
 from .result import Interpolation
 
@@ -98,21 +97,6 @@ class _SingleSpans:
             "rate_bound": 0.0,
             "merged": np.empty(0, dtype=np.int64),
         }
-
-
-def flattened(contours: Sequence[Contour]) -> Flat:
-    """Contours end to end."""
-    offsets, starts = np.zeros((2, len(contours) + 1), dtype=np.int64)
-    np.cumsum([len(contour.degrees) for contour in contours], out=offsets[1:])
-    np.cumsum([len(contour.points) for contour in contours], out=starts[1:])
-    points = np.concatenate([contour.points for contour in contours])
-    return Flat(points, np.concatenate([contour.degrees for contour in contours]), offsets, starts)
-
-
-def unflattened(flat: Flat) -> list[Contour]:
-    """The contours one by one."""
-    ends = zip(pairwise(flat.starts.tolist()), pairwise(flat.offsets.tolist()), strict=True)
-    return [Contour(flat.points[a:b], flat.degrees[i:j]) for (a, b), (i, j) in ends]
 
 
 def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:

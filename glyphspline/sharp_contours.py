@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from .contours import certified_rate, check_coordinates
+from .flat import flattened, unflattened
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .result import Interpolation
-from .sharp import SharpFit, fit_sharp, flattened, unflattened
+from .sharp import SharpFit, fit_sharp
 from .survey import Survey, survey
 
 CLOSER = (1.0, 0.5, 0.25)

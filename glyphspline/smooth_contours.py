@@ -10,6 +10,7 @@ from .arrays import FloatArray, IntArray
 from .closed import Backwards, turned
 from .contours import check_coordinates
 from .distance import certified_distance
+from .flat import flattened
 from .glyph import ContourResult, Measures, Options
 from .outline import Contour
 from .refine import Round, refined
@@ -43,7 +44,7 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     if not contours:
         return []
     check_coordinates(contours)
-    chains = chains_of([contour.cubics() for contour in contours])
+    chains = chains_of(flattened(contours))
     source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}

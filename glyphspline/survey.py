@@ -1,4 +1,7 @@
-"""The measures of all contours of a glyph, in one compiled call."""
+"""The measures of all contours of a glyph cut into lines and arcs, in one compiled call.
+
+For closed curves, which have no lines, :mod:`.smooth.forms` has the same numbers.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,9 @@ import numpy as np
 
 from .arcs import jit
 from .arrays import FloatArray, IntArray
-from .chains import Flat, contour_cubics
-from .crossings import chords, count_crossings, farthest_outside
-from .measure import NODES, WEIGHTS, _shape
+from .crossings import crossings_and_overshoot
+from .flat import Flat, contour_cubics
+from .measure import integrals
 
 
 class Survey(NamedTuple):
@@ -27,6 +30,7 @@ class Survey(NamedTuple):
     source_crossings: IntArray
 
 
+@jit
 def survey(result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray) -> Survey:
     """Measure contours.
 
@@ -34,13 +38,6 @@ def survey(result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray) 
         result: the curves; source: what they were fitted to.
         polygons: (n, 2) their vertices; offsets: (C + 1,) where each contour's begin.
     """
-    return Survey(*_survey(result, source, polygons, offsets, NODES, WEIGHTS))
-
-
-@jit
-def _survey(
-    result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray, nodes: FloatArray, weights: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, IntArray]:
     C = len(offsets) - 1
     length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
     crossings, before = np.empty(C, dtype=np.int64), np.empty(C, dtype=np.int64)
@@ -51,22 +48,19 @@ def _survey(
             if result.degrees[result.offsets[c] + j] == 1:
                 length[c] += np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
                 continue
-            own_length, _, own_energy, own_curvature = _shape(cubics[j : j + 1], nodes, weights)
+            own_length, _, own_energy, own_curvature = integrals(cubics[j : j + 1])
             length[c] += own_length
             energy[c] += own_energy
             curvature[c] = max(curvature[c], own_curvature)
         change[c] = _area(cubics) - _area(given)
-        points, first = chords(cubics)
-        beyond[c] = farthest_outside(cubics, points, first, polygons[offsets[c] : offsets[c + 1]])
-        crossings[c] = count_crossings(cubics, points, first)
-        points, first = chords(given)
-        before[c] = count_crossings(given, points, first)
-    return length, change, energy, curvature, beyond, crossings, before
+        crossings[c], beyond[c] = crossings_and_overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
+        before[c], _ = crossings_and_overshoot(given, polygons[:0])
+    return Survey(length, change, energy, curvature, beyond, crossings, before)
 
 
 @jit
 def _area(cubics: FloatArray) -> float:
-    """Signed area of a closed chain, exactly: the integral of its Bézier points' products."""
+    """Signed area of a closed chain, lines among it, exactly: the integral of its Bézier points' products."""
     total = 0.0
     for b in cubics:
         for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):

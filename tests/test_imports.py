@@ -39,6 +39,7 @@ ROOMS = [
         "arcfit",
         "cubicfit",
         "frugal",
+        "flat",
         "chains",
         "pieces",
         "survey",

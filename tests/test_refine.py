@@ -9,6 +9,7 @@ import glyphspline as gs
 from glyphspline.closed import interpolated, turned
 from glyphspline.crossings import overshoot, self_crossings
 from glyphspline.fit import chords
+from glyphspline.flat import flattened
 from glyphspline.measure import shape
 from glyphspline.smooth import rounds
 from glyphspline.smooth.chains import chains_of
@@ -31,7 +32,7 @@ def wobbly(radius: float, seed: int) -> gs.Contour:
 @pytest.mark.parametrize("seed", range(6))
 def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     contour = wobbly(100, seed)
-    chains = chains_of([contour.cubics()])
+    chains = chains_of(flattened([contour]))
     which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
     places = np.linspace(0, len(chains.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
@@ -59,7 +60,7 @@ def test_measures_are_those_that_look_at_every_piece() -> None:
 
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
-    chains = chains_of([square_contour(900).cubics(), circle_contour(100).cubics()])
+    chains = chains_of(flattened([square_contour(900), circle_contour(100)]))
     near = np.ones(2)
     places, offsets = rounds.first_places(chains, np.arange(2), np.radians(12), 4.0, near, 2)
     points = rounds.polygons(chains, np.arange(2), places, offsets)
@@ -77,7 +78,7 @@ def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon()
     flips = set()
     for seed in range(6):
         contour = wobbly(100, seed)
-        flips.add(bool(chains_of([contour.cubics()]).flipped[0]))
+        flips.add(bool(chains_of(flattened([contour])).flipped[0]))
         result = convert_smooth([contour], gs.Options(), 1.0)[0]
         (arc,) = result.interpolations
         plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)

@@ -13,10 +13,10 @@ from glyphspline.bezier import evaluate
 from glyphspline.chains import Settings
 from glyphspline.cubicfit import fit_cubic
 from glyphspline.distance import certified_distance
+from glyphspline.flat import flattened
 from glyphspline.measure import shape
 from glyphspline.overlaps import remove_overlaps
 from glyphspline.pieces import certify, cut_closer, cut_contours, put_together
-from glyphspline.sharp import flattened
 from glyphspline.survey import survey
 
 from .polygons import circle_contour, square_contour

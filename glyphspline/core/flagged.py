@@ -31,6 +31,9 @@ from .lanes import (
     SZX,
     SZY,
     X,
+    bernstein,
+    expanded,
+    quartic,
 )
 from .select import select
 
@@ -66,14 +69,11 @@ def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
 
     Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
     """
-    k1, k2, k3, k4 = c1 * L, c2 * L * L, c3 * L * L * L, c4 * L * L * L * L
-    b0, b1, b2, b3, b4 = (
-        c0, c0 + 0.25 * k1, c0 + 0.5 * k1 + k2 / 6.0, c0 + 0.75 * k1 + 0.5 * k2 + 0.25 * k3, c0 + k1 + k2 + k3 + k4,
-    )  # fmt: skip
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
     for _ in range(6):
-        if min(b0, b1, b2, b3, b4) > guard:
+        if min(c0, b1, b2, b3, b4) > guard:
             return True
-        p0, p1, p2, p3 = b0 + CUT * (b1 - b0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
+        p0, p1, p2, p3 = c0 + CUT * (b1 - c0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
         q0, q1, q2 = p0 + CUT * (p1 - p0), p1 + CUT * (p2 - p1), p2 + CUT * (p3 - p2)
         r0, r1 = q0 + CUT * (q1 - q0), q1 + CUT * (q2 - q1)
         s0 = r0 + CUT * (r1 - r0)
@@ -87,16 +87,9 @@ def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
 def _second_look(S, j):
     """Whether the certificate holds on the main side after all, in parts."""
     y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
-    wx, wy, vx, vy = S[SWX + j], S[SWY + j], S[SVX + j], S[SVY + j]
-    qx, qy = ((zx * y + wx) * y + vx) * y + S[SEX + j], ((zy * y + wy) * y + vy) * y + S[SEY + j]
-    px, py = (3.0 * zx * y + 2.0 * wx) * y + vx, (3.0 * zy * y + 2.0 * wy) * y + vy
-    ax, ay = 3.0 * zx * y + wx, 3.0 * zy * y + wy
-    speed = px * px + py * py
-    c0 = 2.0 * (qx * ax + qy * ay) + speed
-    c1 = 2.0 * (qx * zx + qy * zy + px * ax + py * ay)
-    c2 = ax * ax + ay * ay + 2.0 * (px * zx + py * zy)
-    c3 = 2.0 * (ax * zx + ay * zy)
-    c4 = zx * zx + zy * zy
+    qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
+    qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
+    c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
     guard = GUARD * max(speed, c0)
     return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard

@@ -55,14 +55,38 @@ leave as much as it is itself.
 
 
 @inlined
-def least_quartic(c0, c1, c2, c3, c4, L):
-    """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
+def expanded(e, v, w, z, y):
+    """Coefficients of e + v x + w x² + z x³, one coordinate of q, about y but for the last, which stays z."""
+    a = fma(3.0 * y, z, w)
+    return cubic(e, v, w, z, y), fma(a + w, y, v), a
+
+
+@inlined
+def quartic(qx, qy, px, py, ax, ay, zx, zy):
+    """c0 to c4 of |q + p x + a x² + z x³|² = |q|² + 2 q·p x + x² (c0 + c1 x + … + c4 x⁴), and |p|²."""
+    speed = dot(px, py, px, py)
+    c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
+    c1 = 2.0 * (dot(qx, qy, zx, zy) + dot(px, py, ax, ay))
+    c2 = fma(2.0, dot(px, py, zx, zy), dot(ax, ay, ax, ay))
+    c3 = 2.0 * dot(ax, ay, zx, zy)
+    return c0, c1, c2, c3, dot(zx, zy, zx, zy), speed
+
+
+@inlined
+def bernstein(c0, c1, c2, c3, c4, L):
+    """The Bernstein coefficients of c0 + c1 x + … + c4 x⁴ between 0 and L, but for the first, which is c0."""
     squared = L * L
     k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
     b1 = fma(0.25, k1, c0)
     b2 = fma(SIXTH, k2, fma(0.5, k1, c0))
     b3 = fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
-    b4 = c0 + k1 + k2 + k3 + k4
+    return b1, b2, b3, c0 + k1 + k2 + k3 + k4
+
+
+@inlined
+def least_quartic(c0, c1, c2, c3, c4, L):
+    """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
     least = select(c0 < b1, c0, b1)
     rest = select(b2 < b3, b2, b3)
     least = select(least < rest, least, rest)
@@ -72,17 +96,12 @@ def least_quartic(c0, c1, c2, c3, c4, L):
 @inlined
 def least_rise(slope, c0, c1, c2, c3, c4, L):
     """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
-    squared = L * L
-    k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
-    b1 = 0.2 * c0
-    b2 = 0.4 * fma(0.25, k1, c0)
-    b3 = 0.6 * fma(SIXTH, k2, fma(0.5, k1, c0))
-    b4 = 0.8 * fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
-    b5 = c0 + k1 + k2 + k3 + k4
-    least = select(b1 < b2, b1, b2)
-    rest = select(b3 < b4, b3, b4)
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
+    r1, r2, r3, r4 = 0.2 * c0, 0.4 * b1, 0.6 * b2, 0.8 * b3
+    least = select(r1 < r2, r1, r2)
+    rest = select(r3 < r4, r3, r4)
     least = select(least < rest, least, rest)
-    least = select(least < b5, least, b5)
+    least = select(least < b4, least, b4)
     return fma(L, least, slope)
 
 
@@ -166,9 +185,8 @@ def newton(S, first, m):
     for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
-        qx, qy = cubic(S[SEX + j], vx, wx, zx, y), cubic(S[SEY + j], vy, wy, zy, y)
-        ax, ay = fma(3.0 * y, zx, wx), fma(3.0 * y, zy, wy)  # half of q''
-        px, py = fma(ax + wx, y, vx), fma(ay + wy, y, vy)  # q'
+        qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
+        qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
         speed = dot(px, py, px, py)
         bend = fma(2.0, dot(qx, qy, ax, ay), speed)
         convex = bend > 0.05 * speed
@@ -205,16 +223,10 @@ def certify(B, S, first, m):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
         ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
         zx, zy = S[SZX + j], S[SZY + j]
-        qx, qy = cubic(ex, vx, wx, zx, y), cubic(ey, vy, wy, zy, y)
-        ax, ay = fma(3.0 * y, zx, wx), fma(3.0 * y, zy, wy)
-        px, py = fma(ax + wx, y, vx), fma(ay + wy, y, vy)
+        qx, px, ax = expanded(ex, vx, wx, zx, y)
+        qy, py, ay = expanded(ey, vy, wy, zy, y)
         # Q = c0 + c1 x + … about y, and its Bernstein coefficients to the far and to the near end
-        speed = dot(px, py, px, py)
-        c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
-        c1 = 2.0 * (dot(qx, qy, zx, zy) + dot(px, py, ax, ay))
-        c2 = fma(2.0, dot(px, py, zx, zy), dot(ax, ay, ax, ay))
-        c3 = 2.0 * dot(ax, ay, zx, zy)
-        c4 = dot(zx, zy, zx, zy)
+        c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
         ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
@@ -222,11 +234,7 @@ def certify(B, S, first, m):
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
         slope = -2.0 * dot(ex, ey, vx, vy)
-        o0 = fma(2.0, dot(ex, ey, wx, wy), dot(vx, vy, vx, vy))
-        o1 = 2.0 * (dot(ex, ey, ox, oy) - dot(vx, vy, wx, wy))
-        o2 = fma(-2.0, dot(vx, vy, ox, oy), dot(wx, wy, wx, wy))
-        o3 = 2.0 * dot(wx, wy, ox, oy)
-        o4 = dot(ox, oy, ox, oy)
+        o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
         D = dot(qx, qy, qx, qy)
         main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 
@@ -33,6 +34,18 @@ class NamedGlyphs:
         if name not in self._gids:
             raise FontError("the font has no such glyph", font=str(self.path), glyph=name)
         return self._gids[name]
+
+    @contextmanager
+    def _drawing(self, name: str) -> Iterator[None]:
+        """Whatever goes wrong within while a glyph is drawn is a GlyphsplineError that names font and glyph."""
+        try:
+            yield
+        except GlyphsplineError as error:
+            error.locate(font=str(self.path), glyph=name)
+            raise
+        except Exception as error:  # broken data shows as any of a dozen types, AssertionError among them
+            message = f"cannot be drawn: {reason(error)}"
+            raise GlyphsplineError(message, font=str(self.path), glyph=name) from error
 
     def select(
         self,

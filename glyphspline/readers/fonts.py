@@ -13,7 +13,7 @@ from typing import Any
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
-from ..errors import FontError, GlyphsplineError
+from ..errors import FontError
 from ..outline import FontMetrics, Outline
 from .base import NamedGlyphs, reason
 from .containers import FORMATS, unpacked
@@ -95,14 +95,8 @@ class Font(NamedGlyphs):
             GlyphsplineError: the glyph's data is broken, or its components are nested in a loop.
         """
         gid = self._gid(name)
-        try:
+        with self._drawing(name):
             pen, advance = self._fast.draw(gid) or self._careful.draw(name)
-        except GlyphsplineError as error:
-            error.locate(font=str(self.path), glyph=name)
-            raise
-        except Exception as error:  # a broken table shows as any of a dozen types, AssertionError among them
-            message = f"cannot be drawn: {reason(error)}"
-            raise GlyphsplineError(message, font=str(self.path), glyph=name) from error
         return Outline(
             name=name,
             gid=gid,

@@ -83,16 +83,10 @@ class Ufo(NamedGlyphs):
         """
         gid = self._gid(name)
         pen = ContourPen(_Drawable(self), name)
-        try:
+        with self._drawing(name):
             glyph = self._read(name)
             glyph.draw(pen)
             pen.finish()
-        except GlyphsplineError as error:
-            error.locate(font=str(self.path), glyph=name)
-            raise
-        except Exception as error:  # ufoLib raises errors of many types
-            message = f"cannot be drawn: {reason(error)}"
-            raise GlyphsplineError(message, font=str(self.path), glyph=name) from error
         return Outline(
             name=name,
             gid=gid,

@@ -11,14 +11,17 @@ import numpy as np
 
 from ..arcs import jet, jit
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..orientation import farthest_joint, flip, runs_backwards
+from ..flat import Flat, contour_cubics, lasting
+from ..orientation import directed, direction, farthest_joint, turn
 
 TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
 
 
 class Chains(NamedTuple):
-    """The contours of a glyph.
+    """The contours of a glyph, in the direction in which they are fitted: a closed curve is turned back as a whole.
+
+    They begin at the joint farthest out, corner or not: such a curve ends nowhere.
 
     Attributes:
         cubics: (S, 4, 2) the segments of all contours; offsets: (K + 1,) where each contour begins, and S.
@@ -34,60 +37,36 @@ class Chains(NamedTuple):
     lengths: FloatArray
 
 
-def chains_of(parts: list[FloatArray]) -> Chains:
-    """Chains of contours given as cubics, (m, 4, 2) each."""
-    return Chains(*_canonical(np.concatenate(parts), np.cumsum([0] + [len(part) for part in parts])))
-
-
 @jit
-def _canonical(given: FloatArray, offsets: IntArray) -> tuple[FloatArray, IntArray, BoolArray, FloatArray, FloatArray]:
-    """The attributes of :class:`Chains`; segments that are points are left out."""
-    count = len(offsets) - 1
-    cubics = np.empty_like(given)
-    starts = np.zeros(count + 1, dtype=np.int64)
-    flipped = np.zeros(count, dtype=np.bool_)
+def chains_of(flat: Flat) -> Chains:
+    """The chains of contours end to end."""
+    count = len(flat.offsets) - 1
+    cubics = np.empty((len(flat.degrees), 4, 2))
+    offsets, flipped = np.zeros(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
     for k in range(count):
-        m = 0
-        chain = np.empty_like(given[offsets[k] : offsets[k + 1]])
-        for j in range(offsets[k], offsets[k + 1]):
-            if (given[j] != given[j, 0]).any():
-                chain[m] = given[j]
-                m += 1
-        chain = chain[:m]
-        flipped[k] = runs_backwards(chain)
-        if flipped[k]:
-            chain = flip(chain)
+        given = contour_cubics(flat, k)
+        chain, flipped[k] = directed(given[lasting(given)])
+        m = len(chain)
         first = farthest_joint(chain[:, 0])
-        starts[k + 1] = starts[k] + m
+        offsets[k + 1] = offsets[k] + m
         for j in range(m):
-            cubics[starts[k] + j] = chain[(first + j) % m]
-    cubics = cubics[: starts[count]]
+            cubics[offsets[k] + j] = chain[(first + j) % m]
+    cubics = cubics[: offsets[count]]
     turns, lengths = np.empty(len(cubics)), np.empty((len(cubics), TABLE + 1))
     for k in range(count):
-        part = cubics[starts[k] : starts[k + 1]]
-        _turns(part, turns[starts[k] :])
-        _lengths(part, lengths[starts[k] :])
-    return cubics, starts, flipped, turns, lengths
-
-
-@jit
-def _direction(cubics: FloatArray, j: int, end: int) -> tuple[float, float]:
-    """Direction of segment j at its first (0) or last (3) point, whatever handles have no length."""
-    step = 1 if end == 0 else -1
-    for k in range(end + step, end + 4 * step, step):
-        dx, dy = step * (cubics[j, k, 0] - cubics[j, end, 0]), step * (cubics[j, k, 1] - cubics[j, end, 1])
-        if dx != 0 or dy != 0:
-            return dx, dy
-    return 0.0, 0.0
+        part = cubics[offsets[k] : offsets[k + 1]]
+        _turns(part, turns[offsets[k] :])
+        _lengths(part, lengths[offsets[k] :])
+    return Chains(cubics, offsets, flipped, turns, lengths)
 
 
 @jit
 def _turns(cubics: FloatArray, turns: FloatArray) -> None:
-    m = len(cubics)
-    for j in range(m):
-        ax, ay = _direction(cubics, (j - 1) % m, 3)
-        bx, by = _direction(cubics, j, 0)
-        turns[j] = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+    """Into ``turns``; at whatever scale, so that no handle is too short."""
+    for j in range(len(cubics)):
+        ax, ay, _ = direction(cubics[j - 1], True, 0.0)
+        bx, by, _ = direction(cubics[j], False, 0.0)
+        turns[j] = turn(ax, ay, bx, by)
 
 
 @jit

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arcs import jet, jit
 from ..arrays import FloatArray
-from ..distance import section
+from ..distance import apart, extent, newton_step, section
 
 ROUNDING = 1e-13
 """Share of the largest coordinate added to the bound for floating point."""
@@ -29,7 +29,10 @@ NEWTON_STEPS = 4
 
 @jit
 def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, y: float) -> float:
-    """A parameter in [low, high] of a cubic (4, 2) near (x, y): Newton's method from a guess."""
+    """A parameter in [low, high] of a cubic (4, 2) near (x, y): Newton's method from a guess.
+
+    As :func:`..distance.nearest`, in fewer products and ended sooner: halving asks it again and again.
+    """
     at = guess
     for _ in range(NEWTON_STEPS):
         z = 1 - at
@@ -45,11 +48,8 @@ def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, 
         if speed <= 0:
             break
         bend = speed + 6 * (qx * (rx - lx) + qy * (ry - ly))
-        new = at - (qx * dx + qy * dy) / (bend if bend > 0.2 * speed else speed)
-        new = min(max(new, low), high)
-        moved = abs(new - at)
-        at = new
-        if moved < 1e-6:
+        before, at = at, newton_step(at, qx * dx + qy * dy, speed, bend, low, high)
+        if abs(at - before) < 1e-6:
             break
     return at
 
@@ -146,12 +146,11 @@ def _halve(
     while top >= 0:
         A, B = work[0, top], work[1, top]
         low, high, depth = marks[top]
-        most = 0.0
-        for k in range(4):
-            d = np.sqrt((A[k, 0] - B[k, 0]) ** 2 + (A[k, 1] - B[k, 1]) ** 2)
-            most = max(most, d)
-            if k in (0, 3) and d > gap:
-                gap, where = d, low if k == 0 else high
+        most, first, last = apart(A, B)
+        if first > gap:
+            gap, where = first, low
+        if last > gap:
+            gap, where = last, high
         limit = max(enough, bound)
         if gap > enough:
             limit = max(limit, gap + sharpness)
@@ -213,5 +212,4 @@ def sharpened(
             )
             gap = max(gap, gaps[i])
         bound = max(bound, bounds[i])
-    extent = max(np.abs(pieces).max(), np.abs(cubics).max())
-    return bound + ROUNDING * extent, gap
+    return bound + ROUNDING * max(extent(pieces), extent(cubics)), gap
