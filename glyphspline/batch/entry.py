@@ -60,6 +60,11 @@ def manifest_line(
     )
 
 
+def journal_line(sizes: Iterable[int], line: str) -> bytes:
+    """The line of the journal: the sizes of the glyph's files, in the order of the manifest's line, and that line."""
+    return f"{','.join(map(str, sizes))}\t{line}\n".encode()
+
+
 def measured(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
     if options.measure or (options.step is None and options.count is None):
@@ -117,6 +122,11 @@ def told_of_solved(
         f"{_short(max(rates))},{sum(solved.fallbacks[first:last])}]"
     )
     return row, (not good, False, None)
+
+
+def known(contours: str) -> str:
+    """What :func:`solved_texts` gave, without the measures that are not known."""
+    return contours.replace("," + _NULLS, "}")
 
 
 def _short(value: float) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..outline import FontMetrics
 from ..report.data import CHUNK
-from .entry import Told, manifest_line, told_of
+from .entry import Told, journal_line, manifest_line, told_of
 from .spec import RunSpec
 from .summary import Facts
 
@@ -50,7 +50,7 @@ class Task(NamedTuple):
 
 
 class Done(NamedTuple):
-    """One glyph, finished: its manifest line, the sizes of its files in the line's order, and how long it took.
+    """One glyph, finished: its line of the journal, as :mod:`.manifest` has them, and how long it took.
 
     What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
     """
@@ -58,8 +58,7 @@ class Done(NamedTuple):
     gid: int
     name: str
     status: str
-    line: str
-    sizes: tuple[int, ...]
+    line: bytes
     seconds: float
     row: str
     facts: Facts
@@ -90,7 +89,8 @@ def finished(
 ) -> Done:
     """What is told of a glyph; ``files`` and ``contours`` are JSON as its line has it, ``told`` what else is known."""
     line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
-    return Done(task.gid, task.name, status, line, sizes, seconds, *(told or told_of(json.loads(line))))
+    row, facts = told or told_of(json.loads(line))
+    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, row, facts)
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:

@@ -127,16 +127,13 @@ class Journal:
 
     def add(self, done: list[Done]) -> None:
         """Record glyphs whose files are written."""
-        lines = []
         at = self._offset
         for glyph in done:
-            line = (",".join(map(str, glyph.sizes)) + "\t" + glyph.line + "\n").encode()
-            lines.append(line)
             self.record.where[glyph.gid] = (JOURNAL, at)
             self.record.notes[glyph.gid] = (glyph.name, glyph.status, glyph.row, glyph.facts)
-            at += len(line)
+            at += len(glyph.line)
         try:
-            self._write(b"".join(lines))
+            self._write(b"".join([glyph.line for glyph in done]))
         except OSError as error:
             raise OutputError(f"cannot be written: {error.strerror or error}", font=str(self.path)) from error
 

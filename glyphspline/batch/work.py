@@ -26,7 +26,7 @@ from ..report.drawings import Drawing, drawing, drawing_of
 from ..writers.curvature_map import combs, combs_of, to_curvature_svg
 from ..writers.source import to_source_svg
 from ..writers.svg import to_svg
-from .entry import measured, solved_texts, told_of_solved
+from .entry import known, measured, solved_texts, told_of_solved
 from .files import write_whole
 from .job import Done, Job, Task, failed, finished, page_of
 from .pool import sign_of_life
@@ -111,7 +111,7 @@ def write_drawn(
     told = told_of_solved(task.name, task.gid, task.unicodes, advance, drawn.chunk.solved, first, last)
     seconds += time.perf_counter() - started
     done = finished(task, "ok", advance, files, sizes, contours, None, seconds, told)
-    return done, glyph_text(shown, files, contours, None)
+    return done, glyph_text(shown, files, known(contours), None)
 
 
 def write_documents(job: Job, task: Task, documents: Mapping[str, str | bytes]) -> tuple[str, tuple[int, ...]]:

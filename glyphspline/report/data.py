@@ -6,6 +6,7 @@ Both are text as soon as they are known, so that a worker can write a whole page
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from json.encoder import encode_basestring_ascii as quoted
 from typing import Any
@@ -29,6 +30,8 @@ COLUMNS = (
 DIGITS = 5
 """Significant digits of the table's measures."""
 
+_NULL = re.compile(r',"[a-z_]+":null')
+
 _encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
 
 
@@ -47,8 +50,10 @@ def glyph_text(drawing: Drawing, files: str, contours: str, error: str | None) -
 
     Args:
         drawing: its path data. files: its files as :func:`files_text` gives them. error: what went wrong.
-        contours: the measures of its contours as the manifest has them, without the brackets.
+        contours: the measures of its contours as the manifest has them, without the brackets; nulls are left out.
     """
+    if ":null" in contours:
+        contours = _NULL.sub("", contours)
     parts: list[Text] = ["{"]
     for name, data in drawing.items():
         parts += [f'"{name}":"', data, '",']
@@ -63,10 +68,10 @@ def files_text(files: Mapping[str, str]) -> str:
 
 
 def contours_text(contours: Iterable[Mapping[str, Any]]) -> str:
-    """What :func:`glyph_text` wants of the measures that were read from a manifest: the same text again."""
+    """What :func:`glyph_text` wants of the measures that were read from a manifest: the same text but for nulls."""
     return ",".join(
-        "{" + ",".join(f"{json.dumps(str(name))}:{_value(value)}" for name, value in contour.items()) + "}"
-        for contour in contours
+        "{" + ",".join(f"{as_json(str(name))}:{_value(value)}" for name, value in known.items()) + "}"
+        for known in ({name: value for name, value in contour.items() if value is not None} for contour in contours)
     )
 
 

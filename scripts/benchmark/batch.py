@@ -55,7 +55,7 @@ def rows() -> list[Row]:
         for k, options in enumerate((step, *close)):  # nothing is compiled while it is timed
             ours(here / f"warm-{k}", many[:50], options, ("svg", "curvature"), 1)
         rounds = []
-        for k in range(2):  # in turn, so that what else the machine does falls on all
+        for k in range(4):  # in turn, so that what else the machine does falls on all
             rounds.append(
                 (
                     fonttools_export(here / f"plain-{k}", many),
