@@ -131,12 +131,14 @@ class WorkerPool(Executor):
         seconds: time limit between signs of life.
         preload: modules to import before the first call: once, in the process from which the workers are forked. One
             that is there already, from an earlier pool, stays as it is, and workers import what they miss.
+        expected: so many calls are sure to come, and processes for them can start at once.
     """
 
-    def __init__(self, size: int, seconds: float, preload: Sequence[str] = ()) -> None:
+    def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
         self._max_workers = size
         self._seconds = seconds
         self._preload = tuple(preload)
+        self._expected = expected
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         if os.name != "nt":
             start_forkserver(preload)
@@ -204,7 +206,7 @@ class WorkerPool(Executor):
 
     def _start(self) -> None:
         """Processes as they are needed: as many as there are calls, up to the size."""
-        wanted = len(self._queue) + sum(len(worker.has) for worker in self._workers)
+        wanted = max(self._expected, len(self._queue) + sum(len(worker.has) for worker in self._workers))
         while len(self._workers) < min(self._max_workers, wanted):
             self._workers.append(_Worker(self._context, self._preload))
 

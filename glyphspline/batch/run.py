@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -67,17 +67,15 @@ def convert_font(
     spec = spec or RunSpec()
     check_possible(spec)
     record = prepare(source, out, spec, restart)
-    tasks = tasks_of(source, glyphs, record.where)
     job = Job(
         source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
         source.metrics, type(source) is Font and not source.axes,
     )  # fmt: skip
     finished = record.finished()
-    left = [task for task in tasks if task.gid not in finished]
     summary = Summary()
-    limit = spec.limits.seconds
-    own = nullcontext(executor) if executor else workers(jobs if left else 0, limit, spec.options, spec.formats)
-    with own as pool:
+    with nullcontext(executor) if executor else workers_for(source, glyphs, finished, spec, jobs) as pool:
+        tasks = tasks_of(source, glyphs, record.where)
+        left = [task for task in tasks if task.gid not in finished]
         job = with_scale(job, source, tasks, pool)
         if left:
             journal = Journal(out, record)
@@ -94,6 +92,15 @@ def convert_font(
     if left or missing(source, out, spec):
         summary.remarks += write_fonts(source, out, spec)
     return summary
+
+
+def workers_for(
+    source: Source, glyphs: Sequence[str], finished: Container[int], spec: RunSpec, jobs: int | None
+) -> Executor:
+    """Workers, which get ready while tasks are listed; none if all glyphs are finished."""
+    names = {name for gid, name in enumerate(source.glyph_names) if gid not in finished}
+    expected = len(names.intersection(glyphs))
+    return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
 def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:

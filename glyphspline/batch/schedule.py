@@ -43,15 +43,20 @@ class InProcess(Executor):
         return future
 
 
-def workers(jobs: int | None, seconds: float, options: Options | None = None, formats: Sequence[str] = ()) -> Executor:
+def workers(
+    jobs: int | None, seconds: float, options: Options | None = None, formats: Sequence[str] = (), expected: int = 0
+) -> Executor:
     """As many worker processes as asked for; None: one a core, 0: everything is done in this process.
 
     Args:
         seconds: what a glyph may take before its worker is killed.
         options, formats: what glyphs will be converted with and to, so that the code for it is loaded, or compiled,
             beforehand.
+        expected: how many calls are sure to come.
     """
-    return InProcess() if jobs == 0 else WorkerPool(jobs or os.cpu_count() or 1, seconds, modules_for(options, formats))
+    if jobs == 0:
+        return InProcess()
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, modules_for(options, formats), expected)
 
 
 def pool_size(pool: Executor) -> int:

@@ -15,6 +15,7 @@ from ..closed import CERTAIN_RATIO
 from ..engine import Ragged, interpolate_ragged
 from ..glyph import Options
 from ..outline import Outline
+from ..smooth.places import graded_polygons
 from ..writers.bounds import ink_box
 from ..writers.curvature_map import comb_precision, map_document
 from ..writers.figures import figures
@@ -24,7 +25,7 @@ from ..writers.svg import ViewBox, shown_box, svg_document
 from .contours import cubics_of
 from .curves import cubics_of_splines, paths
 from .reading import BulkReader
-from .stepping import stepped_points, uneven
+from .stepping import stepped_points
 
 MOST_VERTICES = 100_000
 """Vertices of a contour above which it is left to the long way."""
@@ -179,7 +180,8 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
 def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Ragged:
     """The curves of all polygons: those of well graded chords by Lemma 2's own rule, the rest by the options'."""
     ragged = interpolate_ragged(points, offsets, options.variant, **_how(options, "knot"))
-    ungraded = np.flatnonzero(uneven(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9)))
+    even = graded_polygons(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
+    ungraded = np.flatnonzero(~even)
     if options.fallback == "knot" or len(ungraded) == 0:
         return ragged
     parts = [points[offsets[k] : offsets[k + 1]] for k in ungraded]

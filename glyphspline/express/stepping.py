@@ -190,23 +190,3 @@ def _evaluate(pieces, table, at, points):
             a, b, c, d = pieces[j, 0, axis], pieces[j, 1, axis], pieces[j, 2, axis], pieces[j, 3, axis]
             ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
             points[i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def uneven(points, offsets, most):
-    """(K,) whether a polygon has a chord longer than ``most`` times its neighbour: not ``fit.is_graded``."""
-    found = np.zeros(len(offsets) - 1, dtype=np.bool_)
-    for k in range(len(offsets) - 1):
-        polygon = points[offsets[k] : offsets[k + 1]]
-        n = len(polygon)
-        if n < 3:
-            continue
-        before = np.sqrt((polygon[0, 0] - polygon[n - 1, 0]) ** 2 + (polygon[0, 1] - polygon[n - 1, 1]) ** 2)
-        for i in range(n):
-            j = i + 1 if i + 1 < n else 0
-            h = np.sqrt((polygon[j, 0] - polygon[i, 0]) ** 2 + (polygon[j, 1] - polygon[i, 1]) ** 2)
-            if not (h <= most * before and before <= most * h):
-                found[k] = True
-                break
-            before = h
-    return found

@@ -7,9 +7,10 @@ import numpy as np
 from ...convert import convert
 from ...express.contours import cubics_of
 from ...express.curves import cubics_of_splines, paths
-from ...express.stepping import stepped_points, uneven
+from ...express.stepping import stepped_points
 from ...glyph import Options
 from ...outline import Outline
+from ...smooth.places import graded_polygons
 from ...writers.figures import figures
 from .. import work as work
 from . import SQUARE
@@ -21,7 +22,7 @@ def warm() -> None:
     spline = result.contours[0].interpolations[0].spline
     cubics_of(np.array([2.0, 2.0]), np.array([2, 2]))
     stepped_points(SQUARE.cubics(), np.array([0, 4]), 20.0, 4.0, 1000)
-    uneven(result.contours[0].polygon, np.array([0, len(result.contours[0].polygon)]), 4.0)
+    graded_polygons(result.contours[0].polygon, np.array([0, len(result.contours[0].polygon)]), 4.0)
     counts = np.array([len(spline.control_points)])
     cubics, starts = cubics_of_splines(spline.control_points, spline.knots, np.array([0, counts[0]]), counts)
     paths(cubics, starts, np.array([0, 1]), *figures(2))
