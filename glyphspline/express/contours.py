@@ -9,9 +9,6 @@ from numba import njit
 
 from ..readers.pens import COINCIDENT, MAX_SEGMENTS
 
-GOOD, ODD = 0, 1
-"""Of a glyph: as it should be, or with something that the long way has to look at."""
-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def cubics_of(buffer, starts):

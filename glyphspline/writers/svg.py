@@ -31,7 +31,8 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
     """The interpolated glyph as an SVG document.
 
     One user unit is one font unit; the font's (x, y) is written as (x, -y), with no transform, so that the
-    origin of the glyph is the origin of the drawing. Coordinates have ``glyph.options.precision`` decimals.
+    origin of the glyph is the origin of the drawing. Coordinates have ``glyph.options.precision`` decimals; they are
+    written as differences, which add up to the rounded coordinates exactly.
 
     Args:
         glyph: what :func:`convert` gave.
