@@ -22,7 +22,7 @@ from time import perf_counter
 from .measure import Row, in_words
 
 FONT = Path(os.environ.get("GLYPHSPLINE_BENCH_FONT", "/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc"))
-GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "20000"))
+GLYPHS = int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "10000"))
 FIRST = 10_000
 """The first glyph index taken; Noto Sans CJK has Han glyphs there."""
 
@@ -57,7 +57,7 @@ def rows() -> list[Row]:
         for k, options in enumerate((step, *close)):  # nothing is compiled while it is timed
             ours(here / f"warm-{k}", many[:50], options, ("svg", "curvature"), 1)
         source, stepped, two, bare = least(
-            3,
+            6,
             lambda k: fonttools_export(here / f"plain-{k}", many),
             lambda k: ours(here / f"one-{k}", many, step, ("svg",), 1),
             lambda k: ours(here / f"two-{k}", many, step, ("svg",), 2),
@@ -65,12 +65,12 @@ def rows() -> list[Row]:
         )
         resumed = ours(here / "one-0", many, step, ("svg",), 1) * len(many)
         mapped, certified, sharp = least(
-            2,
+            3,
             lambda k: ours(here / f"maps-{k}", many, step, ("svg", "curvature"), 1),
             lambda k: ours(here / f"close-{k}", many, close[0], ("svg",), 1),
             lambda k: ours(here / f"sharp-{k}", many, close[1], ("svg",), 1),
         )
-        forge = fontforge_export(here / "forge", many)
+        (forge,) = least(3, lambda k: fontforge_export(here / f"forge-{k}", many))
     return [
         row("`--step 20`, one worker, against fontTools' export of the source", stepped, source, 1.5, 1.0),
         row("`--tolerance 1 --effort fast`, certified, against the same", certified, source, 8, 5),
