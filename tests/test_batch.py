@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -48,7 +49,7 @@ def test_every_glyph_is_in_the_manifest_once_in_gid_order_with_its_files(finishe
     assert [entry["status"] for entry in entries] == ["empty", "ok", "ok", "ok"]
     written = {path for entry in entries for path in entry["files"].values()}
     data = {f"gallery/{name}.js" for name in ("run", "table-00000", "glyphs-00000")}
-    pages = {"index.html", "manifest.jsonl", "run.json"} | data
+    pages = {"index.html", "manifest.jsonl", "run.json", ".sizes.txt"} | data
     assert written | pages == content(finished).keys()
     assert entries[2]["unicodes"] == ["U+0042"]
     assert all(contour["converged"] is True for entry in entries for contour in entry["contours"])
@@ -102,6 +103,27 @@ def test_a_file_lost_or_cut_after_its_journal_line_is_written_again(finished: Pa
     (out / "svg" / "eight.svg").write_bytes(b"")
     assert convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0).done == 3
     assert content(out) == content(finished)
+
+
+@pytest.mark.parametrize(
+    "lost", ["svg/*", "gallery/glyphs-00000.js", "gallery/table-00000.js", "gallery/run.js", "index.html"]
+)
+def test_what_a_finished_folder_lost_to_a_power_cut_is_made_again(
+    lost: str, finished: Path, font: Font, tmp_path: Path
+) -> None:
+    shutil.copytree(finished, tmp_path / "cut")
+    victim = sorted((tmp_path / "cut").glob(lost))[0]
+    size = victim.stat().st_size
+    for left in (victim.read_bytes()[:-40], b"", bytes(size)):
+        victim.write_bytes(left)
+        convert_font(font, font.select(text="O8 B"), tmp_path / "cut", SPEC, jobs=0)
+        assert content(tmp_path / "cut") == content(finished)
+
+
+def test_a_list_of_sizes_that_is_no_such_list_does_no_harm(finished: Path, font: Font, tmp_path: Path) -> None:
+    shutil.copytree(finished, tmp_path / "odd")
+    (tmp_path / "odd" / ".sizes.txt").write_bytes(b"1\n2\tx\n" + b"9" * 5000 + b"\t1\n\t\n\xff\t1,,2\n")
+    assert convert_font(font, font.select(text="O8 B"), tmp_path / "odd", SPEC, jobs=0).done == 0
 
 
 def test_a_wider_selection_adds_to_the_folder(font: Font, tmp_path: Path) -> None:

@@ -4,15 +4,15 @@ While a run is under way, each finished glyph is a line of the journal, in any o
 its manifest line. At the end the manifest is written whole, in glyph index order, and the journal goes. A line that
 was cut off, or whose files are not there in those sizes, counts as not written.
 
-Nothing waits for the disk but ``run.json`` and the manifest at the end, so a power cut may take what the system had not
-stored yet. Of a run under way the sizes tell; of a finished one, that a file is empty, as files are that were given
-their names and no content.
+Nothing waits for the disk but ``run.json`` and, at the end, the manifest and ``SIZES``, which has the sizes of the
+files of each of its glyphs. So a power cut may take what the system had not stored yet, and the sizes tell.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
@@ -26,7 +26,10 @@ from .summary import Facts, Summary
 
 MANIFEST = "manifest.jsonl"
 JOURNAL = ".journal.jsonl"
+SIZES = ".sizes.txt"
 
+
+_SIZES_LINE = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
 
 Note = tuple[str, str, str, Facts]
 """Of a glyph done now: its name and status, its row of the table, and its facts."""
@@ -38,6 +41,7 @@ class Record:
 
     Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found. Of glyphs
     done now there is ``notes``: what is in their lines for table and summary, so that those need not be read again.
+    ``sizes`` are those of the files of glyphs that the manifest has, as the journal writes them.
     ``pages`` are numbers of pages of the gallery that were written now.
     """
 
@@ -45,6 +49,7 @@ class Record:
     failed: set[int] = field(default_factory=set)
     counts: Summary = field(default_factory=Summary)
     notes: dict[int, Note] = field(default_factory=dict)
+    sizes: dict[int, bytes] = field(default_factory=dict)
     pages: set[int] = field(default_factory=set)
 
     def finished(self) -> set[int]:
@@ -54,11 +59,15 @@ class Record:
 
 def read_record(out: Path) -> Record:
     """What an earlier run has finished in a folder, by its manifest and its journal."""
-    record = Record()
+    record = Record(sizes=_known_sizes(out / SIZES))
     present = {name: sizes(out / name) for name in SUFFIXES}
     for name in (MANIFEST, JOURNAL):
-        for offset, length_of, entry in _lines(out / name):
-            if not _is_entry(entry) or not _written(entry["files"], length_of, present):
+        for offset, lengths, entry in _lines(out / name):
+            if not _is_entry(entry):
+                continue
+            if lengths is None and entry["gid"] in record.sizes:
+                lengths = _numbers(record.sizes[entry["gid"]])
+            if not _written(out, entry["files"], lengths, present):
                 continue
             record.where[entry["gid"]] = (name, offset)
             record.counts.add(entry)
@@ -75,8 +84,7 @@ def _lines(path: Path) -> Iterator[tuple[int, list[int] | None, Any]]:
                 head, tab, text = line.rpartition(b"\t")
                 try:
                     if line.endswith(b"\n"):
-                        lengths = [int(part) for part in head.split(b",") if part] if tab else None
-                        yield offset, lengths, json.loads(text)
+                        yield offset, _numbers(head) if tab else None, json.loads(text)
                 except ValueError:
                     pass  # a line that was cut off and then continued by the next run
                 offset += len(line)
@@ -84,14 +92,39 @@ def _lines(path: Path) -> Iterator[tuple[int, list[int] | None, Any]]:
         return
 
 
+def _known_sizes(path: Path) -> dict[int, bytes]:
+    """What ``SIZES`` has, by glyph index; nothing of lines that are not as they should be."""
+    try:
+        found = map(_SIZES_LINE.fullmatch, path.read_bytes().splitlines())
+    except FileNotFoundError:
+        return {}
+    return {int(match[1]): match[2] for match in found if match}
+
+
+def _numbers(text: bytes) -> list[int]:
+    return [int(part) for part in text.split(b",") if part]
+
+
 def _is_entry(entry: Any) -> bool:
     return isinstance(entry, dict) and isinstance(entry.get("gid"), int) and isinstance(entry.get("files"), dict)
 
 
-def _written(files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
+def _written(out: Path, files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
     """Whether all files of an entry are there, and as long as they were written, or not empty if that is not known."""
     there = [present.get(folder, {}).get(name) for folder, _, name in (path.rpartition("/") for path in files.values())]
-    return all(there) if lengths is None else there == lengths
+    if not (all(there) if lengths is None else there == lengths):
+        return False
+    return all(_stored(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
+
+
+def _stored(path: str, size: int) -> bool:
+    """Whether a file's end is there: what was not stored may be zeros after a power cut. No file of ours ends so."""
+    try:
+        with open(path, "rb", buffering=0) as file:
+            file.seek(size - 1)
+            return file.read(1) not in (b"\0", b"")
+    except OSError:
+        return False
 
 
 def remove_written(out: Path) -> None:
@@ -161,26 +194,29 @@ def entries_of(out: Path) -> Iterator[dict[str, Any]]:
 
 @contextmanager
 def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
-    """Write the manifest in glyph index order, giving each glyph's index and line as it passes.
+    """Write manifest and sizes in glyph index order, giving each glyph's index and line as it passes.
 
     It gets its name, and the journal goes, when the block is left, with all lines taken and no error: what else is to
     be written at the end of a run is written in the block, or it would never be made up for.
     """
-    partial = out / f".{MANIFEST}-{os.getpid()}{PARTIAL}"
+    partial, partial_sizes = (out / f".{name.strip('.')}-{os.getpid()}{PARTIAL}" for name in (MANIFEST, SIZES))
     try:
-        with open(partial, "xb") as manifest:
-            yield _written_to(manifest, out, record)
-            manifest.flush()
-            os.fsync(manifest.fileno())
+        with open(partial, "xb") as manifest, open(partial_sizes, "xb") as lengths:
+            yield _written_to(manifest, lengths, out, record)
+            for file in (manifest, lengths):
+                file.flush()
+                os.fsync(file.fileno())
+        os.replace(partial_sizes, out / SIZES)
         os.replace(partial, out / MANIFEST)
         (out / JOURNAL).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"cannot be written: {error.strerror or error}", font=str(out / MANIFEST)) from error
     finally:
-        partial.unlink(missing_ok=True)
+        for path in (partial, partial_sizes):
+            path.unlink(missing_ok=True)
 
 
-def _written_to(manifest: BinaryIO, out: Path, record: Record) -> Iterator[tuple[int, bytes]]:
+def _written_to(manifest: BinaryIO, lengths: BinaryIO, out: Path, record: Record) -> Iterator[tuple[int, bytes]]:
     with ExitStack() as opened:
         files: dict[str, BinaryIO] = {}
         for gid in sorted(record.where):
@@ -188,6 +224,8 @@ def _written_to(manifest: BinaryIO, out: Path, record: Record) -> Iterator[tuple
             if name not in files:
                 files[name] = opened.enter_context(open(out / name, "rb"))
             files[name].seek(offset)
-            line = files[name].readline().rpartition(b"\t")[2]
+            head, tab, line = files[name].readline().rpartition(b"\t")
             manifest.write(line)
+            if tab or gid in record.sizes:
+                lengths.write(b"%d\t%s\n" % (gid, head if tab else record.sizes[gid]))
             yield gid, line

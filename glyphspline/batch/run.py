@@ -14,11 +14,11 @@ from pathlib import Path
 from ..curvature import robust_scale
 from ..readers import Font, Source
 from ..report.data import FOLDER
-from ..report.gallery import Gallery, shown
+from ..report.gallery import Gallery, is_whole, shown
 from .entry import told_of
 from .files import OutputError, file_names, make_folder, remove_partials
 from .job import Job, Task, failed, page_of, survey, work
-from .manifest import JOURNAL, MANIFEST, Journal, Note, Record, finish, read_record, remove_written
+from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
 from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
 from .summary import Summary
@@ -85,7 +85,8 @@ def convert_font(
                 journal.close()
         for name in (*spec.folders, FOLDER) if left else ():
             remove_partials(out / name)
-    if left or not (out / MANIFEST).exists() or (out / JOURNAL).exists():
+    whole = (out / MANIFEST).exists() and not (out / JOURNAL).exists() and is_whole(out, len(record.where))
+    if left or not whole:
         conclude(out, record, summary)
     else:
         summary = record.counts
@@ -115,7 +116,7 @@ def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
             )
     else:
         remove_written(out)
-        for name in (MANIFEST, JOURNAL, RUN_FILE):
+        for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
             (out / name).unlink(missing_ok=True)
     for name in (*spec.folders, FOLDER):
         make_folder(out / name)

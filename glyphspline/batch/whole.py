@@ -69,7 +69,7 @@ def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSp
     flavour: Flavour = "otf" if path.suffix == ".otf" else "ttf"
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     data, summary = to_font(source, glyphs, flavour, tolerance=tolerance)
-    write_whole(str(path), data)
+    write_whole(str(path), data, durable=True)
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:
         remark += f", within {summary.largest_error:.3g} units of the source"

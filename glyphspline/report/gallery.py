@@ -115,6 +115,23 @@ class Gallery:
         self._tables += 1
 
 
+def is_whole(out_dir: Path, count: int) -> bool:
+    """Whether the gallery of so many glyphs is there, and no file of it was cut off."""
+    names = ["run.js", *(f"table-{k:05}.js" for k in range(-(-count // TABLE)))]
+    paths = [*(f"{FOLDER}/{name}" for name in names), *(page_file(k) for k in range(-(-count // CHUNK)))]
+    ends = [*((path, b");\n") for path in paths), ("index.html", b"</html>\n")]
+    return all(_end_of(out_dir / path, len(end)) == end for path, end in ends)
+
+
+def _end_of(path: Path, size: int) -> bytes:
+    try:
+        with open(path, "rb") as file:
+            file.seek(-size, os.SEEK_END)
+            return file.read()
+    except OSError:  # not there, or shorter
+        return b""
+
+
 def row_of(entry: Entry) -> str:
     """An entry's row of the table."""
     return table_row(
