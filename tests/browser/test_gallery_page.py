@@ -179,8 +179,11 @@ def test_prints_cards_in_columns(page: Any, gallery: Path) -> None:
     opened(page, gallery / "kouzan-gyosho")
     page.emulate_media(media="print")
     assert page.locator(".controls").is_hidden()
-    tops = page.locator(".cell").evaluate_all("cells => cells.map(c => c.getBoundingClientRect().top)")
-    assert len(set(tops)) == 4, "18 cards, five in a row"
+    # The page hears of the new medium a moment later, and draws its cards anew: 18 of them, five in a row.
+    page.wait_for_function(
+        "() => { const tops = [...document.querySelectorAll('.cell')].map((c) => c.getBoundingClientRect().top);"
+        " return tops.length === 18 && new Set(tops).size === 4; }"
+    )
     assert page.pdf().startswith(b"%PDF")
 
 
