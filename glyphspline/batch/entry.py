@@ -31,11 +31,9 @@ With ``step`` or ``count`` and no ``measure`` the others are not computed, which
 _ALL, _FEW = attrgetter(*NAMES), attrgetter(*SOLVED)
 _TEMPLATE = "{" + ",".join(f'"{name}":%s' for name in NAMES) + "}"
 _NULLS = ",".join(f'"{name}":null' for name in NAMES[len(SOLVED) :]) + "}"
-_QUICK = (
-    '{"vertices":%d,"segments":%d,"numbers":%d,"iterations":%d,"residual":%.7g,"converged":%s,"rate_bound":%.7g,'
-    '"fallbacks":%d,' + _NULLS
-)
-"""What :func:`number` makes of numbers that are finite, in one go: of a short glyph this is a good part of the time."""
+_UNKNOWN = (None,) * (len(NAMES) - len(SOLVED))
+_KINDS = (int, int, int, int, float, bool, float, int, *map(type, _UNKNOWN))
+"""Of a contour of which only ``SOLVED`` is known."""
 
 Told = tuple[str, Facts]
 """Of a glyph, its row of the gallery's table, and the facts that are counted."""
@@ -67,9 +65,8 @@ def journal_line(sizes: Iterable[int], line: str) -> bytes:
 
 def measured(measures: Iterable[Measures], options: Options) -> str:
     """The measures of a glyph's contours as JSON objects between commas."""
-    if options.measure or (options.step is None and options.count is None):
-        return ",".join([_text_of(_ALL(item)) for item in measures])
-    return ",".join(solved_texts(list(zip(*map(_FEW, measures), strict=True))))
+    everything = options.measure or (options.step is None and options.count is None)
+    return ",".join([_text_of(_ALL(item) if everything else (*_FEW(item), *_UNKNOWN)) for item in measures])
 
 
 def _text_of(row: tuple[Any, ...]) -> str:
@@ -90,15 +87,13 @@ def _template(kinds: tuple[type, ...]) -> str | None:
 
 def solved_texts(columns: Sequence[Sequence[Any]]) -> list[str]:
     """The same of what the interpolation itself knows, a text a contour; ``columns`` are the measures of ``SOLVED``."""
-    if not columns:
-        return []
     *counts, residuals, converged, rates, fallbacks = columns
-    if not isfinite(sum(residuals) + sum(rates)):
-        nulls = ["null"] * (len(NAMES) - len(SOLVED))
-        return [_TEMPLATE % (*map(number, row), *nulls) for row in zip(*columns, strict=True)]
+    quick = _template(_KINDS)
+    if quick is None or not isfinite(sum(residuals) + sum(rates)):
+        return [_text_of((*row, *_UNKNOWN)) for row in zip(*columns, strict=True)]
     words = ["true" if good else "false" for good in converged]
     values = chain.from_iterable(zip(*counts, residuals, words, rates, fallbacks, strict=True))
-    return ((_QUICK + "\n") * len(words) % tuple(values)).splitlines()
+    return ((quick + "\n") * len(words) % tuple(values)).splitlines()
 
 
 def told_of(entry: Mapping[str, Any]) -> Told:
