@@ -5,16 +5,17 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import display
-from .bspline import Spline
-from .convert import convert
-from .display import plot
+from . import notebook as display
+from ._version import __version__
+from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, PolygonError
-from .glyph import ContourResult, GlyphResult, Measures, Options
-from .interpolation import Interpolation, interpolate, interpolate_many, interpolate_vertex
-from .outline import Contour, FontMetrics, Outline
-from .sampling import sample
-from .version import __version__
+from .fitting.convert import convert
+from .fitting.options import Options
+from .fitting.results import ContourResult, GlyphResult, Measures
+from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
+from .notebook import plot
+from .outlines.outline import Contour, FontMetrics, Outline
+from .outlines.sampling import sample
 
 display.install()
 
@@ -22,21 +23,21 @@ if TYPE_CHECKING:
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
-    from .writers.curvature_map import to_curvature_svg as to_curvature_svg
-    from .writers.font import write_font as write_font
-    from .writers.svg import to_svg as to_svg
-    from .writers.table import write_table as write_table
-    from .writers.ufo import write_ufo as write_ufo
+    from .writers.font.font_file import write_font as write_font
+    from .writers.parquet import write_table as write_table
+    from .writers.svg.curvature_map import to_curvature_svg as to_curvature_svg
+    from .writers.svg.document import to_svg as to_svg
+    from .writers.ufo_folder import write_ufo as write_ufo
 
 _ON_DEMAND = {
     "Font": ".readers",
     "open_font": ".readers",
     "open_source": ".readers",
-    "to_curvature_svg": ".writers.curvature_map",
-    "to_svg": ".writers.svg",
-    "write_font": ".writers.font",
-    "write_table": ".writers.table",
-    "write_ufo": ".writers.ufo",
+    "to_curvature_svg": ".writers.svg.curvature_map",
+    "to_svg": ".writers.svg.document",
+    "write_font": ".writers.font.font_file",
+    "write_table": ".writers.parquet",
+    "write_ufo": ".writers.ufo_folder",
 }
 """Names whose modules bring font or drawing libraries with them: the curve core opens without those."""
 

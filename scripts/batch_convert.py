@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 
 from glyphspline.batch import OutputError, RunSpec, find_fonts, folders_for
-from glyphspline.cli import options as opt
+from glyphspline.cli import arguments as opt
 from glyphspline.cli.commands import errors, run, say, stop, workplace
 from glyphspline.errors import GlyphsplineError
 from glyphspline.readers import AnySource, open_source

@@ -23,7 +23,7 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import glyphspline as gs
-from glyphspline.glyph import Corners
+from glyphspline.fitting.options import Corners
 
 ROOT = Path(__file__).resolve().parent.parent
 FONTS = ROOT / "fonts_test"

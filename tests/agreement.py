@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.reference import interpolate_reference
+from glyphspline.interpolation.reference import interpolate_reference
+from glyphspline.types import FloatArray
 
 TOLERANCE = 1e-9
 """Of control points, in the polygon's extent."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 METRICS = gs.FontMetrics(1000.0, 800.0, -200.0)
 L_SHAPE = np.array([[50, 0], [450, 0], [450, 80], [130, 80], [130, 700], [50, 700]], dtype=float)

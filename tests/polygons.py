@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from glyphspline.arrays import FloatArray
-from glyphspline.outline import Contour
+from glyphspline.outlines.outline import Contour
+from glyphspline.types import FloatArray
 
 Generator = np.random.Generator
 

@@ -18,7 +18,7 @@ from glyphspline.batch import OutputError, RunSpec, convert_font, entries_of, fi
 from glyphspline.batch.files import LONGEST_NAME, file_names, write_whole
 from glyphspline.batch.manifest import JOURNAL
 from glyphspline.errors import GlyphsplineError
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
@@ -168,7 +168,7 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
 def opened_as(font: Font) -> Any:
     """Workers of this process find this font where they would open it."""
     patch = pytest.MonkeyPatch()
-    patch.setattr("glyphspline.batch.work.source_of", lambda *key: font)
+    patch.setattr("glyphspline.batch.worker.source_of", lambda *key: font)
 
     class Undo:
         def __enter__(self) -> None: ...
@@ -231,7 +231,7 @@ KILL_ME = """
 import os, signal, sys
 from pathlib import Path
 from glyphspline.batch import RunSpec, convert_font
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
 
 def observe(done, total, failed):

@@ -7,9 +7,9 @@ import pytest
 from fontTools.pens.recordingPen import RecordingPen
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.bezier import evaluate
-from glyphspline.knots import closed_knots, vertex_centres, vertex_parameters
+from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.parameters import closed_knots, vertex_centres, vertex_parameters
+from glyphspline.types import FloatArray
 
 from .polygons import ellipse, random_polygon
 

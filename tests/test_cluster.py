@@ -14,7 +14,7 @@ import pytest
 from glyphspline.batch import RunSpec, convert_font
 from glyphspline.batch.cluster import ClusterExecutor
 from glyphspline.errors import GlyphsplineError
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
 
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import glyphspline as gs
-from glyphspline.engine import interpolate_ragged
-from glyphspline.reference import interpolate_vertex_reference
+from glyphspline.interpolation.batched import interpolate_ragged
+from glyphspline.interpolation.reference import interpolate_vertex_reference
 
 from .agreement import TOLERANCE, compare
 from .polygons import KINDS, polygon, smooth, uniform

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.crossings import chords, overshoot, self_crossings
+from glyphspline.curves.crossings import chords, overshoot, self_crossings
+from glyphspline.types import FloatArray
 
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.curvature import ANGLE, Comb, comb, relative, robust_scale
+from glyphspline.curves.curvature import ANGLE, Comb, comb, relative, robust_scale
 
 from .drawings import circle
 

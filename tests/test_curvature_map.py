@@ -12,10 +12,10 @@ import pytest
 from matplotlib.image import imread
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.writers.colours import SIDES, class_colour, colour_classes
-from glyphspline.writers.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
-from glyphspline.writers.raster import to_pdf, to_png
+from glyphspline.types import FloatArray
+from glyphspline.writers.figures.raster import to_pdf, to_png
+from glyphspline.writers.svg.colours import SIDES, class_colour, colour_classes
+from glyphspline.writers.svg.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 
@@ -146,7 +146,7 @@ def test_png_shows_the_comb_in_its_colours() -> None:
 
 
 def test_writing_svg_does_not_import_matplotlib() -> None:
-    modules = "glyphspline.writers.curvature_map, glyphspline.writers.raster, glyphspline.report"
+    modules = "glyphspline.writers.svg.curvature_map, glyphspline.writers.figures.raster, glyphspline.report"
     code = f"import sys, {modules}; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli import app
-from glyphspline.continuity import joins
-from glyphspline.writers.atlas import overview, profile
+from glyphspline.outlines.joins import joins
+from glyphspline.writers.figures.atlas import overview, profile
 
 from .drawings import L_SHAPE, METRICS, circle, polygon_contour
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.distance import certified_distance
-from glyphspline.sampling import Track
+from glyphspline.fitting.certified_distance import certified_distance
+from glyphspline.outlines.sampling import Track
+from glyphspline.types import FloatArray
 
 from .polygons import circle_contour, square_contour
 

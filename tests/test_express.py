@@ -13,23 +13,24 @@ import pytest
 from svgpathtools import parse_path
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.batch import RunSpec, convert_font, entries_of, work
+from glyphspline.batch import RunSpec, convert_font, entries_of
+from glyphspline.batch import worker as work
 from glyphspline.batch.entry import measured, solved_texts, told_of
 from glyphspline.batch.job import Job
+from glyphspline.batch.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
 from glyphspline.batch.run import tasks_of
-from glyphspline.express.contours import cubics_of
-from glyphspline.express.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
-from glyphspline.express.outlines import read_chunk
-from glyphspline.express.reading import BulkReader
-from glyphspline.express.stepping import stepped_points
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
+from glyphspline.outlines.sampling import sample
+from glyphspline.outlines.stepping import stepped_points
 from glyphspline.readers import open_font
-from glyphspline.sampling import sample
-from glyphspline.writers.curvature_map import to_curvature_svg
-from glyphspline.writers.markup import polyline_data
-from glyphspline.writers.source import to_source_svg
-from glyphspline.writers.svg import to_svg
+from glyphspline.readers.opentype.bulk import BulkReader
+from glyphspline.readers.opentype.bulk_contours import cubics_of
+from glyphspline.readers.opentype.bulk_outlines import read_chunk
+from glyphspline.types import FloatArray
+from glyphspline.writers.svg.curvature_map import to_curvature_svg
+from glyphspline.writers.svg.document import to_svg
+from glyphspline.writers.svg.markup import polyline_data
+from glyphspline.writers.svg.source_drawing import to_source_svg
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
 STATIC = ["kouzan-gyosho.ttf", "kouzan-gyosho.otf", "kouzan-kaisho.ttf", "edge-cases.ttf"]

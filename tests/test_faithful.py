@@ -11,12 +11,12 @@ import pytest
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.contours import certified_rate
-from glyphspline.crossings import self_crossings
-from glyphspline.fit import chords
-from glyphspline.overlaps import inked_area, remove_overlaps
-from glyphspline.sampling import Track
+from glyphspline.curves.crossings import self_crossings
+from glyphspline.fitting.fixed_contours import certified_rate
+from glyphspline.fitting.fixed_sampling import chords
+from glyphspline.outlines.overlaps import inked_area, remove_overlaps
+from glyphspline.outlines.sampling import Track
+from glyphspline.types import FloatArray
 
 from .polygons import circle_contour, square_contour
 

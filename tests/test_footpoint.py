@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from glyphspline.bspline import Spline
-from glyphspline.core.footpoint import WORK, search_piece
-from glyphspline.engine import interpolate_ragged
-from glyphspline.reference import footpoint, prepare
+from glyphspline.curves.bspline import Spline
+from glyphspline.interpolation.batched import interpolate_ragged
+from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
+from glyphspline.interpolation.reference import footpoint, prepare
 
 from .polygons import smooth, uniform
 

@@ -18,10 +18,10 @@ from svgpathtools import parse_path
 import glyphspline as gs
 from glyphspline.report import write_index, write_report
 from glyphspline.report.drawings import read_drawing
-from glyphspline.report.measures import glyph_measures
-from glyphspline.writers.curvature_map import to_curvature_svg
-from glyphspline.writers.source import to_source_svg
-from glyphspline.writers.svg import to_svg
+from glyphspline.report.glyph_measures import glyph_measures
+from glyphspline.writers.svg.curvature_map import to_curvature_svg
+from glyphspline.writers.svg.document import to_svg
+from glyphspline.writers.svg.source_drawing import to_source_svg
 
 from .drawings import METRICS, circle
 

@@ -18,7 +18,7 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 
 from glyphspline.batch import RunSpec, convert_font, entries_of
 from glyphspline.batch.spec import Limits
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
 
 ROOT = Path(__file__).parents[1]

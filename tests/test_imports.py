@@ -1,102 +1,115 @@
-"""Imports run one way, and the package opens quickly: no file of an earlier room knows a later one."""
+"""The rooms of the package: imports run one way between them, no files import each other in a circle, opening is quick.
+
+Rooms are the folders and the single files of the package's top level, and are read from the disk.
+"""
 
 from __future__ import annotations
 
 import ast
 import subprocess
 import sys
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-ROOMS = [
-    {"arrays", "errors", "version"},
-    {
-        "bezier",
-        "knots",
-        "bspline",
-        "polygon",
-        "intervals",
-        "core",
-        "engine",
-        "stepwise",
-        "result",
-        "reference",
-        "interpolation",
-        "arcs",
-    },
-    {"outline", "orientation", "sampling"},
-    {
-        "measure",
-        "combing",
-        "curvature",
-        "distance",
-        "crossings",
-        "continuity",
-        "joints",
-        "arcfit",
-        "cubicfit",
-        "frugal",
-        "flat",
-        "chains",
-        "pieces",
-        "survey",
-        "smooth",
-    },
-    {"glyph"},
-    {"closed", "refine", "smooth_contours", "fit", "sharp", "contours", "sharp_contours", "overlaps", "convert"},
-    {"readers", "writers"},
-    {"report", "express", "display"},
-    {"viewer"},
-    {"batch"},
-    {"cli", "__main__"},
-]
-"""From the curve core to the shell. ``__init__`` stands outside: it gathers the public names."""
+BASE = {"errors", "types", "_version"}
+CURVES = BASE | {"curves"}
+FITTING = CURVES | {"interpolation", "outlines", "fitting"}
+WRITERS = FITTING | {"readers", "writers"}
+PLAN = {
+    "_version": set(),
+    "errors": set(),
+    "types": set(),
+    "curves": BASE,
+    "interpolation": CURVES,
+    "outlines": CURVES,
+    "fitting": FITTING,
+    "readers": CURVES | {"outlines"},
+    "writers": WRITERS,
+    "report": WRITERS,
+    "batch": WRITERS | {"report"},
+    "viewer": WRITERS | {"report"},
+    "notebook": WRITERS,
+    "cli": WRITERS | {"report", "batch", "viewer"},
+    "__main__": {"cli"},
+}
+"""What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""
 
 FONT_LIBRARIES = {"fontTools", "uharfbuzz", "svgpathtools", "pathops"}
 DRAWING_LIBRARIES = {"matplotlib", "PIL"}
+CORE = {"curves", "interpolation", "outlines", "fitting"}
 
 
-def room(module: str) -> int:
-    first = module.split(".")[0]
-    return next(rank for rank, names in enumerate(ROOMS) if first in names)
+def name_of(path: Path) -> str:
+    """The module of a file, without the package's name."""
+    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
 
 
-def modules() -> list[tuple[str, Path]]:
-    paths = [p for p in sorted(PACKAGE.rglob("*.py")) if p != PACKAGE / "__init__.py"]
-    return [(".".join(p.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__"), p) for p in paths]
+MODULES = {name_of(path): path for path in sorted(PACKAGE.rglob("*.py")) if path != PACKAGE / "__init__.py"}
 
 
-def imports(module: str, path: Path) -> list[str]:
-    """Absolute names of all that a file imports, those inside functions included."""
+def room(module: str) -> str:
+    return module.split(".")[0]
+
+
+def imported(module: str) -> Iterator[str]:
+    """Absolute names of all that a file imports, inside functions too; ``a.b.name`` where a name is imported."""
+    path = MODULES[module]
     package = ["glyphspline", *module.split(".")]
     if path.name != "__init__.py":
         package = package[:-1]
-    found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
+            yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
-            name = ".".join([*base, *([node.module] if node.module else [])])
-            found += [f"{name}.{alias.name}" for alias in node.names] if not node.module else [name]
-    return found
+            yield from (".".join([*base, *filter(None, [node.module]), alias.name]) for alias in node.names)
 
 
-@pytest.mark.parametrize(("module", "path"), modules(), ids=[name for name, _ in modules()])
-def test_no_file_imports_from_a_later_room(module: str, path: Path) -> None:
-    here = room(module)
-    for name in imports(module, path):
-        if name.startswith("glyphspline.") and name != "glyphspline.version":
-            assert room(name.removeprefix("glyphspline.")) <= here, f"{module} imports {name}"
+def modules_imported(module: str) -> set[str]:
+    """The modules of the package that a file imports."""
+    found = set()
+    for name in imported(module):
+        parts = name.removeprefix("glyphspline.").split(".") if name.startswith("glyphspline.") else []
+        for stop in (len(parts), len(parts) - 1):
+            if ".".join(parts[:stop]) in MODULES:
+                found.add(".".join(parts[:stop]))
+                break
+    return found - {module}
 
 
-@pytest.mark.parametrize(("module", "path"), modules(), ids=[name for name, _ in modules()])
-def test_the_core_knows_no_fonts_and_draws_nothing(module: str, path: Path) -> None:
-    libraries = {name.split(".")[0] for name in imports(module, path)}
-    if room(module) < room("readers") and module != "overlaps":
+def test_every_room_is_on_the_plan() -> None:
+    assert {room(module) for module in MODULES} == PLAN.keys()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_file_imports_only_what_its_room_may(module: str) -> None:
+    allowed = PLAN[room(module)] | {room(module)}
+    beyond = [other for other in modules_imported(module) if room(other) not in allowed]
+    assert not beyond
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    graph = {module: modules_imported(module) for module in MODULES}
+    try:
+        list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def test_a_circle_would_be_found() -> None:
+    with pytest.raises(CycleError):
+        list(TopologicalSorter({"a": {"b"}, "b": {"a"}}).static_order())
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if room(module) in CORE])
+def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
+    libraries = {name.split(".")[0] for name in imported(module)}
+    if module != "outlines.overlaps":
         assert not libraries & (FONT_LIBRARIES | DRAWING_LIBRARIES)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from glyphspline.errors import FontError
-from glyphspline.readers.info import file_facts
+from glyphspline.readers.facts import file_facts
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 

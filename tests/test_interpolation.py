@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .polygons import ellipse, random_polygon
 

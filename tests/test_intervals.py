@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from glyphspline.arrays import FloatArray
-from glyphspline.intervals import basis_function, level_interval, peaks, search_intervals
+from glyphspline.interpolation.intervals import basis_function, level_interval, peaks, search_intervals
+from glyphspline.types import FloatArray
 
 
 def windows(count: int, degree: int = 3, spread: float = 1.0, seed: int = 0) -> FloatArray:

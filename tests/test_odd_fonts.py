@@ -13,9 +13,9 @@ from fontTools.ttLib.tables.DefaultTable import DefaultTable
 import glyphspline as gs
 from glyphspline.batch import RunSpec, convert_font, entries_of
 from glyphspline.errors import FontError
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
-from glyphspline.writers.font import to_font
+from glyphspline.writers.font.font_file import to_font
 
 from .test_writers_font import largest_distance
 

@@ -9,7 +9,7 @@ import pytest
 
 from glyphspline.batch import OutputError, RunSpec, convert_font, write_gallery
 from glyphspline.batch.manifest import JOURNAL
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
 from glyphspline.report.data import CHUNK, page_file
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.intervals import basis_function
+from glyphspline.interpolation.intervals import basis_function
 from scripts.paper.certified import certify, enclose, family, peak_values, threshold, windows_of, worst_corner
 from scripts.paper.clicking import CHARACTERS, DATA, FONTS, clicked_character
 from scripts.paper.common import VERDICTS, Run, random_polygons

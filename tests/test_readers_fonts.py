@@ -18,9 +18,9 @@ from fontTools.pens.transformPen import TransformPen
 from fontTools.ttLib import TTFont
 from scipy.spatial import KDTree
 
-from glyphspline.arrays import FloatArray
-from glyphspline.outline import Contour, Outline
+from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, Source, open_font
+from glyphspline.types import FloatArray
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"

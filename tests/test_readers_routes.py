@@ -13,12 +13,12 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import GlyphComponent
 
-from glyphspline.arrays import FloatArray
 from glyphspline.errors import GlyphsplineError
-from glyphspline.outline import Contour
+from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
-from glyphspline.readers.containers import unpacked
-from glyphspline.readers.routes import FontTools, HarfBuzz
+from glyphspline.readers.opentype.containers import unpacked
+from glyphspline.readers.opentype.routes import FontTools, HarfBuzz
+from glyphspline.types import FloatArray
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"

@@ -12,9 +12,9 @@ from fontTools.pens.areaPen import AreaPen
 
 import glyphspline as gs
 from glyphspline.errors import FontError, GlyphsplineError
-from glyphspline.outline import Outline
+from glyphspline.outlines.outline import Outline
 from glyphspline.readers import Source, open_source
-from glyphspline.readers.svg import SvgDrawings, open_svg
+from glyphspline.readers.svg_drawings import SvgDrawings, open_svg
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.closed import interpolated, turned
-from glyphspline.crossings import overshoot, self_crossings
-from glyphspline.fit import chords
-from glyphspline.flat import flattened
-from glyphspline.measure import shape
-from glyphspline.smooth import rounds
-from glyphspline.smooth.chains import chains_of
-from glyphspline.smooth.forms import forms
-from glyphspline.smooth_contours import convert_smooth
+from glyphspline.curves.crossings import overshoot, self_crossings
+from glyphspline.curves.integrals import shape
+from glyphspline.fitting.fixed_sampling import chords
+from glyphspline.fitting.policy import interpolated, turned
+from glyphspline.fitting.smooth import steps as rounds
+from glyphspline.fitting.smooth.canonical_contours import chains_of
+from glyphspline.fitting.smooth.forms import forms
+from glyphspline.fitting.smooth.smooth_fit import convert_smooth
+from glyphspline.outlines.contour_arrays import flattened
 
 from .polygons import circle_contour, random_polygon, square_contour
 from .test_distance import true_distance

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.measure import shape
-from glyphspline.sampling import Track, spacing_ratios
+from glyphspline.curves.integrals import shape
+from glyphspline.outlines.sampling import Track, spacing_ratios
 
 from .polygons import circle_contour, square_contour
 

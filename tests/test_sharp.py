@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.bezier import evaluate
-from glyphspline.chains import Settings
-from glyphspline.cubicfit import fit_cubic
-from glyphspline.distance import certified_distance
-from glyphspline.flat import flattened
-from glyphspline.measure import shape
-from glyphspline.overlaps import remove_overlaps
-from glyphspline.pieces import certify, cut_closer, cut_contours, put_together
-from glyphspline.survey import survey
+from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.integrals import shape
+from glyphspline.fitting.certified_distance import certified_distance
+from glyphspline.fitting.measures import survey
+from glyphspline.fitting.sharp.assembly import certify, cut_closer, cut_contours, put_together
+from glyphspline.fitting.sharp.bezier_fit import fit_cubic
+from glyphspline.fitting.sharp.split_contours import Settings
+from glyphspline.outlines.contour_arrays import flattened
+from glyphspline.outlines.overlaps import remove_overlaps
 
 from .polygons import circle_contour, square_contour
 

@@ -18,10 +18,10 @@ from matplotlib.path import Path as MatplotlibPath
 from svgpathtools import Line, parse_path
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.writers.markup import ink_bounds, number
-from glyphspline.writers.source import to_source_svg
-from glyphspline.writers.svg import VIEW_BOXES, ViewBox, to_svg
+from glyphspline.types import FloatArray
+from glyphspline.writers.svg.document import VIEW_BOXES, ViewBox, to_svg
+from glyphspline.writers.svg.markup import ink_bounds, number
+from glyphspline.writers.svg.source_drawing import to_source_svg
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.engine import _parts, interpolate_ragged, over_threads
+from glyphspline.interpolation.batched import _parts, interpolate_ragged, over_threads
 
 from .polygons import polygon, uniform
 

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli import app as shell
 from glyphspline.viewer import make_app
-from glyphspline.viewer.work import shown_steps
+from glyphspline.viewer.conversion import shown_steps
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 HOST = "127.0.0.1:8642"

@@ -13,11 +13,11 @@ import pytest
 import glyphspline as gs
 from glyphspline.batch import OutputError, RunSpec, convert_font
 from glyphspline.batch.store import from_text, to_text
-from glyphspline.glyph import Options
+from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
-from glyphspline.readers.svg import open_svg
+from glyphspline.readers.svg_drawings import open_svg
 from glyphspline.readers.ufo import open_ufo
-from glyphspline.writers.ufo import with_extrema
+from glyphspline.writers.ufo_folder import with_extrema
 
 from .test_batch import content
 from .test_writers_font import largest_distance

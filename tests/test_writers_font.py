@@ -16,12 +16,12 @@ from fontTools.ttLib import TTFont, newTable
 from fontTools.ttLib.tables.ttProgram import Program
 
 import glyphspline as gs
+from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
-from glyphspline.measure import area
-from glyphspline.outline import Outline
+from glyphspline.outlines.outline import Outline
 from glyphspline.readers import AnySource, open_font, open_source
-from glyphspline.writers.font import FontSummary, to_font, write_font
-from glyphspline.writers.font_glyphs import Flavour, fitting_tolerance, oriented
+from glyphspline.writers.font.font_file import FontSummary, to_font, write_font
+from glyphspline.writers.font.font_glyphs import Flavour, fitting_tolerance, oriented
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 from .test_readers_fonts import two_sided_distance

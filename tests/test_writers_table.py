@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import glyphspline as gs
-from glyphspline.glyph import Measures
+from glyphspline.fitting.results import Measures
 from glyphspline.readers import open_font
-from glyphspline.writers import table
-from glyphspline.writers.table import schema, write_table
+from glyphspline.writers import parquet as table
+from glyphspline.writers.parquet import schema, write_table
 
 from .drawings import L_SHAPE, polygon_contour, result
 

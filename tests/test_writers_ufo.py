@@ -15,7 +15,7 @@ import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
 from glyphspline.readers import open_font
 from glyphspline.readers.ufo import open_ufo
-from glyphspline.writers.ufo import BACKGROUND, LIB_KEY, split_at_extrema, with_extrema, write_ufo
+from glyphspline.writers.ufo_folder import BACKGROUND, LIB_KEY, split_at_extrema, with_extrema, write_ufo
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 from .test_readers_fonts import bounds

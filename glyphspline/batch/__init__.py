@@ -6,10 +6,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .atlas import make_atlas
+    from .atlas_run import make_atlas
     from .files import OutputError
-    from .fonts import find_fonts, folders_for
-    from .gallery import write_gallery
+    from .font_search import find_fonts, folders_for
+    from .galleries import write_gallery
     from .manifest import entries_of
     from .run import convert_font
     from .spec import Limits, RunSpec
@@ -22,10 +22,10 @@ _HOMES = {
     "Summary": ".summary",
     "convert_font": ".run",
     "entries_of": ".manifest",
-    "find_fonts": ".fonts",
-    "folders_for": ".fonts",
-    "make_atlas": ".atlas",
-    "write_gallery": ".gallery",
+    "find_fonts": ".font_search",
+    "folders_for": ".font_search",
+    "make_atlas": ".atlas_run",
+    "write_gallery": ".galleries",
 }
 """Where names are, imported when they are asked for: workers can start before the font libraries are there."""
 

@@ -28,7 +28,7 @@ PATIENCE = "10s"
 
 
 class ClusterExecutor(Executor):
-    """Calls of :func:`.work.work` and :func:`.work.survey` on the workers of a scheduler.
+    """Calls of :func:`.worker.work` and :func:`.worker.survey` on the workers of a scheduler.
 
     Args:
         address: of the scheduler, as in ``tcp://10.0.0.1:8786``.

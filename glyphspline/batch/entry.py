@@ -15,13 +15,14 @@ from math import isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from ..glyph import SOLVED, Measures, Options
+from ..fitting.options import Options
+from ..fitting.results import SOLVED, Measures
 from ..report.data import DIGITS, escaped, number
 from ..report.gallery import row_of
 from .summary import Facts, facts_of
 
 if TYPE_CHECKING:
-    from ..express.lane import Solved
+    from .lane import Solved
 
 NAMES = tuple(field.name for field in fields(Measures))
 """The measures, in the order in which they are written: those of ``SOLVED`` are the first.

@@ -1,8 +1,4 @@
-"""What is said between the process that hands out a run's glyphs and those that convert them.
-
-The first has no use for the compiled code, which takes a second to import: :func:`work` and :func:`survey` bring it in
-where they are called.
-"""
+"""What the process that hands out a run's glyphs and the workers tell each other."""
 
 from __future__ import annotations
 
@@ -10,16 +6,13 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from ..outline import FontMetrics
+from ..outlines.outline import FontMetrics
 from ..report.data import CHUNK
 from .entry import Told, journal_line, manifest_line, told_of
 from .spec import RunSpec
 from .summary import Facts
-
-if TYPE_CHECKING:
-    from ..curvature import Comb
 
 
 @dataclass(frozen=True)
@@ -91,17 +84,3 @@ def finished(
     line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
     row, facts = told or told_of(json.loads(line))
     return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, row, facts)
-
-
-def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
-    """:func:`.work.work`, in a worker."""
-    from .work import work
-
-    return work(job, tasks)
-
-
-def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
-    """:func:`.work.survey`, in a worker."""
-    from .work import survey
-
-    return survey(job, tasks)

@@ -9,7 +9,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..glyph import Options
+from ..fitting.options import Options
 from ..report.data import CHUNK
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for

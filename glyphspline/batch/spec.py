@@ -8,15 +8,15 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .._version import __version__
 from ..errors import GlyphsplineError
-from ..glyph import Options
-from ..version import __version__
-from ..writers.svg import VIEW_BOXES, ViewBox
+from ..fitting.options import Options
+from ..writers.svg.document import VIEW_BOXES, ViewBox
 from .files import OutputError, write_whole
 
 if TYPE_CHECKING:
     from ..readers import Source
-    from ..writers.font_glyphs import Flavour
+    from ..writers.font.font_glyphs import Flavour
 
 RUN_FILE = "run.json"
 
@@ -85,7 +85,7 @@ class RunSpec:
         flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
         if not flavours or self.options.step is not None or self.options.count is not None:
             return self.options
-        from ..writers.font_glyphs import fitting_tolerance
+        from ..writers.font.font_glyphs import fitting_tolerance
 
         tolerance = self.options.tolerance_for(units_per_em)
         return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))

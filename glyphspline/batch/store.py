@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ..bspline import Spline
-from ..glyph import ContourResult, GlyphResult, Measures, Options
-from ..outline import Contour, FontMetrics, Outline
-from ..result import Interpolation
+from ..curves.bspline import Spline
+from ..fitting.options import Options
+from ..fitting.results import ContourResult, GlyphResult, Measures
+from ..interpolation.result import Interpolation
+from ..outlines.outline import Contour, FontMetrics, Outline
 
 KINDS: dict[str, type] = {
     kind.__name__: kind

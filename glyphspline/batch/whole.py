@@ -7,7 +7,8 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from ..glyph import GlyphResult, Options
+from ..fitting.options import Options
+from ..fitting.results import GlyphResult
 from ..readers import Source
 from .files import PARTIAL, OutputError, write_whole
 from .manifest import entries_of
@@ -57,14 +58,14 @@ def stored(source: Source, out: Path, options: Options) -> Iterator[GlyphResult]
 
 
 def _ufo(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
-    from ..writers.ufo import write_ufo
+    from ..writers.ufo_folder import write_ufo
 
     return [f"{path.name}: {write_ufo(source, glyphs, path)} glyphs"]
 
 
 def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
-    from ..writers.font import to_font
-    from ..writers.font_glyphs import Flavour
+    from ..writers.font.font_file import to_font
+    from ..writers.font.font_glyphs import Flavour
 
     flavour: Flavour = "otf" if path.suffix == ".otf" else "ttf"
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
@@ -79,7 +80,7 @@ def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSp
 
 
 def _parquet(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
-    from ..writers.table import write_table
+    from ..writers.parquet import write_table
 
     partial = path.with_name(f".{path.name}-{os.getpid()}{PARTIAL}")
     try:
@@ -106,6 +107,6 @@ def check_possible(spec: RunSpec) -> None:
         GlyphsplineError: it is not.
     """
     if "parquet" in spec.whole:
-        from ..writers.table import arrow
+        from ..writers.parquet import arrow
 
         arrow()

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
-from . import options as opt
+from . import arguments as opt
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -93,7 +93,7 @@ def info(
     """Show what a font file holds: faces, axes, units per em, numbers of glyphs and contours."""
     with errors():
         from ..batch.schedule import workers
-        from ..readers.info import file_facts
+        from ..readers.facts import file_facts
         from .describe import lines_of
 
         # In a process of its own: a font can be made so that counting its contours takes years.

@@ -10,7 +10,7 @@ SHOWN = 5
 
 
 def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:
-    """The facts that :func:`glyphspline.readers.info.file_facts` gives, line by line."""
+    """The facts that :func:`glyphspline.readers.facts.file_facts` gives, line by line."""
     yield f"{facts['file']}: {facts['format']}, {facts['faces']} face{'s' if facts['faces'] != 1 else ''}"
     for font in facts["fonts"]:
         yield f"face {font['face_index']}: {font['family']} {font['style']}"

@@ -1,9 +1,9 @@
 """Files in, outlines out."""
 
-from .fonts import Font, open_font
-from .opening import AnySource, open_source
+from .open import AnySource, open_source
+from .opentype.font import Font, open_font
+from .opentype.tables import Axis
 from .selection import Selection
 from .source import Source
-from .tables import Axis
 
 __all__ = ["AnySource", "Axis", "Font", "Selection", "Source", "open_font", "open_source"]

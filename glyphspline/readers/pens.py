@@ -11,9 +11,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from fontTools.pens.basePen import BasePen
 
-from ..arrays import FloatArray
 from ..errors import GlyphsplineError
-from ..outline import Contour
+from ..outlines.outline import Contour
+from ..types import FloatArray
 
 Point: TypeAlias = tuple[float, float]
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
 
-from ..outline import FontMetrics, Outline
+from ..outlines.outline import FontMetrics, Outline
 from .selection import Request, Selection
 
 

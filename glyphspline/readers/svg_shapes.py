@@ -11,8 +11,8 @@ from svgpathtools import Arc, CubicBezier, Line, QuadraticBezier, parse_path
 from svgpathtools.parser import parse_transform
 from svgpathtools.svg_to_paths import ellipse2pathd, rect2pathd
 
-from ..arrays import FloatArray
 from ..errors import GlyphsplineError
+from ..types import FloatArray
 from .pens import Point
 
 DEEPEST = 200

@@ -16,7 +16,7 @@ from fontTools.pens.pointPen import PointToSegmentPen
 from fontTools.ufoLib import UFOReader
 
 from ..errors import FontError, GlyphsplineError
-from ..outline import FontMetrics, Outline
+from ..outlines.outline import FontMetrics, Outline
 from .base import NamedGlyphs, reason
 from .pens import ContourPen
 

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from json.encoder import encode_basestring_ascii as quoted
 from typing import Any
 
-from ..glyph import SOLVED
-from ..writers.markup import Text, joined
+from ..fitting.results import SOLVED
+from ..writers.svg.markup import Text, joined
 from .drawings import Drawing
-from .measures import MEASURES, glyph_measures
+from .glyph_measures import MEASURES, glyph_measures
 
 FOLDER = "gallery"
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 
-from ..writers.markup import Text
+from ..writers.svg.markup import Text
 
 Drawing = dict[str, Text]
 """Path data of ``source``, ``result``, ``polygon`` and ``control``; "" for what was not written."""

@@ -18,8 +18,8 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from ..writers.colours import SIDES, class_colour
-from ..writers.markup import text
+from ..writers.svg.colours import SIDES, class_colour
+from ..writers.svg.markup import text
 from .data import (
     CHUNK,
     FOLDER,
@@ -34,7 +34,7 @@ from .data import (
     table_text,
 )
 from .drawings import inside, read_drawing
-from .measures import MEASURES
+from .glyph_measures import MEASURES
 
 TABLE = 5000
 """Glyphs in a file of measures."""

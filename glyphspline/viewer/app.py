@@ -17,12 +17,12 @@ from starlette.routing import Route
 
 from ..errors import GlyphsplineError
 from ..report.gallery import palette
-from ..writers.svg import to_svg
+from ..writers.svg.document import to_svg
+from .conversion import COMPARED, Work, steps
 from .guard import Guard
 from .payload import glyph_payload, result_payload, step_payload
 from .search import search
 from .state import State, read_state
-from .work import COMPARED, Work, steps
 
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""

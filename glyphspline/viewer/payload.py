@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..glyph import GlyphResult, Measures
-from ..outline import Contour, Outline
-from ..result import Interpolation
-from ..writers.markup import code_points, path_data, polyline_data
+from ..fitting.results import GlyphResult, Measures
+from ..interpolation.result import Interpolation
+from ..outlines.outline import Contour, Outline
+from ..types import FloatArray
+from ..writers.svg.markup import code_points, path_data, polyline_data
 
 DIGITS = 2
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, cast, get_args
 
 from ..errors import GlyphsplineError
-from ..glyph import Corners, Options
+from ..fitting.options import Corners, Options
 
 Sampling = Literal["tolerance", "step", "count"]
 
@@ -27,7 +27,7 @@ Moved = tuple[tuple[int, int, float, float], ...]
 
 @dataclass(frozen=True)
 class State:
-    """One request of the page. All of it is checked; ``options`` are ready for :func:`glyphspline.convert`."""
+    """One request of the page. All of it is checked; ``options`` are ready for :func:`glyphspline.fitting.convert`."""
 
     glyph: str
     location: tuple[tuple[str, float], ...]

@@ -1,1 +1,1 @@
-"""From a :class:`~glyphspline.glyph.GlyphResult` to what is written in a file; nothing here opens one."""
+"""From a :class:`~glyphspline.fitting.results.GlyphResult` to what is written in a file; nothing here opens one."""

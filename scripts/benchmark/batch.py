@@ -47,7 +47,7 @@ def rows() -> list[Row]:
     """The table of what a run over a font costs a glyph."""
     if not FONT.exists():
         return [Row(f"whole fonts: {FONT.name} is not there", 0.0, "s")]
-    from glyphspline.glyph import Options
+    from glyphspline.fitting.options import Options
 
     step = Options(step=20.0)
     close = Options(tolerance=1.0, effort="fast"), Options(tolerance=1.0, effort="fast", corners="sharp")

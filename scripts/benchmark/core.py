@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray, IntArray
-from glyphspline.engine import Ragged, interpolate_ragged
-from glyphspline.reference import footpoint, interpolate_reference, prepare
+from glyphspline.interpolation.batched import Ragged, interpolate_ragged
+from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
+from glyphspline.types import FloatArray, IntArray
 
 from .measure import Row, in_words, interleaved
 from .shapes import SHARE, glyph_polygons, random_polygon, smooth_polygon

@@ -22,8 +22,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.bezier import evaluate
+from glyphspline.curves.bezier import evaluate
+from glyphspline.types import FloatArray
 
 from .kurbo_fit import kurbo_results
 from .measure import Row

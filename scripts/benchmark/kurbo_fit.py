@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.continuity import joins
-from glyphspline.sharp import LONG_LINE
+from glyphspline.fitting.sharp.sharp_fit import LONG_LINE
+from glyphspline.outlines.joins import joins
+from glyphspline.types import FloatArray
 
 ACCURACIES = (4.0, 2.0, 1.5, 1.2, 1.0, 0.8, 0.6, 0.4)
 """In font units; kurbo aims for them and does not promise them."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 SHARE = 2e-7
 """The residual tolerance in all rows, as a share of the polygon's extent."""

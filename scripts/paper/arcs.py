@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run, bare, random_polygons
 from .study import MAX_ITERATIONS, TOLERANCE

@@ -13,8 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from glyphspline.arrays import FloatArray, IntArray
-from glyphspline.intervals import basis_function, peaks
+from glyphspline.interpolation.intervals import basis_function, peaks
+from glyphspline.types import FloatArray, IntArray
 
 Constraint = Literal["box", "adjacent"]
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from glyphspline.arrays import FloatArray, IntArray
-from glyphspline.outline import Contour
-from glyphspline.readers.fonts import open_font
-from glyphspline.sampling import Track
+from glyphspline.outlines.outline import Contour
+from glyphspline.outlines.sampling import Track
+from glyphspline.readers.opentype.font import open_font
+from glyphspline.types import FloatArray, IntArray
 
 from .common import SEED
 

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 PAPER = (
     "Y. Xiong, G. Li, A. Mao, “Convergence analysis for B-spline geometric interpolation”, "

@@ -10,8 +10,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.curvature import comb
+from glyphspline.curves.curvature import comb
+from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK
 

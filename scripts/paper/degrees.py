@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from glyphspline.bspline import DEGREES
+from glyphspline.curves.bspline import DEGREES
 
 from .common import MARKERS, Run, random_polygons
 from .study import Group, mean_iterations, study_group

@@ -7,10 +7,10 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.bezier import cross, derivative_points, evaluate, signed_curvature, split
-from glyphspline.knots import Parametrisation, vertex_parameters
-from glyphspline.measure import NODES, WEIGHTS, shape
+from glyphspline.curves.bezier import cross, derivative_points, evaluate, signed_curvature, split
+from glyphspline.curves.integrals import NODES, WEIGHTS, shape
+from glyphspline.curves.parameters import Parametrisation, vertex_parameters
+from glyphspline.types import FloatArray
 
 METHODS = ("variant 1", "variant 2", "variant 3", "SciPy chord", "SciPy centripetal", "SciPy uniform")
 MEASURES = ("∫κ² ds", "∫(dκ/ds)² ds", "max |κ|", "bulge", "overshoot", "self-crossings")

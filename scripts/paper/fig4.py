@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.reference import interpolate_reference, prepare
+from glyphspline.interpolation.reference import interpolate_reference, prepare
+from glyphspline.types import FloatArray
 
 from .common import COLOURS, MARKERS, Run, verdict
 from .study import MAX_ITERATIONS, TOLERANCE

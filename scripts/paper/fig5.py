@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .common import COLOURS, INK, Run, verdict
 from .study import MAX_ITERATIONS, TOLERANCE

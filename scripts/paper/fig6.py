@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .clicking import DATA
 from .common import GREY, INK, Run, bare, draw_closed, letter, verdict

@@ -14,7 +14,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .clicking import CHARACTERS, DATA, FONTS, clicked_character, load_polygons, source_contours
 from .common import GREY, INK, Run, bare, draw_closed, letter, verdict

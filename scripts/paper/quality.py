@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.readers.fonts import open_font
+from glyphspline.readers.opentype.font import open_font
+from glyphspline.types import FloatArray
 
 from .clicking import DATA, FONTS
 from .common import COLOURS, GREY, INK, Run

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
+from glyphspline.types import FloatArray
 
 from .common import SEED, Run
 from .study import MAX_ITERATIONS, TOLERANCE

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.arrays import BoolArray, FloatArray, IntArray
+from glyphspline.types import BoolArray, FloatArray, IntArray
 
 from .common import Run
 

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.arrays import FloatArray
-from glyphspline.reference import footpoint, prepare
+from glyphspline.interpolation.reference import footpoint, prepare
+from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, SEED, Run, bare, curve_points, draw_closed, random_polygons, verdict
 

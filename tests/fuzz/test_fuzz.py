@@ -9,9 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from glyphspline import Font, Options, convert, open_font, to_svg
+from glyphspline.batch.lane import Drawn, draw_chunk
 from glyphspline.errors import GlyphsplineError
-from glyphspline.express.lane import Drawn, draw_chunk
-from glyphspline.express.reading import BulkReader
+from glyphspline.readers.opentype.bulk import BulkReader
 
 from .batch import round_of
 from .mutants import mutant

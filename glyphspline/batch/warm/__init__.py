@@ -10,8 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...glyph import Options
-from ...outline import Contour
+from ...fitting.options import Options
+from ...outlines.outline import Contour
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
 LEAF = Contour(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ...convert import convert
-from ...glyph import Options
-from ...outline import Outline
-from ...writers.curvature_map import to_curvature_svg
-from ...writers.source import to_source_svg
+from ...fitting.convert import convert
+from ...fitting.options import Options
+from ...outlines.outline import Outline
+from ...writers.svg.curvature_map import to_curvature_svg
+from ...writers.svg.source_drawing import to_source_svg
 from . import LEAF
 
 leaf = convert(Outline("leaf", contours=(LEAF,)), Options(step=20.0))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ...convert import convert
-from ...glyph import Options
-from ...outline import Outline
-from ...writers.svg import to_svg
+from ...fitting.convert import convert
+from ...fitting.options import Options
+from ...outlines.outline import Outline
+from ...writers.svg.document import to_svg
 from . import LEAF, SQUARE
 
 to_svg(convert(Outline("leaf", contours=(LEAF, SQUARE)), Options(corners="smooth")))

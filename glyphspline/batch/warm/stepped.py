@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...convert import convert
-from ...express.contours import cubics_of
-from ...express.curves import cubics_of_splines, paths
-from ...express.stepping import stepped_points
-from ...glyph import Options
-from ...outline import Outline
-from ...smooth.places import graded_polygons
-from ...writers.figures import figures
-from .. import work as work
+from ...fitting.convert import convert
+from ...fitting.options import Options
+from ...fitting.smooth.insertion import graded_polygons
+from ...outlines.outline import Outline
+from ...outlines.stepping import stepped_points
+from ...readers.opentype.bulk_contours import cubics_of
+from ...writers.svg.digit_tables import figures
+from ...writers.svg.spline_paths import cubics_of_splines, paths
 from . import SQUARE
 
 

@@ -1,0 +1,149 @@
+"""The options of the shell, one name each, and how they become :class:`Options`, a selection and a location."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from ..batch import RunSpec
+    from ..readers import Selection, Source
+
+# Values of an option are what `--help` shows, so the members of these are lower-case.
+
+
+class Corners(str, Enum):  # noqa: UP042 - typer shows the values of this kind
+    """What becomes of corners."""
+
+    smooth = "smooth"
+    sharp = "sharp"
+
+
+class Effort(str, Enum):  # noqa: UP042
+    """How hard to look for few vertices."""
+
+    fast = "fast"
+    best = "best"
+
+
+class Fallback(str, Enum):  # noqa: UP042
+    """What to do where Lemma 2 has no interval."""
+
+    knot = "knot"
+    peak = "peak"
+
+
+class View(str, Enum):  # noqa: UP042
+    """What region a drawing shows."""
+
+    em = "em"
+    metrics = "metrics"
+    ink = "ink"
+
+
+FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
+
+FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
+OwnFont = Annotated[Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder to write to.", show_default=False)]
+
+Text = Annotated[str | None, typer.Option("--text", help="Glyphs of these characters.")]
+TextFile = Annotated[Path | None, typer.Option("--text-file", help="Glyphs of a UTF-8 file's characters.")]
+Unicodes = Annotated[str | None, typer.Option("--unicodes", help="Code points: U+4E00-4E10,9F8D or *.")]
+Glyphs = Annotated[str | None, typer.Option("--glyphs", help="Glyph names, between commas, or *.")]
+Gids = Annotated[str | None, typer.Option("--gids", help="Glyph indices: 5,10-20 or *.")]
+Every = Annotated[bool, typer.Option("--all", help="Every glyph of the font.")]
+
+FaceIndex = Annotated[int, typer.Option("--face-index", min=0, help="Which font of a collection.")]
+OneFace = Annotated[int | None, typer.Option("--face-index", min=0, help="Only this font of a collection.")]
+Location = Annotated[
+    str | None,
+    typer.Option(
+        "--location", metavar="TAG=VALUE,…", help="Place of a variable font: wght=700,wdth=80, or a name: Bold."
+    ),
+]
+
+Variant = Annotated[int, typer.Option("--variant", min=0, max=4, help="Of the paper's Table 1.")]
+Margin = Annotated[float, typer.Option("--margin", min=0, max=0.5, help="c of Lemma 2.")]
+WhereNone = Annotated[Fallback, typer.Option("--fallback", help="Where Lemma 2 has no interval.")]
+CornerMode = Annotated[Corners, typer.Option("--corners", help="One smooth curve a contour, or split at corners.")]
+Tolerance = Annotated[
+    float | None,
+    typer.Option("--tolerance", help="Distance allowed from the source, in font units. Without it, 1/1000 em."),
+]
+Step = Annotated[float | None, typer.Option("--step", help="Instead: vertices so far apart, in font units.")]
+Count = Annotated[int | None, typer.Option("--count", min=3, help="Instead: so many vertices a contour.")]
+HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
+ViewBox = Annotated[View, typer.Option("--view-box", help="Region an SVG drawing shows.")]
+Precision = Annotated[int, typer.Option("--precision", min=0, max=9, help="Decimals written.")]
+RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
+Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
+Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, png, pdf, ufo, otf, ttf, parquet.")]
+
+Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=0, help="Worker processes. Without it, one a core.")]
+Resume = Annotated[bool, typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.")]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="TCP://…", help="Work on this dask.distributed cluster instead.")
+]
+JsonLog = Annotated[bool, typer.Option("--json-log", help="Progress and summary as JSON lines on standard error.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing but errors.")]
+AtlasFile = Annotated[Path, typer.Option("--out", "-o", help="PDF to write.")]
+Profiles = Annotated[
+    str | None, typer.Option("--profiles", help="Characters that get a page with κ(s); of up to 12 glyphs, all.")
+]
+Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 takes any that is free.")]
+Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")]
+Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
+
+
+def spec_of(given: Mapping[str, Any]) -> RunSpec:
+    """What the options of a conversion say, by their parameters' names."""
+    from ..batch import RunSpec
+    from ..errors import GlyphsplineError
+    from ..fitting.options import Options
+
+    if sum(given[name] is not None for name in ("tolerance", "step", "count")) > 1:
+        raise GlyphsplineError("give one of --tolerance, --step and --count")
+    named = ("variant", "tolerance", "step", "count", "margin", "precision", "measure", "remove_overlaps")
+    options = Options(
+        **{name: given[name] for name in named},
+        corners=given["corners"].value,
+        effort=given["effort"].value,
+        fallback=given["fallback"].value,
+    )
+    formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
+    return RunSpec(options, formats, given["view_box"].value)
+
+
+def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:
+    """The glyphs asked for."""
+    from ..errors import GlyphsplineError
+
+    text = given["text"]
+    if given["text_file"] is not None:
+        text = (text or "") + given["text_file"].read_text(encoding="utf-8-sig")
+    asked = {name: given[name] for name in ("unicodes", "glyphs", "gids")}
+    if not given["every"] and text is None and all(value is None for value in asked.values()):
+        raise GlyphsplineError("no glyphs asked for: give --text, --text-file, --unicodes, --glyphs, --gids or --all")
+    return source.select(text=text, **asked, all_glyphs=given["every"])
+
+
+def location_of(text: str | None) -> dict[str, float] | str:
+    """``wght=700,wdth=80`` as a dictionary; without ``=`` it is the name of an instance."""
+    from ..errors import GlyphsplineError
+
+    if text and "=" not in text:
+        return text
+    found: dict[str, float] = {}
+    for item in filter(None, (text or "").replace(" ", "").split(",")):
+        tag, _, value = item.partition("=")
+        try:
+            found[tag] = float(value)
+        except ValueError:
+            raise GlyphsplineError(f"--location is like wght=700,wdth=80, not {item!r}") from None
+    return found

@@ -1,0 +1,179 @@
+"""Planar B-spline curves, closed (periodic) or open (clamped): evaluation, curvature, exact Bézier form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..types import FloatArray, IntArray
+from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
+
+DEGREES = range(2, 7)
+"""Degrees whose uniform basis functions rise above 1/2, as the method needs (end of the paper's Section 1)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """A B-spline curve in the plane.
+
+    Attributes:
+        control_points: (n, 2) if closed, where row i belongs to vertex p_i; (m + degree - 1, 2) if open.
+        knots: (n + 1,) from 0 to the period if closed; the m break points if open, the ends being
+            of multiplicity degree + 1.
+        degree: 2 to 6.
+        closed: periodic, or clamped at both ends.
+    """
+
+    control_points: FloatArray
+    knots: FloatArray
+    degree: int = 3
+    closed: bool = True
+
+    def __post_init__(self) -> None:
+        P = np.ascontiguousarray(self.control_points, dtype=np.float64)
+        u = np.ascontiguousarray(self.knots, dtype=np.float64)
+        if self.degree not in DEGREES:
+            raise ValueError(f"degree is 2 to 6, not {self.degree}")
+        expected = len(u) - 1 if self.closed else len(u) + self.degree - 1
+        if P.shape != (expected, 2):
+            raise ValueError(f"{len(u)} knots ask for ({expected}, 2) control points, not {P.shape}")
+        object.__setattr__(self, "control_points", P)
+        object.__setattr__(self, "knots", u)
+
+    @classmethod
+    def trusted(cls, control_points: FloatArray, knots: FloatArray, degree: int, closed: bool) -> Spline:
+        """The same without the checks, for callers whose arrays are right by construction."""
+        spline = cls.__new__(cls)
+        spline.__dict__.update(control_points=control_points, knots=knots, degree=degree, closed=closed)
+        return spline
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter range: T for a closed curve."""
+        return float(self.knots[-1] - self.knots[0])
+
+    @cached_property
+    def full_knots(self) -> FloatArray:
+        """The knots with ``degree`` more at each end: continued periodically, or the ends repeated."""
+        return full_knots(self.knots, self.degree, self.closed)
+
+    @cached_property
+    def span_controls(self) -> IntArray:
+        """(spans, degree + 1) indices of the control points that shape each span."""
+        return span_controls(len(self.knots) - 1, self.degree, self.closed)
+
+    @cached_property
+    def _bezier(self) -> FloatArray:
+        return bezier_pieces(self.full_knots, self.control_points[self.span_controls])
+
+    def to_bezier(self) -> FloatArray:
+        """(pieces, degree + 1, 2) the same curve as Bézier pieces, one a knot span, in curve order."""
+        return self._bezier.copy()
+
+    def _locate(self, t: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Span, local parameter in [0, 1] and span length for each t (wrapped if closed, clamped if open)."""
+        u = self.knots
+        t = u[0] + np.mod(t - u[0], self.period) if self.closed else np.clip(t, u[0], u[-1])
+        span = np.clip(np.searchsorted(u, t, side="right") - 1, 0, len(u) - 2)
+        h = u[span + 1] - u[span]
+        return span, (t - u[span]) / h, h
+
+    def __call__(self, t: ArrayLike, derivative: int = 0) -> FloatArray:
+        """The curve or a derivative of it at t: shape ``t.shape + (2,)``."""
+        t = np.asarray(t, dtype=np.float64)
+        if derivative > self.degree:
+            return np.zeros((*t.shape, 2))
+        span, x, h = self._locate(t.ravel())
+        pieces = derivative_points(self._bezier, derivative)
+        values = evaluate(pieces[span], x) / h[:, None] ** derivative
+        return values.reshape(*t.shape, 2)
+
+    def curvature(self, t: ArrayLike) -> FloatArray:
+        """Signed curvature at t, positive where the curve turns left; infinite where the speed is zero."""
+        return signed_curvature(self(t, derivative=1), self(t, derivative=2))
+
+    def basis(self, t: ArrayLike) -> FloatArray:
+        """(len(t), control points) the collocation matrix: every basis function at every t."""
+        span, x, _ = self._locate(np.asarray(t, dtype=np.float64).ravel())
+        d = self.degree
+        local = bezier_pieces(self.full_knots, np.broadcast_to(np.eye(d + 1), (len(self.knots) - 1, d + 1, d + 1)))
+        rows = np.zeros((len(span), len(self.control_points)))
+        np.add.at(rows, (np.arange(len(span))[:, None], self.span_controls[span]), evaluate(local[span], x))
+        return rows
+
+    def draw(self, pen: Any, tolerance: float | None = None) -> None:
+        """Draw with a fontTools segment pen: degrees 2 and 3 exactly.
+
+        Other degrees are drawn as cubics that stay within ``tolerance`` of the curve, parameter by
+        parameter (default: 1e-5 of the control polygon's extent).
+        """
+        pieces = self._bezier
+        if self.degree > 3:
+            extent = float(np.ptp(self.control_points, axis=0).max())
+            pieces = cubic_approximation(pieces, tolerance or 1e-5 * extent)
+        points = [[tuple(p) for p in piece] for piece in pieces.tolist()]
+        if self.closed:
+            points[-1][-1] = points[0][0]
+        pen.moveTo(points[0][0])
+        for piece in points:
+            (pen.qCurveTo if self.degree == 2 else pen.curveTo)(*piece[1:])
+        (pen.closePath if self.closed else pen.endPath)()
+
+    def to_scipy(self) -> Any:
+        """The same curve as a ``scipy.interpolate.BSpline``, periodic if closed."""
+        from scipy.interpolate import BSpline
+
+        d = self.degree
+        controls = self.control_points
+        if self.closed:
+            n = len(controls)
+            controls = controls[(np.arange(n + d) - d + (d + 1) // 2) % n]
+        return BSpline(self.full_knots, controls, d, extrapolate="periodic" if self.closed else False)
+
+
+def full_knots(knots: FloatArray, degree: int, closed: bool) -> FloatArray:
+    """Knots with ``degree`` more at each end: continued with period T, or the ends repeated."""
+    if not closed:
+        return np.concatenate([np.full(degree, knots[0]), knots, np.full(degree, knots[-1])])
+    n = len(knots) - 1
+    index = np.arange(-degree, n + degree + 1)
+    return knots[index % n] + (index // n) * (knots[-1] - knots[0])
+
+
+def span_controls(spans: int, degree: int, closed: bool) -> IntArray:
+    """(spans, degree + 1) indices of the control points whose basis functions live on each span.
+
+    On a closed curve B_i is centred on p_i, so span k = [u_k, u_(k+1)] of a cubic takes k-1 to k+2, modulo n.
+    """
+    index = np.arange(spans)[:, None] + np.arange(degree + 1)
+    return (index - degree + (degree + 1) // 2) % spans if closed else index
+
+
+def bezier_pieces(full: FloatArray, controls: FloatArray) -> FloatArray:
+    """Exact Bézier points of every knot span, by blossoming.
+
+    Args:
+        full: (spans + 1 + 2 degree,) knots as :func:`full_knots` gives them.
+        controls: (spans, degree + 1, k) control points that shape each span.
+
+    Returns:
+        (spans, degree + 1, k): Bézier point j of span [a, b] is the blossom at a (degree - j times) and b (j times).
+    """
+    spans, d = controls.shape[0], controls.shape[1] - 1
+    span = np.arange(spans)
+    a, b = full[span + d], full[span + d + 1]
+    result = np.empty_like(controls, dtype=np.float64)
+    for j in range(d + 1):
+        D = np.array(controls, dtype=np.float64)
+        for r in range(1, d + 1):
+            x = a if r <= d - j else b
+            for i in range(d, r - 1, -1):
+                left, right = full[span + i], full[span + i + d + 1 - r]
+                weight = ((x - left) / (right - left))[:, None]
+                D[:, i] = (1 - weight) * D[:, i - 1] + weight * D[:, i]
+        result[:, j] = D[:, d]
+    return result

@@ -1,0 +1,1 @@
+"""The sharp mode: contours split at corners into lines and clamped splines."""

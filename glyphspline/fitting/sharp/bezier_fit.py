@@ -1,0 +1,208 @@
+"""Fitting an arc of one span to a stretch of outline: a plain cubic, whose two inner control points are free.
+
+The same as :mod:`.spline_fit` does for more spans, without anything that only those need: of all arcs that are tried,
+most are of one span, and ``effort="fast"`` tries no others.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...curves.cubics import jit, length
+from ...types import FloatArray
+from .spline_fit import HOPELESS, SLIDE
+
+STEPS = 4
+"""Newton steps to a foot, from the foot of the last round."""
+
+LONGEST, SHORTEST = 4.0, 0.1
+"""Lengths between which end tangents are kept, in chords."""
+
+
+@jit
+def fit_cubic(
+    Q: FloatArray, d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, tolerance: float, rounds: int,
+    start: FloatArray, end: FloatArray,
+) -> float:  # fmt: skip
+    """Fit one cubic to samples of an outline.
+
+    Args:
+        Q: (n, 2) samples in order, the ends being the arc's.
+        d0, d1: (2,) unit tangents at the ends, kept as directions unless free0, free1.
+        tolerance: stop as soon as every sample is nearer than this.
+        rounds: most Gauss-Newton steps.
+        start, end: receive the end tangents of the best fit, derivatives by chord length.
+
+    Returns:
+        The largest distance of a sample from the best fit; infinite if there is none.
+    """
+    n = len(Q)
+    chord = length(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
+    if chord == 0:
+        return np.inf
+    x, e, weight = np.zeros(n), np.empty(n), np.ones(n)
+    for j in range(1, n):
+        x[j] = x[j - 1] + length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
+    reach = x[n - 1]
+    for j in range(n):
+        x[j] /= reach
+    # Handles in chords: the first inner point less the first end, the last end less the last inner point.
+    handles, third = np.empty(4), min(reach / chord, 3.0) / 3
+    for axis in range(2):
+        handles[axis], handles[2 + axis] = d0[axis] * third, d1[axis] * third
+    c, A, g = np.empty((3, 2)), np.empty((4, 4)), np.empty(4)
+    best = np.inf
+    for m in range(rounds):
+        _coefficients(Q, handles, chord, c)
+        error = _project(Q, c, x, e)
+        if error < best:
+            best = error
+            for axis in range(2):
+                start[axis], end[axis] = handles[axis] * 3, handles[2 + axis] * 3
+        if best <= tolerance or best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance or m == rounds - 1:
+            break
+        if m >= 1:
+            _sharpen(weight, e, error)
+        _step(Q, c, x, weight, d0, free0, d1, free1, chord, handles, A, g)
+    return best
+
+
+@jit
+def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArray) -> None:
+    """The cubic by powers of its parameter, about its first end: row k goes with the power k + 1."""
+    last = len(Q) - 1
+    for axis in range(2):
+        p3 = Q[last, axis] - Q[0, axis]
+        p1, p2 = handles[axis] * chord, p3 - handles[2 + axis] * chord
+        c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
+
+
+@jit
+def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
+    ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
+    ay, by, cy = c[0, 1], c[1, 1], c[2, 1]
+    worst, low = 0.0, 0.0
+    for j in range(1, len(Q) - 1):
+        qx, qy = Q[j, 0] - Q[0, 0], Q[j, 1] - Q[0, 1]
+        t = max(x[j], low)
+        for _ in range(STEPS):
+            px, py = ((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy
+            dx, dy = (3 * cx * t + 2 * bx) * t + ax, (3 * cy * t + 2 * by) * t + ay
+            speed = dx * dx + dy * dy
+            if speed <= 0:
+                break
+            bend = speed + px * (6 * cx * t + 2 * bx) + py * (6 * cy * t + 2 * by)
+            new = min(max(t - (px * dx + py * dy) / (bend if bend > 0.2 * speed else speed), low), 1.0)
+            move = abs(new - t)
+            t = new
+            if move < 1e-3:
+                break
+        low = x[j] = t
+        e[j] = length(((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy)
+        worst = max(worst, e[j])
+    return worst
+
+
+@jit
+def _sharpen(weight: FloatArray, e: FloatArray, error: float) -> None:
+    """Weights that grow with the error, their mean staying 1: least squares turn towards the least maximum."""
+    total = 0.0
+    for j in range(1, len(e) - 1):
+        weight[j] *= 0.1 + e[j] / error
+        total += weight[j]
+    for j in range(1, len(e) - 1):
+        weight[j] *= (len(e) - 2) / total
+
+
+@jit
+def _step(
+    Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
+    d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
+    A: FloatArray, g: FloatArray,
+) -> None:  # fmt: skip
+    """One Gauss-Newton step of both handles on the distances along the normals; the unknowns are both inner points."""
+    for r in range(4):
+        g[r] = 0.0
+        for s in range(4):
+            A[r, s] = 0.0
+    total = 0.0
+    for j in range(1, len(Q) - 1):
+        t, w = x[j], weight[j]
+        y = 1 - t
+        dx, dy = (3 * c[2, 0] * t + 2 * c[1, 0]) * t + c[0, 0], (3 * c[2, 1] * t + 2 * c[1, 1]) * t + c[0, 1]
+        speed = length(dx, dy)
+        if speed <= 0:
+            continue
+        tx, ty = dx / speed, dy / speed
+        px = ((c[2, 0] * t + c[1, 0]) * t + c[0, 0]) * t + Q[0, 0]
+        py = ((c[2, 1] * t + c[1, 1]) * t + c[0, 1]) * t + Q[0, 1]
+        gap = w * ((Q[j, 1] - py) * tx - (Q[j, 0] - px) * ty)
+        xx, xy, yy = w * ty * ty + SLIDE * tx * tx, (SLIDE - w) * tx * ty, w * tx * tx + SLIDE * ty * ty
+        n1, n2 = 3 * y * y * t, 3 * y * t * t
+        g[0] -= n1 * gap * ty
+        g[1] += n1 * gap * tx
+        g[2] -= n2 * gap * ty
+        g[3] += n2 * gap * tx
+        A[0, 0] += n1 * n1 * xx
+        A[1, 0] += n1 * n1 * xy
+        A[1, 1] += n1 * n1 * yy
+        A[2, 0] += n1 * n2 * xx
+        A[2, 1] += n1 * n2 * xy
+        A[3, 1] += n1 * n2 * yy
+        A[2, 2] += n2 * n2 * xx
+        A[3, 2] += n2 * n2 * xy
+        A[3, 3] += n2 * n2 * yy
+        total += w
+    A[3, 0] = A[2, 1]
+    for r in range(4):
+        A[r, r] += 2.5e-5 * total
+    if not free0:
+        _keep_direction(A, 0, d0, 1e8 * max(total, 1.0))
+    if not free1:
+        _keep_direction(A, 2, d1, 1e8 * max(total, 1.0))
+    _solve(A, g)
+    # The last handle runs from the inner point to the end, so that it moves the other way.
+    _set_handle(handles[:2], g[0] / chord, g[1] / chord, d0, free0)
+    _set_handle(handles[2:], -g[2] / chord, -g[3] / chord, d1, free1)
+
+
+@jit
+def _keep_direction(A: FloatArray, r: int, d: FloatArray, huge: float) -> None:
+    """Make motion across d dear."""
+    A[r, r] += huge * d[1] * d[1]
+    A[r + 1, r] -= huge * d[0] * d[1]
+    A[r + 1, r + 1] += huge * d[0] * d[0]
+
+
+@jit
+def _solve(A: FloatArray, g: FloatArray) -> None:
+    """Cholesky of the lower half of A in place; g becomes the solution."""
+    n = len(g)
+    for r in range(n):
+        for s in range(r + 1):
+            total = A[r, s]
+            for m in range(s):
+                total -= A[r, m] * A[s, m]
+            A[r, s] = np.sqrt(max(total, 1e-12)) if s == r else total / A[s, s]
+        for m in range(r):
+            g[r] -= A[r, m] * g[m]
+        g[r] /= A[r, r]
+    for r in range(n - 1, -1, -1):
+        for m in range(r + 1, n):
+            g[r] -= A[m, r] * g[m]
+        g[r] /= A[r, r]
+
+
+@jit
+def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: bool) -> None:
+    """Move a handle; it stays on its old side, and its tangent between SHORTEST and LONGEST."""
+    old = length(handle[0], handle[1])
+    x, y = handle[0] + x, handle[1] + y
+    new = length(x, y)
+    size = min(max(new, SHORTEST / 3), LONGEST / 3)
+    if x * handle[0] + y * handle[1] <= 0.1 * old * new:
+        x, y, new, size = handle[0], handle[1], old, max(old / 2, SHORTEST / 3)
+    elif not free:
+        x, y, new = d[0], d[1], 1.0
+    handle[0], handle[1] = x / new * size, y / new * size

@@ -1,0 +1,171 @@
+"""The sharp mode: contours cut at their corners and straight lines, with clamped splines of few vertices in between.
+
+A glyph goes through in a few compiled calls, all of its contours at once: :mod:`.assembly` cuts them and puts them
+together again, and this file sees to it that the result is within the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...curves.bspline import Spline
+from ...errors import PolygonError
+from ...interpolation.api import check_options, interpolate_many
+from ...interpolation.result import Interpolation
+from ...outlines.contour_arrays import Flat
+from ...types import FloatArray, IntArray
+from ..options import Options
+from .assembly import Pieces, certify, cut_closer, cut_contours, put_together
+from .segmentation import MOST_SPANS
+from .split_contours import Chains, Settings
+
+LONG_LINE = 0.02
+"""Share of the em from which straight lines stay lines."""
+
+SHARE = 0.97
+"""Share of the tolerance that the fit may use. The rest is for what its samples miss; the certificate decides."""
+
+SHARPNESS = 0.02
+"""The certified bound may exceed the distances seen by this share of the tolerance."""
+
+STRIDE = {"fast": 2, "best": 1}
+"""Arcs end at every so many smooth joints of the source."""
+
+ROUNDS = {"fast": 4, "best": 6}
+"""Most Gauss-Newton steps an arc."""
+
+TRIES = ((0, 0.8), (1, 0.9), (2, 0.9))
+"""What is tried for arcs that fail the certificate: spans to add, and the share of the samples' tolerance they may use.
+
+In the end the source's own segments take their place.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class SharpFit:
+    """Contours as lines and arcs.
+
+    Attributes:
+        pieces: the lines and arcs of all contours.
+        offsets: (C + 1,) where in ``pieces`` each contour begins.
+        splines: the interpolations of those arcs that have more than one span, by their piece.
+        curve: the contours they make, before rounding.
+        bounds, gaps: (P,) certified distance of each piece, as written, from the source, and the largest one seen.
+    """
+
+    pieces: Pieces
+    offsets: IntArray
+    splines: dict[int, Interpolation]
+    curve: Flat
+    bounds: FloatArray
+    gaps: FloatArray
+
+    def interpolations(self, c: int) -> tuple[Interpolation, ...]:
+        """The arcs of contour c."""
+        first, last = self.offsets[c : c + 2].tolist()
+        spans = self.pieces.where[first:last, 3].tolist()
+        single = _SingleSpans(self.pieces)
+        return tuple(
+            self.splines[q] if k > 1 else Interpolation.shared(single, q) for q, k in enumerate(spans, first) if k
+        )
+
+
+class _SingleSpans:
+    """Arcs of one span, made into interpolations when one is first asked for: nothing is left to iterate there."""
+
+    def __init__(self, pieces: Pieces) -> None:
+        self.pieces = pieces
+
+    def read(self, k: int) -> dict[str, Any]:
+        """The attributes of piece k."""
+        (p0, p1), (tangent0, tangent1) = self.pieces.vertices[self.pieces.starts[k] :][:2], self.pieces.tangents[k]
+        chord = np.hypot(*(p1 - p0))
+        knots = np.array([0.0, chord])
+        controls = np.array([p0, p0 + chord / 3 * tangent0, p1 - chord / 3 * tangent1, p1])
+        return {
+            "spline": Spline.trusted(controls, knots, 3, False),
+            "parameters": knots,
+            "intervals": np.stack([knots, knots], axis=1),
+            "iterations": 0,
+            "residuals": np.zeros(1),
+            "converged": True,
+            "fallbacks": 0,
+            "rate_bound": 0.0,
+            "merged": np.empty(0, dtype=np.int64),
+        }
+
+
+def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:
+    """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
+
+    Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end
+    become the source's own segments, of which each is an arc of one span.
+    """
+    check_options(
+        options.variant, 3, options.margin, options.fallback, options.residual_tolerance, options.max_iterations,
+        False, None, "iterate",
+    )  # fmt: skip
+    settings = Settings(
+        near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
+        angle=np.radians(options.corner_angle), line=LONG_LINE * em, margin=float(options.margin),
+        residual=options.residual_tolerance, rounds=ROUNDS[options.effort], most=MOST_SPANS[options.effort],
+        stride=STRIDE[options.effort],
+    )  # fmt: skip
+    chains, pieces = cut_contours(contours, settings)
+    fit = _certified(chains, pieces, options, tolerance)
+    for attempt in range(len(TRIES) + 1):
+        poor = fit.bounds > tolerance
+        if not poor.any():
+            break
+        pieces = cut_closer(chains, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
+        fit = _certified(chains, pieces, options, tolerance)
+    return fit
+
+
+def _certified(chains: Chains, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
+    """The pieces with curves put through them, measured against the source."""
+    count = len(chains.offsets) - 1
+    splines = _interpolated(pieces, options)
+    curve = put_together(pieces, count, *_splines(splines.values()))
+    written = curve._replace(points=np.round(curve.points, options.precision) + 0.0)
+    bounds, gaps = certify(chains, pieces, written, SHARPNESS * tolerance, tolerance)
+    offsets = np.searchsorted(pieces.where[:, 0], np.arange(count + 1))
+    return SharpFit(pieces, offsets, splines, curve, bounds, gaps)
+
+
+def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
+    """All knots and all control points."""
+    splines = [arc.spline for arc in arcs]
+    if not splines:
+        return np.empty(0), np.empty((0, 2))
+    return np.concatenate([s.knots for s in splines]), np.concatenate([s.control_points for s in splines])
+
+
+def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
+    """The arcs of more than one span, in order.
+
+    The one free vertex of two spans peaks at 1/2, for which Lemma 2 has no interval: see arcs.PEAK_SHARE.
+    """
+    where, starts, vertices, tangents = pieces
+    spans = where[:, 3]
+    arcs: dict[int, Interpolation] = {}
+    for fallback, which in (("knot", spans > 2), ("peak", spans == 2)):
+        chosen = np.flatnonzero(which).tolist()
+        if not chosen:
+            continue
+        try:
+            found = interpolate_many(
+                [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
+                end_tangents=[(t[0], t[1]) for t in tangents[chosen]], threads=1, margin=options.margin,
+                fallback=fallback, residual_tolerance=options.residual_tolerance,
+                max_iterations=options.max_iterations, closed=False,
+            )  # fmt: skip
+        except PolygonError as error:
+            error.contour = int(where[chosen[error.contour or 0], 0])
+            raise
+        arcs |= zip(chosen, found, strict=True)
+    return dict(sorted(arcs.items()))

@@ -1,0 +1,135 @@
+"""A glyph's contours through the smooth mode: fitted and measured together, and those again that cross themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...interpolation.result import Interpolation
+from ...outlines.contour_arrays import flattened
+from ...outlines.outline import Contour
+from ...types import FloatArray, IntArray
+from ..certified_distance import certified_distance
+from ..fixed_contours import check_coordinates
+from ..options import Options
+from ..policy import Backwards, turned
+from ..results import ContourResult, Measures
+from . import steps as rounds
+from .canonical_contours import Chains, chains_of
+from .forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT, forms
+from .refine import Round, refined
+
+SHARPNESS = 0.02
+"""The certified bound may exceed the distances seen by this share of the tolerance."""
+
+AGAIN = ((1.0, 3), (0.5, 3), (0.25, 3))
+"""For contours that cross themselves: shares of the tolerance, and rounds in which vertices are taken out as well.
+
+Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
+"""
+
+NO_POLYGONS = np.empty((0, 2))
+
+
+def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: float) -> list[ContourResult]:
+    """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
+
+    Results that cross themselves where their source did not are fitted again, with fewer vertices and more closely; the
+    one with the fewest crossings counts, and is flagged if it has any. Outlines that go back the way they came may keep
+    some.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
+    """
+    if not contours:
+        return []
+    check_coordinates(contours)
+    chains = chains_of(flattened(contours))
+    source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
+    near = np.full(len(contours), tolerance)
+    results: dict[int, ContourResult] = {}
+    left = np.arange(len(contours))
+    for share, early in ((1.0, None), *AGAIN):
+        near[left] = share * tolerance
+        kept = refined(chains, left, options, near, early)
+        own = _measured(chains, left, [kept[k] for k in left.tolist()], source, tolerance)
+        for k, measures in zip(left.tolist(), own, strict=True):
+            if k not in results or _rank(measures) < _rank(results[k].measures):
+                results[k] = _result(contours[k], *kept[k], bool(chains.flipped[k]), measures)
+        left = left[[bool(measures.new_crossings) for measures in own]]
+        if len(left) == 0:
+            break
+    return [results[k] for k in range(len(contours))]
+
+
+def _rank(measures: Measures) -> tuple[bool, int]:
+    """The lower, the better: within the tolerance before all, then few crossings."""
+    return not measures.within_tolerance, measures.new_crossings or 0
+
+
+def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Measures) -> ContourResult:
+    """Part i of a round, in the direction in which the contour was given."""
+    points, pieces = found.part(found.points, i), found.part(found.pieces, i)
+    if flipped:
+        points, pieces = turned(points), pieces[::-1, ::-1]
+    curve = Contour(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3))
+    result = Interpolation.shared(Backwards(found.found) if flipped else found.found, i)
+    return ContourResult(contour, points, (result,), curve, measures)
+
+
+def _measured(
+    chains: Chains, which: IntArray, kept: Sequence[tuple[Round, int]], source: FloatArray, tolerance: float
+) -> list[Measures]:
+    """All that is known of some contours' results."""
+    parts = [found.part(found.pieces, i) for found, i in kept]
+    offsets = np.cumsum([0] + [len(part) for part in parts])
+    polygons = np.concatenate([found.part(found.points, i) for found, i in kept])
+    form = forms(np.concatenate(parts), offsets, polygons, offsets)
+    change = np.where(chains.flipped[which], -1, 1) * (form[:, AREA] - source[which, AREA])
+    crossings = np.maximum(form[:, CROSSINGS] - source[which, CROSSINGS], 0).astype(int).tolist()
+    results = []
+    for k, (found, i), row, difference, crossed in zip(
+        which.tolist(), kept, form.tolist(), change.tolist(), crossings, strict=True
+    ):
+        bound, gap = _certificate(chains, k, found, i, tolerance)
+        _, n, iterations, fallbacks, _ = found.found.whole[i].tolist()
+        residual = float(found.found.residuals[found.found.residual_offsets[i + 1] - 1])
+        results.append(
+            Measures(
+                vertices=n,
+                segments=n,
+                numbers=2 * n,
+                iterations=iterations,
+                residual=residual,
+                converged=residual < float(found.found.tolerances[i]),
+                rate_bound=float(found.found.rates[i]),
+                fallbacks=fallbacks,
+                deviation=gap,
+                deviation_bound=bound,
+                within_tolerance=bound <= tolerance,
+                overshoot=row[OVERSHOOT],
+                length=row[LENGTH],
+                area_change=difference,
+                bending_energy=row[ENERGY],
+                max_curvature=row[CURVATURE],
+                new_crossings=crossed,
+            )
+        )
+    return results
+
+
+def _certificate(chains: Chains, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
+    """Certified bound, and distance seen, of part i of a round from contour k."""
+    written, start = found.part(found.written, i), found.offsets[i] + i
+    ends = found.ends[start : start + len(written) + 1]
+    bound, gap = rounds.certificate(
+        chains, k, written, found.part(found.bounds, i), found.part(found.gaps, i), ends, SHARPNESS * tolerance
+    )
+    if bound <= tolerance:
+        return bound, gap
+    # Pairing the other way round too is slow, and only seldom better.
+    anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
+    outline = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
+    other = certified_distance(written, outline, anchors, SHARPNESS * tolerance, tolerance)
+    return (other.bound, other.measured) if other.bound < bound else (bound, gap)

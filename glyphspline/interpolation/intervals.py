@@ -1,0 +1,132 @@
+"""Where a footpoint may be sought: the intervals of the five variants (Table 1), Lemma 2 and Remark 3.
+
+Everything here looks at one basis function at a time. It is given as its *window*, the degree + 2 knots it
+lives on, so that closed, open and odd- or even-degree splines look alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from ..types import FloatArray
+
+Fallback: TypeAlias = Literal["knot", "peak"]
+
+PEAK_SHARE = 0.9
+"""``fallback="peak"`` asks for B_i ≥ min(1/2 + c, this share of its peak).
+
+Nearer to 1 the interval shrinks to the peak, which freezes the parameters; the lower, the less is left of
+the bound of Theorem 2 where peaks are low.
+"""
+
+BISECTIONS = 64
+"""Enough halvings to leave neighbouring floats."""
+
+
+@dataclass(frozen=True, eq=False)
+class Intervals:
+    """Where each footpoint is sought.
+
+    Attributes:
+        bounds: (n, 2) the intervals.
+        fallbacks: number of vertices where Lemma 2 gives no interval, as B_i nowhere exceeds 1/2.
+        rate_bound: max 2 (1 - min B_i over i's interval), Theorem 2's factor a step.
+    """
+
+    bounds: FloatArray
+    fallbacks: int
+    rate_bound: float
+
+
+def basis_function(windows: FloatArray, t: FloatArray) -> FloatArray:
+    """B_i(t_i) on its own knots, by Cox and de Boor: (n, degree + 2) windows and (n,) parameters give (n,).
+
+    A window may begin or end with repeated knots (clamped ends). Each span is closed at its left end, the
+    last one of positive length at both.
+    """
+    t = t[:, None]
+    left, right = windows[:, :-1], windows[:, 1:]
+    last = (right == windows[:, -1:]) & (right > left) & (t == right)
+    N = (((left <= t) & (t < right)) | last).astype(np.float64)
+    spans = windows.shape[1] - 1
+    for width in range(1, spans):
+        u, v = windows[:, :-width], windows[:, width:]
+        length = v - u
+        rise = np.where(length > 0, (t - u) / np.where(length > 0, length, 1), 0)
+        N = rise[:, :-1] * N[:, :-1] + np.where(length > 0, 1 - rise, 0)[:, 1:] * N[:, 1:]
+    return N[:, 0]
+
+
+def _derivative_sign(windows: FloatArray, t: FloatArray) -> FloatArray:
+    """Sign of B_i'(t): the difference of the two basis functions of one degree less."""
+    degree = windows.shape[1] - 2
+    halves = [windows[:, :-1], windows[:, 1:]]
+    lengths = [half[:, degree] - half[:, 0] for half in halves]
+    rise, fall = (
+        np.where(length > 0, basis_function(half, t) / np.where(length > 0, length, 1), 0)
+        for half, length in zip(halves, lengths, strict=True)
+    )
+    return np.sign(rise - fall)
+
+
+def peaks(windows: FloatArray) -> FloatArray:
+    """(n,) the parameter t_max at which each B_i is largest. B_i rises before it and falls after it."""
+    low, high = windows[:, 0].copy(), windows[:, -1].copy()
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        rising = _derivative_sign(windows, middle) > 0
+        low, high = np.where(rising, middle, low), np.where(rising, high, middle)
+    return (low + high) / 2
+
+
+def level_interval(windows: FloatArray, peak: FloatArray, level: FloatArray) -> FloatArray:
+    """(n, 2) the interval around the peak on which B_i ≥ level; the peak alone if it is not higher."""
+    ends = []
+    higher = basis_function(windows, peak) > level
+    for outside in (windows[:, 0], windows[:, -1]):
+        inside, outside = peak.copy(), outside.copy()
+        for _ in range(BISECTIONS):
+            middle = (inside + outside) / 2
+            enough = basis_function(windows, middle) >= level
+            inside, outside = np.where(enough, middle, inside), np.where(enough, outside, middle)
+        ends.append(np.where(higher, inside, peak))
+    return np.stack(ends, axis=1)
+
+
+def search_intervals(
+    windows: FloatArray, centres: FloatArray, variant: int, margin: float = 0.0, fallback: Fallback = "knot"
+) -> Intervals:
+    """The interval of every footpoint.
+
+    Args:
+        windows: (n, degree + 2) the knots of each basis function.
+        centres: (n,) the parameter of each vertex, u_i for cubics.
+        variant: 0 the whole support; 1 the support less a span at each end; 2, 4 Lemma 2; 3 the centre alone.
+        margin: c of Lemma 2, the interval being {B_i ≥ 1/2 + min(c, max B_i - 1/2)}, clipped to that of variant 1.
+        fallback: where B_i nowhere exceeds 1/2, "knot" takes the centre (Remark 3). "peak" instead takes, for every
+            vertex, {B_i ≥ min(1/2 + c, 0.9 max B_i)}, which never runs empty.
+    """
+    support = windows[:, [0, -1]]
+    inner = windows[:, [1, -2]]
+    peak = peaks(windows)
+    highest = basis_function(windows, peak)
+    low = highest <= 0.5
+    if variant == 0:
+        bounds = support
+    elif variant == 1:
+        bounds = inner
+    elif variant == 3:
+        bounds = np.stack([centres, centres], axis=1)
+    elif fallback == "peak":
+        level = np.minimum(0.5 + margin, PEAK_SHARE * highest)
+        bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
+    else:
+        level = np.minimum(0.5 + margin, highest)
+        bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
+        bounds = np.where(low[:, None], centres[:, None], bounds)
+    least = np.minimum(basis_function(windows, bounds[:, 0]), basis_function(windows, bounds[:, 1]))
+    fallbacks = int(low.sum()) if variant in (2, 4) else 0
+    return Intervals(bounds, fallbacks, float(2 * (1 - least.min(initial=1.0))))

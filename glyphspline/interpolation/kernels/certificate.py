@@ -1,0 +1,148 @@
+"""The vertices whose certificate ``lanes`` did not establish at once: a closer look, then a search in full.
+
+Of the main side the certificate may hold in smaller parts. All of the other side may be farther away than y*, by the
+Bernstein coefficients of the squared distance. It is one vertex at a time here; one in a hundred comes this far.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .footpoint import GUARD, WORK, compiled, search_piece
+from .newton_simd import (
+    BAD,
+    DD,
+    DONE,
+    EX,
+    EY,
+    OTHER,
+    OZX,
+    OZY,
+    SEX,
+    SEY,
+    SHI,
+    SIDE,
+    SLO,
+    SVX,
+    SVY,
+    SWX,
+    SWY,
+    SY,
+    SZX,
+    SZY,
+    X,
+    bernstein,
+    expanded,
+    quartic,
+)
+from .select import select
+
+BEYOND = 1 + 1e-9
+CUT = 0.125
+SEARCHED = 9.0
+
+
+@compiled
+def _least_distance(ex, ey, vx, vy, wx, wy, zx, zy, L):
+    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L."""
+    ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
+    bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
+    cx, cy = ex + ((zx * L + wx) * L + vx) * L, ey + ((zy * L + wy) * L + vy) * L
+    least = ex * ex + ey * ey
+    d = ex * ax + ey * ay
+    least = select(d < least, d, least)
+    d = (2.0 * (ex * bx + ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
+    least = select(d < least, d, least)
+    d = (ex * cx + ey * cy + 9.0 * (ax * bx + ay * by)) * 0.1
+    least = select(d < least, d, least)
+    d = (2.0 * (ax * cx + ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
+    least = select(d < least, d, least)
+    d = bx * cx + by * cy
+    least = select(d < least, d, least)
+    d = cx * cx + cy * cy
+    return select(d < least, d, least)
+
+
+@compiled
+def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
+    """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
+
+    Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
+    """
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
+    for _ in range(6):
+        if min(c0, b1, b2, b3, b4) > guard:
+            return True
+        p0, p1, p2, p3 = c0 + CUT * (b1 - c0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
+        q0, q1, q2 = p0 + CUT * (p1 - p0), p1 + CUT * (p2 - p1), p2 + CUT * (p3 - p2)
+        r0, r1 = q0 + CUT * (q1 - q0), q1 + CUT * (q2 - q1)
+        s0 = r0 + CUT * (r1 - r0)
+        if not min(s0, r1, q2, p3, b4) > guard:
+            return False
+        b1, b2, b3, b4 = p0, q0, r0, s0
+    return False
+
+
+@compiled
+def _second_look(S, j):
+    """Whether the certificate holds on the main side after all, in parts."""
+    y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
+    qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
+    qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
+    c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
+    guard = GUARD * max(speed, c0)
+    return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
+        c0, c1, c2, c3, c4, S[SLO + j] - y, guard
+    )
+
+
+@compiled
+def _search(B, S, j, main_side, other_side, D, tie):
+    """Search the main side, the other one, or both in full. D: the best so far, inf if that does not count."""
+    c = np.empty((2, 4))
+    work = np.empty(WORK)
+    side, x = S[SIDE + j], S[SIDE + j] * S[SY + j]
+    for turn in range(2):
+        main = turn == 0
+        if not (main_side if main else other_side):
+            continue
+        sign = side if main else -side
+        low = S[SLO + j] if main else 0.0
+        high = S[SHI + j] if main else S[OTHER + j]
+        c[0, 0], c[1, 0] = S[SEX + j], S[SEY + j]
+        c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
+        c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
+        c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
+        y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, tie, work)
+        if D_new < D or y != sign * x:
+            x, D = sign * y, D_new
+            B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
+            B[EY + j] = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
+    B[X + j] = x
+    B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
+
+
+@compiled
+def flagged(B, S, first, m, tie):
+    """A second look at the vertices that were flagged, then a search in full; the number of those searched.
+
+    These are marked ``SEARCHED`` in the field BAD.
+    """
+    searched = 0
+    for j in range(first, np.uint64(m) + first):
+        flag = S[BAD + j]
+        if flag == 0.0:
+            continue
+        D = B[DD + j]
+        main_side = flag != 2.0 and (S[DONE + j] == 0.0 or not _second_look(S, j))
+        other_side = flag >= 2.0 and _least_distance(
+            S[SEX + j], S[SEY + j], -S[SVX + j], -S[SVY + j], S[SWX + j], S[SWY + j], S[OZX + j], S[OZY + j],
+            S[OTHER + j],
+        ) <= BEYOND * D  # fmt: skip
+        other_side = other_side or (main_side and S[OTHER + j] > 0.0)
+        if not (main_side or other_side):
+            continue
+        searched += 1
+        S[BAD + j] = SEARCHED
+        _search(B, S, j, main_side, other_side, np.inf if main_side else D, tie)
+    return searched

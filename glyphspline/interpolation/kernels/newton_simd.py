@@ -1,0 +1,283 @@
+"""One pass of Algorithm 2 on a cubic, variants 1 to 3: straight-line code over blocks of vertices, for SIMD.
+
+About its knot u_i the curve, with p_i as the origin, is q(x) = E + V x + W x² + Z x³, where Z is one of two, for the
+spans to the right and to the left. All of it comes from differences of control points, through d_i, the control points
+of C', and w_i = C''(u_i)/2:
+
+    d_i = 3 (P_i - P_{i-1}) / (u_{i+1} - u_{i-2})       w_i = (d_{i+1} - d_i) / (u_{i+1} - u_{i-1})
+    λ = h_{i-1} / (h_{i-1} + h_i)                       E = P_i - p_i + (λ h_{i-1} d_{i+1} - (1-λ) h_i d_i) / 3
+    V = (1-λ) d_i + λ d_{i+1}                           W = w_i
+    Z = (w_{i+1} - w_i) / (3 h_i) to the right, likewise to the left
+
+The *main side* is the one on which the distance falls at u_i (or on which the whole interval lies), and y ≥ 0 runs
+along it. Newton's method with Chebyshev's third-order term goes from the last footpoint to a local minimum y*. The
+certificate of ``footpoint`` then has two parts: about y* over the main side, and about u_i over the other side, which
+shows D ≥ D(u_i) ≥ D(y*) there. A vertex that fails either is flagged, and left to ``flagged``.
+
+No value depends on another lane, and no floating-point reassociation is allowed, so results do not depend on the
+width of the vectors.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .blocks import FIELDS, STRIDE
+from .footpoint import GUARD, compiled, inlined
+from .fused import cubic, dot, fma
+from .select import select
+from .wide import wide
+
+# Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
+PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
+    np.uint64(k * STRIDE) for k in range(FIELDS)
+)
+# Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
+DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
+    np.uint64(k * STRIDE) for k in range(19)
+)
+SIXTH = 1 / 6
+ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
+
+WIDTH = 8
+"""Vertices are taken by this many: loops of whole vectors."""
+
+NEWTON_PASSES = 8
+SETTLED_STEP = 1e-6
+"""A step this small (share of the side's length) may be the last: third-order convergence leaves its cube."""
+
+LEFT = 1e-14
+"""It is the last if it leaves so little: about c² of the step, where c is the share of it that the correction adds.
+
+Near a cusp c is not small until steps are much smaller than above. Gauss and Newton's step has no correction, and may
+leave as much as it is itself.
+"""
+
+
+@inlined
+def expanded(e, v, w, z, y):
+    """Coefficients of e + v x + w x² + z x³, one coordinate of q, about y but for the last, which stays z."""
+    a = fma(3.0 * y, z, w)
+    return cubic(e, v, w, z, y), fma(a + w, y, v), a
+
+
+@inlined
+def quartic(qx, qy, px, py, ax, ay, zx, zy):
+    """c0 to c4 of |q + p x + a x² + z x³|² = |q|² + 2 q·p x + x² (c0 + c1 x + … + c4 x⁴), and |p|²."""
+    speed = dot(px, py, px, py)
+    c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
+    c1 = 2.0 * (dot(qx, qy, zx, zy) + dot(px, py, ax, ay))
+    c2 = fma(2.0, dot(px, py, zx, zy), dot(ax, ay, ax, ay))
+    c3 = 2.0 * dot(ax, ay, zx, zy)
+    return c0, c1, c2, c3, dot(zx, zy, zx, zy), speed
+
+
+@inlined
+def bernstein(c0, c1, c2, c3, c4, L):
+    """The Bernstein coefficients of c0 + c1 x + … + c4 x⁴ between 0 and L, but for the first, which is c0."""
+    squared = L * L
+    k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
+    b1 = fma(0.25, k1, c0)
+    b2 = fma(SIXTH, k2, fma(0.5, k1, c0))
+    b3 = fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
+    return b1, b2, b3, c0 + k1 + k2 + k3 + k4
+
+
+@inlined
+def least_quartic(c0, c1, c2, c3, c4, L):
+    """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
+    least = select(c0 < b1, c0, b1)
+    rest = select(b2 < b3, b2, b3)
+    least = select(least < rest, least, rest)
+    return select(least < b4, least, b4)
+
+
+@inlined
+def least_rise(slope, c0, c1, c2, c3, c4, L):
+    """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
+    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
+    r1, r2, r3, r4 = 0.2 * c0, 0.4 * b1, 0.6 * b2, 0.8 * b3
+    least = select(r1 < r2, r1, r2)
+    rest = select(r3 < r4, r3, r4)
+    least = select(least < rest, least, rest)
+    least = select(least < b4, least, b4)
+    return fma(L, least, slope)
+
+
+@inlined
+def _taylor(B, S, m, step):
+    """Derivatives at the knots from control points (see the module), main side chosen, into the scratch block."""
+    for j in range(step, np.uint64(m) + TWO * step + TWO * step):
+        r = B[RATE + j]
+        S[DX + j] = r * (B[PX + j] - B[PX + j - step])
+        S[DY + j] = r * (B[PY + j] - B[PY + j - step])
+    for j in range(step, np.uint64(m) + THREE * step):
+        s = B[HALF + j]
+        S[SWX + j] = s * (S[DX + j + step] - S[DX + j])
+        S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
+    for j in range(TWO * step, np.uint64(m) + TWO * step):
+        a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
+        ex = fma(a, S[DX + j + step], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
+        ey = fma(a, S[DY + j + step], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
+        vx = fma(lam, S[DX + j + step] - S[DX + j], S[DX + j])
+        vy = fma(lam, S[DY + j + step] - S[DY + j], S[DY + j])
+        low, high = B[LOW + j], B[HIGH + j]
+        falling = dot(ex, ey, vx, vy) <= 0.0
+        forward = (low >= 0.0) | ((high > 0.0) & falling)
+        side = select(forward, 1.0, -1.0)
+        S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j] = ex, ey, side * vx, side * vy
+        near = select(forward, low, -high)
+        far = select(forward, high, -low)
+        near0 = select(near > 0.0, near, 0.0)
+        S[OTHER + j] = select(near < 0.0, -near, 0.0)
+        S[SLO + j], S[SHI + j], S[SIDE + j] = near0, far, side
+        y = side * B[X + j]
+        y = select(y > near0, y, near0)
+        S[SY + j] = select(y < far, y, far)
+        S[DONE + j] = select(far <= near0, 1.0, 0.0)
+    for j in range(TWO * step, np.uint64(m) + TWO * step):  # one loop with the above would not become SIMD
+        wx, wy = S[SWX + j], S[SWY + j]
+        right, left = B[THIRD + j], B[THIRD + j - step]
+        rx, ry = (S[SWX + j + step] - wx) * right, (S[SWY + j + step] - wy) * right
+        lx, ly = (S[SWX + j - step] - wx) * left, (S[SWY + j - step] - wy) * left
+        forward = S[SIDE + j] > 0.0
+        S[SZX + j] = select(forward, rx, lx)
+        S[SZY + j] = select(forward, ry, ly)
+        S[OZX + j] = select(forward, lx, rx)
+        S[OZY + j] = select(forward, ly, ry)
+
+
+@compiled
+def _taylor_1(B, S, m):
+    wide()
+    _taylor(B, S, m, ONE)
+
+
+@compiled
+def _taylor_4(B, S, m):
+    wide()
+    _taylor(B, S, m, FOUR)
+
+
+@compiled
+def _taylor_8(B, S, m):
+    wide()
+    _taylor(B, S, m, EIGHT)
+
+
+@compiled
+def taylor(B, S, first, m):
+    """Derivatives at the knots. The step is a constant in each case: with a variable one loops do not become SIMD."""
+    if first == TWO:
+        _taylor_1(B, S, m)
+    elif first == EIGHT:
+        _taylor_4(B, S, m)
+    else:
+        _taylor_8(B, S, m)
+
+
+@compiled
+def newton(S, first, m):
+    """One step for every vertex that has not settled; the number of those that still have not."""
+    wide()
+    pending = 0
+    for j in range(first, np.uint64(m) + first):
+        y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
+        vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
+        qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
+        qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
+        speed = dot(px, py, px, py)
+        bend = fma(2.0, dot(qx, qy, ax, ay), speed)
+        convex = bend > 0.05 * speed
+        slope = select(convex, bend, speed)
+        slope = select(slope > 0.0, slope, 1.0)
+        inverse = 1.0 / slope
+        step = dot(qx, qy, px, py) * inverse
+        third = 3.0 * (dot(px, py, ax, ay) + dot(qx, qy, zx, zy))
+        correction = step * third * inverse
+        correction = select(correction < 0.5, correction, 0.5)
+        correction = select(correction > -0.5, correction, -0.5)
+        left = select(convex, correction * correction, 1.0)
+        correction = select(convex, correction, 0.0)
+        new = y - fma(step, correction, step)
+        new = select(new > low, new, low)
+        new = select(new < high, new, high)
+        moved = new - y
+        moved = select(moved > 0.0, moved, -moved)
+        frozen = done > 0.0
+        length = high - low
+        settled = frozen | ((moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length))
+        S[SY + j] = select(frozen, y, new)
+        S[DONE + j] = select(settled, 1.0, 0.0)
+        pending += select(settled, 0, 1)
+    return pending
+
+
+@compiled
+def certify(B, S, first, m):
+    """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
+    wide()
+    bad, wild = 0, 0
+    for j in range(first, np.uint64(m) + first):
+        y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
+        ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
+        zx, zy = S[SZX + j], S[SZY + j]
+        qx, px, ax = expanded(ex, vx, wx, zx, y)
+        qy, py, ay = expanded(ey, vy, wy, zy, y)
+        # Q = c0 + c1 x + … about y, and its Bernstein coefficients to the far and to the near end
+        c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
+        ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
+        behind = least_quartic(c0, c1, c2, c3, c4, low - y)
+        least = select(ahead < behind, ahead, behind)
+        size = select(speed > c0, speed, c0)
+        # the other side, about the knot: 2 E·V outwards, then its Q
+        L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
+        slope = -2.0 * dot(ex, ey, vx, vy)
+        o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
+        rise = least_rise(slope, o0, o1, o2, o3, o4, L)
+        D = dot(qx, qy, qx, qy)
+        main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
+        other = (rise <= 0.0) & (L > 0.0)
+        fails = main | other
+        S[BAD + j] = select(main, 1.0, 0.0) + select(other, 2.0, 0.0)
+        bad += select(fails, 1, 0)
+        wild += select(np.inf > D, 0, 1)
+        B[X + j] = S[SIDE + j] * y
+        B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
+    return bad, wild
+
+
+@compiled
+def whole_vectors(count):
+    """``count``, or so many more that loops consist of whole vectors."""
+    return (count + WIDTH - 1) // WIDTH * WIDTH
+
+
+@compiled
+def seek(B, S, first, m):
+    """Footpoints of a block's vertices, into it; how many are flagged, and how many not finite."""
+    taylor(B, S, first, m)
+    for _ in range(NEWTON_PASSES):
+        if newton(S, first, m) == 0:
+            break
+    return certify(B, S, first, m)
+
+
+@compiled
+def errors_at(B, S, first, m):
+    """Errors p - C(t) at the parameters that the block holds, nothing searched; how many are not finite."""
+    taylor(B, S, first, m)
+    wild = 0
+    for j in range(first, np.uint64(m) + first):
+        y = S[SIDE + j] * B[X + j]
+        main = y >= 0.0
+        sign = select(main, 1.0, -1.0)
+        zx, zy = select(main, S[SZX + j], S[OZX + j]), select(main, S[SZY + j], S[OZY + j])
+        z = sign * y
+        qx = cubic(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
+        qy = cubic(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
+        D = dot(qx, qy, qx, qy)
+        wild += select(np.inf > D, 0, 1)
+        B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
+    return wild

@@ -1,0 +1,69 @@
+"""What may be interpolated: polygons checked, and freed of duplicate vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import PolygonError
+from ..types import FloatArray, IntArray
+
+SAME_VERTEX = 1e-12
+"""Neighbours nearer than this share of the polygon's extent are one vertex.
+
+Much smaller, and the knots between them fall together in floating point once they are summed up.
+"""
+
+
+def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, IntArray]:
+    """Check a polygon and merge consecutive duplicates.
+
+    Args:
+        points: (n, 2) vertices in order, the first not repeated at the end.
+        closed: whether the last vertex is followed by the first.
+
+    Returns:
+        The vertices kept, (n', 2) float64, and the indices of those dropped, each a duplicate of a kept one before it.
+
+    Raises:
+        PolygonError: not of shape (n, 2); a coordinate is NaN or infinite, or so large that distances overflow;
+            fewer than three distinct vertices (two for an open arc).
+    """
+    try:
+        p = np.ascontiguousarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as cause:
+        raise PolygonError("a polygon is an array of numbers of shape (n, 2)") from cause
+    if p.ndim != 2 or p.shape[1] != 2:
+        raise PolygonError(f"a polygon has shape (n, 2), not {p.shape}")
+    bad = np.flatnonzero(~np.isfinite(p).all(axis=1))
+    if len(bad):
+        raise PolygonError(f"vertex {bad[0]} is not finite: ({p[bad[0], 0]}, {p[bad[0], 1]})")
+    needed = 3 if closed else 2
+    extent = float(np.ptp(p, axis=0).max()) if len(p) else 0.0
+    if not extent <= LARGEST:
+        raise PolygonError(f"coordinates spread over {extent:g}, more than {LARGEST:g}")
+    kept = _distinct(p, closed, SAME_VERTEX * extent)
+    if len(np.unique(p[kept], axis=0)) < needed:
+        distinct = len(np.unique(p, axis=0))
+        raise PolygonError(f"{distinct} distinct vertices; a curve needs {needed} or more")
+    if 0 < extent < SMALLEST:
+        raise PolygonError(f"coordinates spread over {extent:g}, less than {SMALLEST:g}")
+    return p[kept], np.setdiff1d(np.arange(len(p)), kept)
+
+
+LARGEST, SMALLEST = 1e100, 1e-100
+"""Extents beyond which squared distances leave the range of floats."""
+
+
+def _distinct(p: FloatArray, closed: bool, apart: float) -> IntArray:
+    """Indices of the vertices that lie farther than ``apart`` from the kept one before them."""
+    if (np.hypot(*np.diff(p, axis=0).T) > apart).all():
+        kept = list(range(len(p)))
+    else:
+        kept = [0]
+        for i in range(1, len(p)):
+            if np.hypot(*(p[i] - p[kept[-1]])) > apart:
+                kept.append(i)
+    while closed and len(kept) > 1 and np.hypot(*(p[kept[-1]] - p[0])) <= apart:
+        kept.pop()
+    return np.array(kept, dtype=np.int64)

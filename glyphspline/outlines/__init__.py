@@ -1,0 +1,1 @@
+"""What a font draws: contours, their canonical order, sampling, joins and overlaps."""

@@ -1,0 +1,58 @@
+"""Where a contour is not smooth: its corners, breaks of the tangent too small for one, and breaks of curvature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..curves.bezier import cross
+from ..curves.curvature import frames
+from ..types import BoolArray, FloatArray
+from .outline import Contour
+from .sampling import CORNER_ANGLE
+
+TANGENT_ANGLE = 0.5
+"""Degrees of turn from which a tangent counts as broken. Coordinates in whole units turn joins meant smooth by less."""
+
+Kind = Literal["corner", "G1", "G2"]
+KINDS: tuple[Kind, ...] = ("corner", "G1", "G2")
+
+
+@dataclass(frozen=True, eq=False)
+class Joins:
+    """The joins of a closed contour's segments; row j is the one at which segment j begins.
+
+    Attributes:
+        points: (m, 2).
+        turns: (m,) radians by which the tangent turns there, positive to the left.
+        jumps: (m,) curvature after less curvature before, in 1/unit.
+    """
+
+    points: FloatArray
+    turns: FloatArray
+    jumps: FloatArray
+
+    def of(self, kind: Kind, least_jump: float, corner_angle: float = CORNER_ANGLE) -> BoolArray:
+        """(m,) which joins are corners, smaller breaks of the tangent (G1), or of curvature alone (G2).
+
+        Args:
+            kind: which of the three; a join is at most one of them.
+            least_jump: curvature in 1/unit from which a jump counts. corner_angle: in degrees.
+        """
+        turn = np.degrees(np.abs(self.turns))
+        corner, broken = turn >= corner_angle, turn >= TANGENT_ANGLE
+        if kind == "corner":
+            return corner
+        return broken & ~corner if kind == "G1" else ~broken & (np.abs(self.jumps) >= least_jump)
+
+
+def joins(contour: Contour) -> Joins:
+    """Tangents and curvatures on the two sides of every join."""
+    pieces = contour.cubics()
+    points, leaving, after = frames(pieces, np.zeros(len(pieces)))
+    _, arriving, before = frames(pieces, np.ones(len(pieces)))
+    arriving, before = np.roll(arriving, 1, axis=0), np.roll(before, 1)
+    turns = np.arctan2(cross(arriving, leaving), (arriving * leaving).sum(axis=1))
+    return Joins(points, turns, after - before)

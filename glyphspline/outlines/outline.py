@@ -1,0 +1,116 @@
+"""What is read from a font: contours of line, quadratic and cubic Bézier segments, y up, in font units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..types import FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """A closed chain of Bézier segments.
+
+    Attributes:
+        points: (N, 2) the control points of all segments in order, each shared end written once.
+        degrees: (m,) the degree of each segment: 1 (line), 2 or 3, so that ``N == degrees.sum()``.
+
+    Segment j has the ``degrees[j] + 1`` points that begin at ``offsets[j]``; the last segment ends on
+    ``points[0]``.
+    """
+
+    points: FloatArray
+    degrees: IntArray
+
+    def __post_init__(self) -> None:
+        points = np.ascontiguousarray(self.points, dtype=np.float64)
+        degrees = np.ascontiguousarray(self.degrees, dtype=np.int64)
+        if points.shape != (int(degrees.sum()), 2):
+            raise ValueError(f"degrees ask for ({int(degrees.sum())}, 2) points, not {points.shape}")
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "degrees", degrees)
+
+    @classmethod
+    def from_segments(cls, segments: Iterable[FloatArray]) -> Contour:
+        """Join segments of shape (degree + 1, 2); each has to begin where the one before it ended."""
+        parts = [np.asarray(segment, dtype=np.float64) for segment in segments]
+        points = np.concatenate([part[:-1] for part in parts]) if parts else np.empty((0, 2))
+        return cls(points, np.array([len(part) - 1 for part in parts], dtype=np.int64))
+
+    @cached_property
+    def offsets(self) -> IntArray:
+        """(m,) where in ``points`` each segment begins."""
+        return np.cumsum(self.degrees) - self.degrees
+
+    def __len__(self) -> int:
+        return len(self.degrees)
+
+    def segments(self) -> Iterator[FloatArray]:
+        """The segments in order, each (degree + 1, 2)."""
+        closed = np.concatenate([self.points, self.points[:1]])
+        for offset, degree in zip(self.offsets, self.degrees, strict=True):
+            yield closed[offset : offset + degree + 1]
+
+    def cubics(self) -> FloatArray:
+        """(m, 4, 2) all segments as cubic Béziers, lines and quadratics raised exactly."""
+        # Here and not above, as it brings the compiler with it: the package opens without.
+        from ..curves.cubics import raised
+
+        return raised(self.points, self.degrees)
+
+    def rounded(self, digits: int) -> Contour:
+        """The contour as it is written with ``digits`` decimals."""
+        return Contour(np.round(self.points, digits) + 0.0, self.degrees)
+
+    def reversed(self) -> Contour:
+        """The same shape run the other way, beginning at the same point."""
+        return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
+
+    def draw(self, pen: Any) -> None:
+        """Draw with any fontTools segment pen."""
+        closed = [tuple(point) for point in np.concatenate([self.points, self.points[:1]]).tolist()]
+        pen.moveTo(closed[0])
+        for offset, degree in zip(self.offsets.tolist(), self.degrees.tolist(), strict=True):
+            to = closed[offset + 1 : offset + degree + 1]
+            (pen.lineTo, pen.qCurveTo, pen.curveTo)[degree - 1](*to)
+        pen.closePath()
+
+
+@dataclass(frozen=True)
+class FontMetrics:
+    """What a drawing needs to know of the whole font, in font units."""
+
+    units_per_em: float = 1000.0
+    ascender: float = 800.0
+    descender: float = -200.0
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A glyph as its font gives it.
+
+    Attributes:
+        name: the glyph's name; gid: its index in the font; unicodes: its code points, ascending.
+        advance: horizontal advance in font units.
+        contours: its contours in the font's order; empty for a space.
+        metrics: units per em, ascender and descender of its font.
+        notes: what the reader left out and why, a sentence each.
+    """
+
+    name: str
+    gid: int = 0
+    unicodes: tuple[int, ...] = ()
+    advance: float = 0.0
+    contours: tuple[Contour, ...] = ()
+    metrics: FontMetrics = field(default_factory=FontMetrics)
+    notes: tuple[str, ...] = ()
+
+    def draw(self, pen: Any) -> None:
+        """Draw with any fontTools segment pen."""
+        for contour in self.contours:
+            contour.draw(pen)

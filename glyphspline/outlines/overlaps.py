@@ -1,0 +1,129 @@
+"""Overlapping contours united, glyph by glyph, with Skia's path operations (the extra ``overlaps``)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..curves.crossings import chords
+from ..curves.cubics import jit
+from ..curves.integrals import shape
+from ..errors import GlyphsplineError
+from ..types import FloatArray, IntArray
+from .outline import Contour, Outline
+
+SCANLINES = 1000
+"""Lines across a glyph on which its inked area is measured."""
+
+AREA_TOLERANCE = 2e-3
+"""Share of the inked area that may seem to change. Scan lines are exact to a thousandth; lost contours cost more."""
+
+
+def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
+    """The outline with its contours united, and a note if that could not be done and it is the same as before.
+
+    Raises:
+        GlyphsplineError: skia-pathops is not installed.
+    """
+    try:
+        import pathops
+    except ImportError as cause:
+        raise GlyphsplineError("removing overlaps needs skia-pathops: pip install 'glyphspline[overlaps]'") from cause
+    if not outline.contours:
+        return outline, None
+    clockwise = _outer_is_clockwise(outline)
+    try:
+        path = pathops.Path()
+        outline.draw(path.getPen())
+        path.simplify(fix_winding=True, keep_starting_points=True, clockwise=clockwise)
+        united = tuple(contours_of(path))
+    except pathops.PathOpsError as error:
+        return outline, f"overlaps were left in: {error or 'path operations failed'}"
+    if _same_size(united, outline.contours):
+        return outline, None
+    before, after = inked_area(outline.contours), inked_area(united)
+    if abs(after - before) > AREA_TOLERANCE * before:
+        return outline, f"overlaps were left in: uniting them changed the area from {before:.0f} to {after:.0f}"
+    return replace(outline, contours=united), None
+
+
+def contours_of(path: Any) -> list[Contour]:
+    """The contours of a ``pathops.Path``."""
+    found: list[Contour] = []
+    segments: list[FloatArray] = []
+    start = here = (0.0, 0.0)
+
+    def close() -> None:
+        if segments and here != start:
+            segments.append(np.array([here, start]))
+        if segments:
+            found.append(Contour.from_segments(segments))
+        segments.clear()
+
+    for verb, points in path.segments:
+        if verb == "moveTo":
+            close()
+            start = here = points[0]
+        elif verb in ("lineTo", "curveTo"):
+            segments.append(np.array([here, *points]))
+            here = points[-1]
+        elif verb == "qCurveTo":
+            # Implied points lie midway between neighbouring off-curve points.
+            for k, control in enumerate(points[:-1]):
+                a, b = np.array(control), np.array(points[k + 1])
+                to = points[-1] if k == len(points) - 2 else tuple((a + b) / 2)
+                segments.append(np.array([here, control, to]))
+                here = to
+        else:
+            close()
+    close()
+    return found
+
+
+def _same_size(a: tuple[Contour, ...], b: tuple[Contour, ...]) -> bool:
+    """Whether two outlines have the same numbers of contours and segments: then nothing was cut."""
+    return sorted(len(contour) for contour in a) == sorted(len(contour) for contour in b)
+
+
+def _outer_is_clockwise(outline: Outline) -> bool:
+    """Direction of the contour of the largest area, which cannot be a hole."""
+    areas = [shape(contour.cubics()).area for contour in outline.contours]
+    return max(areas, key=abs) < 0
+
+
+def inked_area(contours: tuple[Contour, ...]) -> float:
+    """Area filled by the nonzero winding rule, on evenly spaced scan lines."""
+    lines = [chords(contour.cubics())[0] for contour in contours if len(contour)]
+    if not lines:
+        return 0.0
+    starts = np.cumsum([0, *(len(line) for line in lines)])
+    return float(_scan(np.concatenate(lines), starts, SCANLINES))
+
+
+@jit
+def _scan(points: FloatArray, starts: IntArray, lines: int) -> float:
+    low, high = points[:, 1].min(), points[:, 1].max()
+    step = (high - low) / lines
+    at, turn = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
+    total = 0.0
+    for line in range(lines):
+        y = low + (line + 0.5) * step
+        count = 0
+        for c in range(len(starts) - 1):
+            first, last = starts[c], starts[c + 1]
+            for i in range(first, last):
+                j = i + 1 if i + 1 < last else first
+                if (points[i, 1] <= y) != (points[j, 1] <= y):
+                    share = (y - points[i, 1]) / (points[j, 1] - points[i, 1])
+                    at[count] = points[i, 0] + share * (points[j, 0] - points[i, 0])
+                    turn[count] = 1 if points[j, 1] > points[i, 1] else -1
+                    count += 1
+        winding = 0
+        order = np.argsort(at[:count])
+        for k in range(count - 1):
+            winding += turn[order[k]]
+            if winding != 0:
+                total += at[order[k + 1]] - at[order[k]]
+    return total * step

@@ -1,0 +1,192 @@
+"""Vertices on contours at even steps between corners, graded: ``sampling.stepped_places``, compiled."""
+
+# mypy: disable-error-code="no-untyped-def"
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ..types import FloatArray
+from .sampling import CORNER_ANGLE, TABLE, TIE
+
+TURN = np.cos(np.radians(CORNER_ANGLE))
+
+ROUNDS = 64
+"""Gradings after which a contour is left to the long way: each halves, and no length is halved more often."""
+
+
+ONE = np.uint64(1)
+
+
+def _weights() -> FloatArray:
+    """(4, TABLE + 1) Bernstein polynomials at the places of the table."""
+    t = np.arange(TABLE + 1) / TABLE
+    s = 1.0 - t
+    return np.array([s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t])
+
+
+WEIGHTS = _weights()
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def stepped_points(cubics, offsets, step, max_ratio, most):
+    """Vertices on all contours.
+
+    Args:
+        cubics: (M, 4, 2). offsets: (K + 1,) where contours begin. step: in font units. max_ratio: of neighbouring
+            spacings. most: vertices a contour may have.
+
+    Returns:
+        (N, 2) vertices; (K + 1,) where each polygon begins; (K,) whether a contour is odd, and then has none.
+    """
+    count = len(offsets) - 1
+    points = np.empty((1024, 2))
+    ends = np.zeros(count + 1, dtype=np.int64)
+    odd = np.zeros(count, dtype=np.bool_)
+    used = 0
+    for k in range(count):
+        pieces = cubics[offsets[k] : offsets[k + 1]]
+        table = _arc_lengths(pieces)
+        at = _places(pieces, table, step, max_ratio, most)
+        n = len(at)
+        odd[k] = n < 3
+        if n >= 3:
+            while used + n > len(points):
+                larger = np.empty((2 * len(points), 2))
+                larger[:used] = points[:used]
+                points = larger
+            _evaluate(pieces, table, at, points[used : used + n])
+            used += n
+        ends[k + 1] = used
+    return points[:used], ends, odd
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _arc_lengths(pieces):
+    """(TABLE m + 1,) chord lengths summed along a contour."""
+    m = len(pieces)
+    table = np.empty(m * TABLE + 1)
+    xs, ys, chords = np.empty(TABLE + 1), np.empty(TABLE + 1), np.empty(TABLE)
+    table[0] = total = 0.0
+    for j in range(m):
+        ax, ay, bx, by = pieces[j, 0, 0], pieces[j, 0, 1], pieces[j, 1, 0], pieces[j, 1, 1]
+        cx, cy, dx, dy = pieces[j, 2, 0], pieces[j, 2, 1], pieces[j, 3, 0], pieces[j, 3, 1]
+        for i in range(np.uint64(TABLE + 1)):  # one kind of work a loop, and unsigned: such loops become SIMD
+            u, v, w, z = WEIGHTS[0, i], WEIGHTS[1, i], WEIGHTS[2, i], WEIGHTS[3, i]
+            xs[i] = u * ax + v * bx + w * cx + z * dx
+            ys[i] = u * ay + v * by + w * cy + z * dy
+        for i in range(np.uint64(TABLE)):
+            chords[i] = np.sqrt((xs[i + ONE] - xs[i]) ** 2 + (ys[i + ONE] - ys[i]) ** 2)
+        for i in range(np.uint64(TABLE)):
+            total += chords[i]
+            table[np.uint64(j * TABLE + 1) + i] = total
+    return table
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _tangent(piece, backwards):
+    """Direction, of length 1, in which a cubic leaves its first point, or its last if backwards."""
+    for k in range(1, 4):
+        i, o = (3 - k, 3) if backwards else (k, 0)
+        dx, dy = piece[i, 0] - piece[o, 0], piece[i, 1] - piece[o, 1]
+        if abs(dx) + abs(dy) > 0.0:
+            size = np.sqrt(dx * dx + dy * dy)
+            return dx / size, dy / size
+    return 0.0, 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _places(pieces, table, step, max_ratio, most):
+    """Distances along a contour, ascending, where vertices are; empty if there would be too many."""
+    m, length = len(pieces), table[-1]
+    corners = np.empty(m)
+    c = 0
+    for j in range(m):
+        ax, ay = _tangent(pieces[j - 1], True)
+        bx, by = _tangent(pieces[j], False)
+        if -(ax * bx + ay * by) <= TURN:
+            corners[c] = table[j * TABLE]
+            c += 1
+    if c == 0:
+        corners[0], c = 0.0, 1
+    parts = np.empty(c, dtype=np.int64)
+    total = 0
+    for j in range(c):
+        stretch = (corners[j + 1] if j + 1 < c else corners[0] + length) - corners[j]
+        if not stretch / step < most:
+            return np.empty(0)
+        parts[j] = max(int(np.rint(stretch / step - TIE)), 1)
+        total += parts[j]
+    if total < 3:
+        parts *= 3
+        total *= 3
+    if total > most:
+        return np.empty(0)
+    at = np.empty(total)
+    i = 0
+    for j in range(c):
+        a, b = corners[j], corners[j + 1] if j + 1 < c else corners[0] + length
+        for k in range(parts[j]):
+            at[i] = a + k * ((b - a) / parts[j])
+            i += 1
+    return _from_start(_graded(at, length, max_ratio, most), length)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _graded(at, length, max_ratio, most):
+    """Halve spacings that are more than max_ratio times a neighbour, until none is."""
+    for _ in range(ROUNDS):
+        n = len(at)
+        h = np.empty(n)
+        for i in range(n):
+            h[i] = (at[i + 1] if i + 1 < n else at[0] + length) - at[i]
+        long = 0
+        for i in range(n):
+            long += h[i] > (max_ratio + TIE) * min(h[i - 1], h[i + 1 if i + 1 < n else 0])
+        if long == 0:
+            return at
+        if n + long > most:
+            break
+        finer = np.empty(n + long)
+        k = 0
+        for i in range(n):
+            finer[k] = at[i]
+            k += 1
+            if h[i] > (max_ratio + TIE) * min(h[i - 1], h[i + 1 if i + 1 < n else 0]):
+                finer[k] = at[i] + 0.5 * h[i]
+                k += 1
+        at = finer
+    return np.empty(0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _from_start(at, length):
+    """The same distances beginning with the first after the contour's own beginning."""
+    n = len(at)
+    wrapped = 0
+    while wrapped < n and at[n - 1 - wrapped] >= length:
+        wrapped += 1
+    turned = np.empty(n)
+    for i in range(wrapped):
+        turned[i] = at[n - wrapped + i] - length
+    turned[wrapped:] = at[: n - wrapped]
+    return turned
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _evaluate(pieces, table, at, points):
+    """Points at ascending distances along the contour, by the table."""
+    cell, last = 0, len(table) - 2
+    for i in range(len(at)):
+        while cell < last and table[cell + 1] <= at[i]:
+            cell += 1
+        width = table[cell + 1] - table[cell]
+        place = (cell + ((at[i] - table[cell]) / width if width > 0.0 else 0.0)) / TABLE
+        j = min(int(place), len(pieces) - 1)
+        t = place - j
+        s = 1.0 - t
+        for axis in range(2):
+            a, b, c, d = pieces[j, 0, axis], pieces[j, 1, axis], pieces[j, 2, axis], pieces[j, 3, axis]
+            ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
+            points[i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)

@@ -1,0 +1,104 @@
+"""What a file of glyphs holds, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from ..curves.integrals import area
+from ..errors import GlyphsplineError
+from ..outlines.outline import Outline
+from .open import open_source
+from .opentype.font import Font
+from .pens import ContourPen
+from .source import Source
+
+OVERLAP = 1e-5
+"""Of a square em: overlaps of less area are rounding."""
+
+
+def file_facts(
+    path: str | Path, face_index: int | None = None, location: Mapping[str, float] | str | None = None
+) -> dict[str, Any]:
+    """The file's format and what each of its faces holds, or the one that is asked for; every glyph is drawn.
+
+    Raises:
+        FontError: as in :func:`open_source`.
+    """
+    first = open_source(path, face_index or 0, location)
+    indices = range(first.num_faces) if face_index is None else [face_index]
+    sources = [first if index == first.face_index else open_source(path, index, location) for index in indices]
+    return {
+        "file": str(path),
+        "format": first.format,
+        "faces": first.num_faces,
+        "fonts": [source_facts(source) for source in sources],
+    }
+
+
+def source_facts(source: Source) -> dict[str, Any]:
+    """One face: names, metrics, axes, instances, numbers, and glyphs worth knowing about by name.
+
+    ``overlaps`` are glyphs whose contours overlap or cross themselves, so that parts are filled twice; null where
+    skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` have contours that enclose nothing.
+    """
+    contours = segments = 0
+    broken, degenerate, overlapping = [], [], []
+    can_tell = find_spec("pathops") is not None
+    for name in source.glyph_names:
+        try:
+            outline = source.outline(name)
+        except GlyphsplineError:
+            broken.append(name)
+            continue
+        contours += len(outline.contours)
+        segments += sum(len(contour) for contour in outline.contours)
+        if any("encloses nothing" in note for note in outline.notes):
+            degenerate.append(name)
+        if can_tell and overlaps(outline):
+            overlapping.append(name)
+    font = source if isinstance(source, Font) else None
+    return {
+        "face_index": source.face_index,
+        "family": source.family,
+        "style": source.style,
+        "units_per_em": source.metrics.units_per_em,
+        "ascender": source.metrics.ascender,
+        "descender": source.metrics.descender,
+        "axes": [] if font is None else [
+            {"tag": a.tag, "name": a.name, "minimum": a.minimum, "default": a.default, "maximum": a.maximum}
+            for a in font.axes
+        ],
+        "instances": {} if font is None else font.instances,
+        "location": dict(source.location),
+        "glyphs": len(source.glyph_names),
+        "characters": len(source.cmap),
+        "contours": contours,
+        "segments": segments,
+        "broken_glyphs": len(broken),
+        "broken": broken,
+        "degenerate": degenerate,
+        "overlaps": overlapping if can_tell else None,
+    }  # fmt: skip
+
+
+def overlaps(outline: Outline) -> bool:
+    """Whether any part of a glyph is filled twice over, or inside out: its area then differs from its contours' sum."""
+    import pathops
+
+    if not outline.contours:
+        return False
+    path = pathops.Path()
+    outline.draw(path.getPen())
+    try:
+        path.simplify(fix_winding=True)
+    except pathops.PathOpsError:
+        return False  # Skia cannot tell
+    united = ContourPen()
+    path.draw(united)
+    united.finish()
+    filled = sum(area(contour.cubics()) for contour in united.contours)
+    summed = sum(area(contour.cubics()) for contour in outline.contours)
+    return abs(abs(filled) - abs(summed)) > OVERLAP * outline.metrics.units_per_em**2

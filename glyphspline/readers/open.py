@@ -1,0 +1,78 @@
+"""One way in for every kind of source: a look at what a path holds decides who reads it."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import TypeAlias
+
+from ..errors import FontError
+from .opentype.containers import FORMATS
+from .opentype.font import Font, open_font
+from .svg_drawings import SvgDrawings, open_svg
+from .ufo import Ufo, open_ufo
+
+AnySource: TypeAlias = Font | Ufo | SvgDrawings
+
+STDIN = "-"
+LARGEST_INPUT = 1 << 29
+"""Bytes taken from standard input."""
+
+_kept: list[tempfile.TemporaryDirectory[str]] = []
+
+
+def open_source(path: str | Path, face_index: int = 0, location: Mapping[str, float] | str | None = None) -> AnySource:
+    """Open whatever holds glyphs: a font file, a UFO, an SVG drawing or a folder of them.
+
+    What it is is told from its content, not its name.
+
+    Args:
+        path: file or folder; ``"-"`` is a font or drawing on standard input.
+        face_index, location: as in :func:`open_font`; only fonts have them.
+
+    Raises:
+        FontError: nothing that can be read, or a face or location asked of what has none.
+    """
+    path = standard_input() if str(path) == STDIN else Path(path)
+    if path.is_dir():
+        is_ufo = (path / "metainfo.plist").exists()
+        if not is_ufo and next(path.glob("*.svg"), None) is None:
+            raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
+        return _single(path, face_index, location, open_ufo if is_ufo else open_svg)
+    try:
+        with open(path, "rb") as file:
+            head = file.read(4096)
+    except OSError as error:
+        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+    if head[:4] not in FORMATS and head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<":
+        return _single(path, face_index, location, open_svg)
+    return open_font(path, face_index, location)
+
+
+def _single(
+    path: Path, face_index: int, location: Mapping[str, float] | str | None, reader: Callable[[Path], Ufo | SvgDrawings]
+) -> Ufo | SvgDrawings:
+    if face_index:
+        raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
+    if location:
+        raise FontError("a location is asked for, and it is not a variable font", font=str(path))
+    return reader(path)
+
+
+@cache
+def standard_input() -> Path:
+    """What comes on standard input, in a file that is there as long as this process: workers open it too.
+
+    Raises:
+        FontError: nothing comes, or too much.
+    """
+    data = sys.stdin.buffer.read(LARGEST_INPUT + 1)
+    if not data or len(data) > LARGEST_INPUT:
+        raise FontError("nothing" if not data else f"more than {LARGEST_INPUT >> 20} MiB", font="standard input")
+    _kept.append(tempfile.TemporaryDirectory(prefix="glyphspline-"))
+    path = Path(_kept[-1].name) / "stdin"
+    path.write_bytes(data)
+    return path

@@ -1,0 +1,1 @@
+"""TrueType and OpenType fonts, through HarfBuzz and fontTools."""

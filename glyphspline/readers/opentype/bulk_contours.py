@@ -1,0 +1,137 @@
+"""Drawing operations to cubic segments, by the rules of :class:`~glyphspline.readers.pens.ContourPen`, compiled."""
+
+# mypy: disable-error-code="no-untyped-def"
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ..pens import COINCIDENT, MAX_SEGMENTS
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def cubics_of(buffer, starts):
+    """Cubic segments of glyphs drawn end to end.
+
+    Args:
+        buffer: the operations. starts: (k + 1,) where each glyph begins.
+
+    Returns:
+        (M, 4, 2) cubics of all contours; (K + 1,) where contours begin; (k + 1,) contours before each glyph;
+        (k,) whether a glyph is odd: not finite, or too large. Lines and quadratics are raised to cubics, segments of
+        no length dropped, open contours closed by a line, contours left out whose points are all on one line.
+        Then the segments as drawn: (P, 2) points and (M,) degrees in the way of
+        :class:`~glyphspline.outlines.outline.Contour`, and (K + 1,) where the contours' points begin.
+    """
+    room = (starts[-1] - starts[0]) // 3 + 16
+    cubics = np.empty((room, 4, 2))
+    offsets = np.zeros(room + 1, dtype=np.int64)
+    before = np.zeros(len(starts), dtype=np.int64)
+    odd = np.zeros(len(starts) - 1, dtype=np.bool_)
+    own, degrees, owns = np.empty((3 * room, 2)), np.empty(room, dtype=np.int64), np.zeros(room + 1, dtype=np.int64)
+    contours = 0
+    for glyph in range(len(starts) - 1):
+        at, stop = starts[glyph], starts[glyph + 1]
+        first = contours
+        odd[glyph] = stop >= buffer[1] or (stop - at) // 3 > MAX_SEGMENTS
+        open_contour = False
+        sx = sy = x = y = 0.0
+        m, p = offsets[contours], owns[contours]
+        while at < stop and not odd[glyph]:
+            kind = int(buffer[at])
+            if kind == 0 or kind == 4:
+                if open_contour:
+                    contours = _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy)
+                    m, p = offsets[contours], owns[contours]
+                    open_contour = False
+                if kind == 0:
+                    sx, sy = x, y = buffer[at + 1], buffer[at + 2]
+                    open_contour = True
+                    if not (abs(x) < 1e12 and abs(y) < 1e12):
+                        odd[glyph] = True
+                at += 3 if kind == 0 else 1
+                continue
+            moves = False
+            for k in range(kind):
+                ex, ey = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
+                moves = moves or abs(ex - x) > COINCIDENT or abs(ey - y) > COINCIDENT
+                if not (abs(ex) < 1e12 and abs(ey) < 1e12):
+                    odd[glyph] = True
+            if moves:
+                degrees[m] = kind
+                own[p, 0], own[p, 1] = x, y
+                for k in range(1, kind):
+                    own[p + k, 0], own[p + k, 1] = buffer[at + 2 * k - 1], buffer[at + 2 * k]
+                p += kind
+                _raise(cubics[m], kind, x, y, buffer[at + 1 : at + 1 + 2 * kind])
+                m += 1
+                x, y = ex, ey
+            at += 1 + 2 * kind
+        if open_contour:
+            contours = _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy)
+        if odd[glyph]:
+            contours = first
+        before[glyph + 1] = contours
+    segments, points = offsets[contours], owns[contours]
+    return (
+        cubics[:segments], offsets[: contours + 1], before, odd, own[:points], degrees[:segments], owns[: contours + 1],
+    )  # fmt: skip
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _raise(cubic, kind, x, y, to):
+    """Write a line, quadratic or cubic from (x, y) as a cubic."""
+    for axis in range(2):
+        a = x if axis == 0 else y
+        if kind == 1:
+            b = to[axis]
+            middle = 0.5 * a + 0.5 * b  # raised twice, as elsewhere: a + (b - a) / 3 would round differently
+            cubic[0, axis], cubic[3, axis] = a, b
+            cubic[1, axis] = a / 3.0 + middle * (2.0 / 3.0)
+            cubic[2, axis] = middle * (2.0 / 3.0) + b / 3.0
+        elif kind == 2:
+            c, b = to[axis], to[2 + axis]
+            cubic[0, axis], cubic[3, axis] = a, b
+            cubic[1, axis] = a / 3.0 + c * (2.0 / 3.0)
+            cubic[2, axis] = c * (2.0 / 3.0) + b / 3.0
+        else:
+            cubic[0, axis], cubic[1, axis] = a, to[axis]
+            cubic[2, axis], cubic[3, axis] = to[2 + axis], to[4 + axis]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy):
+    """End a contour after m segments of p points: the number of contours, which is one more if it encloses anything."""
+    start = offsets[contours]
+    if abs(x - sx) > COINCIDENT or abs(y - sy) > COINCIDENT:
+        end = np.array([sx, sy])
+        _raise(cubics[m], 1, x, y, end)
+        degrees[m] = 1
+        own[p, 0], own[p, 1] = x, y
+        m, p = m + 1, p + 1
+    elif m > start:
+        cubics[m - 1, 3, 0], cubics[m - 1, 3, 1] = sx, sy
+    if m == start or _collinear(cubics[start:m]):
+        return contours
+    offsets[contours + 1], owns[contours + 1] = m, p
+    return contours + 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _collinear(cubics):
+    """Whether all control points lie within ``COINCIDENT`` of the line from the first to the farthest."""
+    ox, oy = cubics[0, 0, 0], cubics[0, 0, 1]
+    far, fx, fy = -1.0, 0.0, 0.0
+    for j in range(cubics.shape[0]):
+        for k in range(4):
+            dx, dy = cubics[j, k, 0] - ox, cubics[j, k, 1] - oy
+            if dx * dx + dy * dy > far:
+                far, fx, fy = dx * dx + dy * dy, dx, dy
+    bound = COINCIDENT * np.sqrt(far)
+    for j in range(cubics.shape[0]):
+        for k in range(4):
+            dx, dy = cubics[j, k, 0] - ox, cubics[j, k, 1] - oy
+            if abs(dx * fy - dy * fx) > bound:
+                return False
+    return True

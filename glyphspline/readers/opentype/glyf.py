@@ -1,0 +1,83 @@
+"""What a TrueType glyph is made of, read from its bare record: how many contours, of how many points."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...errors import GlyphsplineError
+from ..pens import MAX_COMPONENTS, MAX_SEGMENTS
+
+_WORDS, _SCALE, _MORE, _TWO_SCALES, _MATRIX = 0x01, 0x08, 0x20, 0x40, 0x80
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A glyph with its components taken apart: the number of points of each contour, and how many components."""
+
+    contours: tuple[int, ...] = ()
+    components: int = 0
+
+
+class GlyphRecords:
+    """The ``glyf`` table, looked at without drawing: a drawing can then be checked for being whole.
+
+    HarfBuzz leaves out in silence what it cannot read, and goes round a loop of components as far as it cares to.
+    """
+
+    def __init__(self, glyf: bytes, offsets: Sequence[int], glyph_names: Sequence[str]) -> None:
+        self._glyf, self._offsets, self._names = glyf, offsets, glyph_names
+        self._known: dict[int, Parts | None] = {}
+
+    def parts(self, gid: int, above: tuple[int, ...] = ()) -> Parts | None:
+        """What the glyph should draw; None if its record, or one it leads to, is broken.
+
+        Raises:
+            GlyphsplineError: components in a loop, or more of them than any real glyph has.
+        """
+        if gid in above:
+            loop = [*above[above.index(gid) :], gid]
+            raise GlyphsplineError("components in a loop: " + " > ".join(self._names[g] for g in loop))
+        if gid not in self._known:
+            try:
+                self._known[gid] = self._read(gid, above)
+            except (struct.error, IndexError):
+                self._known[gid] = None
+        return self._known[gid]
+
+    def _read(self, gid: int, above: tuple[int, ...]) -> Parts | None:
+        start, end = self._offsets[gid], self._offsets[gid + 1]
+        if start >= end:
+            return Parts()
+        record = self._glyf[start:end]
+        count = struct.unpack_from(">h", record)[0]
+        if count >= 0:
+            ends = struct.unpack_from(f">{count}H", record, 10)
+            lengths = tuple(last - before for before, last in zip((-1, *ends), ends, strict=False))
+            return Parts(lengths) if all(length > 0 for length in lengths) else None
+        contours: tuple[int, ...] = ()
+        components = 0
+        for component in component_gids(record):
+            part = self.parts(component, (*above, gid))
+            if part is None:
+                return None
+            components += 1 + part.components
+            if components > MAX_COMPONENTS:
+                raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
+            if len(contours) + len(part.contours) > MAX_SEGMENTS:
+                raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
+            contours += part.contours
+        return Parts(contours, components)
+
+
+def component_gids(record: bytes) -> list[int]:
+    """Glyph indices of a composite glyph's components, in order."""
+    found, at, more = [], 10, True
+    while more:
+        flags, gid = struct.unpack_from(">HH", record, at)
+        found.append(gid)
+        at += 4 + (4 if flags & _WORDS else 2)
+        at += 2 if flags & _SCALE else 4 if flags & _TWO_SCALES else 8 if flags & _MATRIX else 0
+        more = bool(flags & _MORE)
+    return found

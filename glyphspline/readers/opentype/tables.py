@@ -1,0 +1,119 @@
+"""What a font's tables say of the whole font: names, metrics, axes and named instances."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from fontTools.ttLib import TTFont
+
+from ...errors import FontError
+from ...outlines.outline import FontMetrics
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A variable font's axis, in user space."""
+
+    tag: str
+    name: str
+    minimum: float
+    default: float
+    maximum: float
+
+
+def axes_of(tables: TTFont) -> tuple[Axis, ...]:
+    """The axes, in the font's order; none if it is not variable."""
+    if "fvar" not in tables:
+        return ()
+    return tuple(
+        Axis(
+            axis.axisTag,
+            _name(tables, axis.axisNameID) or axis.axisTag,
+            axis.minValue,
+            axis.defaultValue,
+            axis.maxValue,
+        )
+        for axis in tables["fvar"].axes
+    )
+
+
+def instances_of(tables: TTFont) -> dict[str, dict[str, float]]:
+    """The named instances, such as "Bold", and where in the design space they are."""
+    if "fvar" not in tables:
+        return {}
+    named = ((_name(tables, instance.subfamilyNameID), instance) for instance in tables["fvar"].instances)
+    return {name: dict(instance.coordinates) for name, instance in named if name}
+
+
+def _name(tables: TTFont, name_id: int) -> str | None:
+    names = tables.get("name")
+    return names.getDebugName(name_id) if names else None
+
+
+def location_within(
+    asked: Mapping[str, float] | str | None,
+    axes: tuple[Axis, ...],
+    instances: Mapping[str, Mapping[str, float]],
+    path: Path,
+) -> dict[str, float]:
+    """A location with every value within its axis's limits, in the order of the font's axes.
+
+    Args:
+        asked: axis tag to user-space value, or the name of an instance without regard to case.
+        axes, instances: of the font. path: named in the warning about a value brought back.
+
+    Raises:
+        FontError: no such axis or instance, or a value that is not finite.
+    """
+    location = _of_instance(asked, instances) if isinstance(asked, str) else asked or {}
+    known = {axis.tag: axis for axis in axes}
+    for tag, value in location.items():
+        if tag not in known:
+            has = f"it has {', '.join(known)}" if known else "it is not a variable font"
+            raise FontError(f"no axis {tag!r}: {has}")
+        if not math.isfinite(value):
+            raise FontError(f"axis {tag!r} cannot be at {value}")
+    within = {}
+    for axis in axes:
+        if axis.tag in location:
+            wanted = float(location[axis.tag])
+            within[axis.tag] = value = min(max(wanted, axis.minimum), axis.maximum)
+            if value != wanted:
+                limits = f"{axis.minimum:g} to {axis.maximum:g}"
+                log.warning("%s: axis %s goes from %s: %g taken for %g", path, axis.tag, limits, value, wanted)
+    return within
+
+
+def _of_instance(name: str, instances: Mapping[str, Mapping[str, float]]) -> Mapping[str, float]:
+    for known, location in instances.items():
+        if known.casefold() == name.strip().casefold():
+            return location
+    has = f"it has {', '.join(instances)}" if instances else "it has none"
+    raise FontError(f"no named instance {name!r}: {has}")
+
+
+def names_of(tables: TTFont, path: Path) -> tuple[str, str]:
+    """Family and style, falling back on the file's name and "Regular"."""
+    names = tables.get("name")
+    family = names.getBestFamilyName() if names else None
+    style = names.getBestSubFamilyName() if names else None
+    return family or path.stem, style or "Regular"
+
+
+def metrics_of(tables: TTFont) -> FontMetrics:
+    """Units per em, ascender and descender: the typographic ones if the font asks for those."""
+    units_per_em = tables["head"].unitsPerEm
+    if units_per_em < 1:
+        raise FontError(f"units per em cannot be {units_per_em}")
+    ascender, descender = tables["hhea"].ascent, tables["hhea"].descent
+    os2 = tables.get("OS/2")
+    use_typographic = os2 is not None and (os2.fsSelection & (1 << 7) or ascender == descender == 0)
+    if os2 is not None and use_typographic:
+        ascender, descender = os2.sTypoAscender, os2.sTypoDescender
+    return FontMetrics(float(units_per_em), float(ascender), float(descender))

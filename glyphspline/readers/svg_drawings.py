@@ -1,0 +1,169 @@
+"""SVG drawings as glyphs: filled paths and shapes through svgpathtools, transforms applied, y turned up.
+
+A drawing is a font of one glyph, a folder of drawings one of as many. Drawings that this package has written bring
+name, code points and metrics with them; of others the file's name is the glyph's (``A.svg``, ``uni9F8D.svg``,
+``龍.svg``), and the view box gives the em, the ascender and the advance.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import fromstring
+from fontTools import agl
+
+from ..errors import FontError, GlyphsplineError
+from ..outlines.outline import FontMetrics, Outline
+from .base import NamedGlyphs, reason
+from .pens import ContourPen
+
+LARGEST_FILE = 1 << 26
+"""Bytes of one drawing."""
+
+COINCIDENT = 1e-7
+"""Points nearer than this, in units of the em, are one: drawings may be made in metres as well as in pixels."""
+
+
+class SvgDrawings(NamedGlyphs):
+    """One SVG file or a folder of them; made by :func:`open_svg`. A :class:`.source.Source`.
+
+    Attributes:
+        path: file or folder, as given. face_index, location: 0 and empty.
+        family, style: the name of the file or folder without suffix, and "Regular".
+        metrics: of the first drawing.
+        glyph_names: in the order of ``data-gid`` where every drawing has one, else of the files' names.
+        cmap: code point to glyph.
+    """
+
+    format = "SVG"
+    face_index = 0
+    num_faces = 1
+    location: Mapping[str, float] = MappingProxyType({})
+
+    def __init__(self, path: Path, files: list[Path]) -> None:
+        self.path, self.family, self.style = path, path.stem, "Regular"
+        outlines = [read_drawing(file) for file in files]
+        if not outlines:
+            raise FontError("a folder without SVG drawings")
+        order = sorted(range(len(files)), key=lambda k: (outlines[k].gid, k))
+        self._files = files
+        self._outlines: dict[str, Outline] = {}
+        for k in order:
+            outline = outlines[k]
+            if outline.name in self._outlines:
+                raise FontError("two drawings of one name", glyph=outline.name)
+            self._outlines[outline.name] = outline
+        self.glyph_names = tuple(self._outlines)
+        self.metrics = outlines[order[0]].metrics
+        cmap: dict[int, str] = {}
+        for name, outline in self._outlines.items():
+            for code in outline.unicodes:
+                cmap.setdefault(code, name)
+        self.cmap: Mapping[int, str] = MappingProxyType(cmap)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_svg, (self.path,)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Of the bytes of all drawings in the order of their names, in hexadecimal."""
+        digest = hashlib.sha256()
+        for file in self._files:
+            digest.update(file.read_bytes())
+        return digest.hexdigest()
+
+    def outline(self, name: str) -> Outline:
+        """The drawing's outline.
+
+        Raises:
+            FontError: there is none of that name.
+        """
+        gid = self._gid(name)
+        found = self._outlines[name]
+        return Outline(name, gid, found.unicodes, found.advance, found.contours, found.metrics, found.notes)
+
+
+def open_svg(path: str | Path) -> SvgDrawings:
+    """Open an SVG file or a folder of them.
+
+    Raises:
+        FontError: it cannot be read, or a drawing is broken or declares XML entities.
+    """
+    path = Path(path)
+    try:
+        files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
+        return SvgDrawings(path, files)
+    except GlyphsplineError as error:
+        raise FontError(error.message, font=error.font or str(path), glyph=error.glyph) from error
+    except OSError as error:
+        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+
+
+def read_drawing(file: Path) -> Outline:
+    """One drawing as an outline, y up; its number, if it has none of its own, is 0.
+
+    Raises:
+        GlyphsplineError: it is too large, no SVG, or declares entities.
+    """
+    from .svg_shapes import draw_shapes  # brings SciPy with it, for which fonts have no use
+
+    if file.stat().st_size > LARGEST_FILE:
+        raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB", font=str(file))
+    try:
+        root = fromstring(file.read_bytes(), forbid_dtd=False)
+        if root.tag.rpartition("}")[2] != "svg":
+            raise GlyphsplineError("not an SVG drawing")
+        metrics, advance = _metrics(root)
+        pen = ContourPen(coincident=COINCIDENT * metrics.units_per_em)
+        notes = draw_shapes(root, pen)
+        pen.finish()
+    except GlyphsplineError as error:
+        raise error.locate(font=str(file)) from error.__cause__
+    except DefusedXmlException as error:
+        raise GlyphsplineError("its XML declares entities, which are refused", font=str(file)) from error
+    except Exception as error:  # svgpathtools raises errors of many types
+        raise GlyphsplineError(f"a broken drawing: {reason(error)}", font=str(file)) from error
+    name = root.get("data-glyph") or file.stem
+    return Outline(
+        name=name,
+        gid=int(root.get("data-gid") or 0),
+        unicodes=_unicodes(root.get("data-unicodes"), name),
+        advance=advance,
+        contours=tuple(pen.contours),
+        metrics=metrics,
+        notes=(*pen.notes, *notes),
+    )
+
+
+def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
+    if written is not None:
+        return tuple(int(code, 16) for code in re.findall(r"U\+([0-9A-Fa-f]{1,6})", written))
+    text = name if len(name) == 1 else agl.toUnicode(name)
+    return (ord(text),) if len(text) == 1 else ()
+
+
+def _metrics(root: Any) -> tuple[FontMetrics, float]:
+    """Metrics and advance: from ``data-*`` attributes, else the view box, else width and height."""
+    if root.get("data-units-per-em"):
+        keys = ("units-per-em", "ascender", "descender", "advance")
+        em, ascender, descender, advance = (float(root.get(f"data-{key}", "nan")) for key in keys)
+    else:
+        box = [float(part) for part in root.get("viewBox", "").replace(",", " ").split()]
+        left, top, width, height = box if len(box) == 4 else (0, 0, _length(root, "width"), _length(root, "height"))
+        em, ascender, descender, advance = height, -top, -top - height, left + width
+    if not (all(map(math.isfinite, (em, ascender, descender, advance))) and em > 0):
+        raise GlyphsplineError("a view box or metrics that are no numbers, or of no height")
+    return FontMetrics(em, ascender + 0.0, descender + 0.0), advance
+
+
+def _length(root: Any, name: str) -> float:
+    number = re.match(r"\s*([0-9.]+(?:[eE][+-]?[0-9]+)?)", root.get(name, ""))
+    return float(number[1]) if number and not root.get(name).strip().endswith("%") else 1000.0

@@ -1,0 +1,193 @@
+"""What the viewer computes: a glyph converted, with vertices moved, by other variants, and step by step."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+import numpy as np
+
+from ..curves import integrals as measure
+from ..curves.curvature import Comb, robust_scale
+from ..errors import GlyphsplineError
+from ..fitting.convert import convert
+from ..fitting.fixed_sampling import fit_even, is_graded
+from ..fitting.options import Options
+from ..fitting.results import ContourResult, GlyphResult, Measures, as_glyph
+from ..interpolation.api import interpolate
+from ..interpolation.result import Interpolation
+from ..outlines.outline import Contour, Outline
+from ..readers import Font, open_font
+from ..types import FloatArray
+from ..writers.svg.curvature_map import combs
+from .state import Moved, State
+
+COMPARED = (1, 2, 3)
+"""Variants shown side by side, those of the paper's Figs. 8 and 9."""
+
+STEPS = 60
+"""Iterations shown at most: all of the first half, then wider and wider apart."""
+
+
+class Work:
+    """A font, opened wherever in its design space it is looked at, and the glyphs last converted."""
+
+    def __init__(self, path: Path, face_index: int = 0) -> None:
+        self.path, self.face_index = path, face_index
+        self.lock = RLock()  # a font's tables are read on demand, by one thread at a time
+        self.at = lru_cache(maxsize=12)(self._open)
+        self.converted = lru_cache(maxsize=48)(self._convert)
+        self.scale = lru_cache(maxsize=1)(self._scale)
+        self.font = self.at(())
+
+    def _open(self, location: tuple[tuple[str, float], ...]) -> Font:
+        return open_font(self.path, self.face_index, dict(location))
+
+    def outline(self, glyph: str, location: tuple[tuple[str, float], ...]) -> Outline:
+        """The glyph as the font has it at a location."""
+        with self.lock:
+            return self.at(location).outline(glyph)
+
+    def _convert(self, glyph: str, location: tuple[tuple[str, float], ...], options: Options) -> GlyphResult:
+        outline = self.outline(glyph, location)
+        return convert(outline, options) if options.measure or not is_even(options) else quick(outline, options)
+
+    def result(self, state: State, variant: int | None = None) -> GlyphResult:
+        """The glyph of a state; by another variant if one is given.
+
+        On smooth contours another variant interpolates the same polygon, so that only the variant differs. Arcs
+        between corners are converted anew.
+        """
+        result = moved(self.converted(state.glyph, state.location, state.options), state.moved)
+        if variant is None or variant == state.options.variant:
+            return result
+        options = replace(state.options, variant=variant)
+        if state.options.corners == "sharp":
+            return self.converted(state.glyph, state.location, options)
+        contours = [through(contour, contour.polygon, options) for contour in result.contours]
+        return replace(result, options=options, contours=tuple(contours))
+
+    def _scale(self) -> float:
+        """The font's curvature scale, from the outlines of at most 60 glyphs, as they are."""
+        names = [name for name in self.font.glyph_names if name in set(self.font.cmap.values())]
+        chosen = (names or list(self.font.glyph_names))[:: max(1, len(names) // 60)]
+        return robust_scale(item for name in chosen for item in self._source_combs(name)) or 4 / self.em
+
+    def _source_combs(self, name: str) -> list[Comb]:
+        try:
+            return list(combs(as_glyph(self.outline(name, ()))))
+        except GlyphsplineError:
+            return []  # a broken glyph says so when it is looked at
+
+    @property
+    def em(self) -> float:
+        """Units per em."""
+        return self.font.metrics.units_per_em
+
+    def command(self, state: State) -> str:
+        """The command that converts the glyph as the state has it, moved vertices apart."""
+        options, gid = state.options, self.font.glyph_names.index(state.glyph)
+        words = ["glyphspline", "convert", str(self.path), "--gids", str(gid)]
+        if self.face_index:
+            words += ["--face-index", str(self.face_index)]
+        if state.location:
+            words += ["--location", ",".join(f"{tag}={value:g}" for tag, value in state.location)]
+        words += ["--variant", str(options.variant), "--margin", f"{options.margin:g}", "--fallback", options.fallback]
+        words += ["--corners", options.corners, f"--{state.sampling}", f"{state.amount:.6g}"]
+        return shlex.join([*words, "--out", f"outputs/gid-{gid}"])
+
+
+def is_even(options: Options) -> bool:
+    """Whether polygons are sampled by step or count, and do not depend on how far the result is from the source."""
+    return options.step is not None or options.count is not None
+
+
+def quick(outline: Outline, options: Options) -> GlyphResult:
+    """What :func:`convert` gives by step or count, less the measures that take longer than the curves themselves."""
+    if options.corners == "sharp":
+        return convert(outline, options)  # says what is wrong with that
+    contours = []
+    for contour in outline.contours:
+        if len(np.unique(contour.points, axis=0)) >= 3:
+            fit = fit_even(contour, options, options.tolerance_for(outline.metrics.units_per_em))
+            contours.append(curve_result(contour, fit.polygon, fit.result))
+    return GlyphResult(outline, options, tuple(contours))
+
+
+def moved(result: GlyphResult, moves: Moved) -> GlyphResult:
+    """The glyph with polygon vertices elsewhere, its touched contours interpolated anew; smooth contours only."""
+    contours = list(result.contours)
+    for index in sorted({move[0] for move in moves}):
+        if not 0 <= index < len(contours) or not is_smooth(contours[index]):
+            continue
+        polygon = contours[index].polygon.copy()
+        for contour, vertex, x, y in moves:
+            if contour == index and 0 <= vertex < len(polygon):
+                polygon[vertex] = x, y
+        contours[index] = through(contours[index], polygon, result.options)
+    return replace(result, contours=tuple(contours))
+
+
+def is_smooth(contour: ContourResult) -> bool:
+    """Whether the contour is one closed curve."""
+    return len(contour.interpolations) == 1 and contour.interpolations[0].spline.closed
+
+
+def through(contour: ContourResult, polygon: FloatArray, options: Options) -> ContourResult:
+    """The closed curve through a polygon, as :mod:`glyphspline.fitting.fixed_sampling` would run it."""
+    found = interpolate(polygon, **settings(polygon, options))
+    return curve_result(contour.source, np.delete(polygon, found.merged, axis=0), found)
+
+
+def curve_result(source: Contour, polygon: FloatArray, found: Interpolation) -> ContourResult:
+    """A closed curve, measured as far as it can be without its places on the source."""
+    pieces = found.spline.to_bezier()
+    shape = measure.shape(pieces)
+    measures = Measures(
+        vertices=len(polygon),
+        segments=len(pieces),
+        numbers=2 * len(polygon),
+        iterations=found.iterations,
+        residual=found.max_error,
+        converged=found.converged,
+        rate_bound=found.rate_bound,
+        fallbacks=found.fallbacks,
+        length=shape.length,
+        bending_energy=shape.bending_energy,
+        max_curvature=shape.max_curvature,
+        area_change=shape.area - measure.area(source.cubics()),
+    )
+    return ContourResult(source, polygon, (found,), Contour.from_segments(pieces), measures)
+
+
+def settings(polygon: FloatArray, options: Options) -> dict[str, Any]:
+    """What of a glyph's options concerns the interpolation of one polygon."""
+    return {
+        "variant": options.variant,
+        "margin": options.margin,
+        "fallback": "knot" if is_graded(polygon, options.max_ratio) else options.fallback,
+        "residual_tolerance": options.residual_tolerance,
+        "max_iterations": options.max_iterations,
+    }
+
+
+def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
+    """Number of updates made, and every closed curve of the glyph after so many."""
+    closed = [contour for contour in result.contours if is_smooth(contour)]
+    most = max((contour.interpolations[0].iterations for contour in closed), default=0)
+    for m in shown_steps(most):
+        options = replace(result.options, max_iterations=m)
+        yield m, [interpolate(contour.polygon, **settings(contour.polygon, options)) for contour in closed]
+
+
+def shown_steps(most: int) -> list[int]:
+    """Which of the iterations 0 to ``most`` are shown."""
+    if most < STEPS:
+        return list(range(most + 1))
+    late = np.geomspace(STEPS // 2, most, STEPS - STEPS // 2).round().astype(int).tolist()
+    return sorted({*range(STEPS // 2), *late})

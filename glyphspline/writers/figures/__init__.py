@@ -1,0 +1,1 @@
+"""Drawings through matplotlib: PNG, PDF and the atlas."""

@@ -1,0 +1,1 @@
+"""OTF and TTF files."""
