@@ -9,7 +9,7 @@ from . import notebook as display
 from ._version import __version__
 from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, PolygonError
-from .fitting.convert import convert
+from .fitting.convert import convert, convert_many
 from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
@@ -70,6 +70,7 @@ __all__ = [
     "Spline",
     "__version__",
     "convert",
+    "convert_many",
     "interpolate",
     "interpolate_many",
     "interpolate_vertex",

@@ -86,7 +86,7 @@ def variants(page: Any) -> None:
     found = []
     for variant in (2, 3):
         glyph = gs.convert(outline("kouzan-gyosho.ttf", "g"), gs.Options(variant=variant, step=110))
-        words = f"variant {variant}: {max(c.measures.iterations for c in glyph.contours)} iterations"
+        words = f"variant {variant}: {max(c.measures.iterations or 0 for c in glyph.contours)} iterations"
         found.append((words, gs.to_curvature_svg(glyph, scale=0.012, control_polygon=True)))
     side_by_side(page, "variants", found)
 

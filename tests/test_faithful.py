@@ -50,6 +50,7 @@ def test_written_results_are_within_the_tolerance(corners: str, character: str, 
         m = contour.measures
         assert m.within_tolerance
         assert m.converged
+        assert m.rate_bound is not None
         assert m.rate_bound < 1
         assert m.deviation_bound is not None
         assert m.deviation is not None

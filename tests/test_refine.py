@@ -14,7 +14,7 @@ from glyphspline.fitting.smooth import steps as rounds
 from glyphspline.fitting.smooth.canonical_contours import chains_of
 from glyphspline.fitting.smooth.forms import forms
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
-from glyphspline.outlines.contour_arrays import flattened
+from glyphspline.outlines.outline import Contours
 
 from .polygons import circle_contour, random_polygon, square_contour
 from .test_distance import true_distance
@@ -32,7 +32,7 @@ def wobbly(radius: float, seed: int) -> gs.Contour:
 @pytest.mark.parametrize("seed", range(6))
 def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     contour = wobbly(100, seed)
-    chains = chains_of(flattened([contour]))
+    chains = chains_of(Contours([contour]).arrays)
     which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
     places = np.linspace(0, len(chains.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
@@ -60,7 +60,7 @@ def test_measures_are_those_that_look_at_every_piece() -> None:
 
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
-    chains = chains_of(flattened([square_contour(900), circle_contour(100)]))
+    chains = chains_of(Contours([square_contour(900), circle_contour(100)]).arrays)
     near = np.ones(2)
     places, offsets = rounds.first_places(chains, np.arange(2), np.radians(12), 4.0, near, 2)
     points = rounds.polygons(chains, np.arange(2), places, offsets)
@@ -78,7 +78,7 @@ def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon()
     flips = set()
     for seed in range(6):
         contour = wobbly(100, seed)
-        flips.add(bool(chains_of(flattened([contour])).flipped[0]))
+        flips.add(bool(chains_of(Contours([contour]).arrays).flipped[0]))
         result = convert_smooth([contour], gs.Options(), 1.0)[0]
         (arc,) = result.interpolations
         plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)

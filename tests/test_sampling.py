@@ -85,6 +85,7 @@ def test_tolerance_is_kept_at_a_corner(tolerance: float) -> None:
     result = gs.convert(outline, gs.Options(tolerance=tolerance)).contours[0]
     assert result.measures.within_tolerance
     assert result.measures.converged
+    assert result.measures.rate_bound is not None
     assert result.measures.rate_bound < 1
     dense = Track(result.curve)(np.linspace(0, len(result.curve), 8001))
     source = Track(teardrop())(np.linspace(0, 2, 8001))

@@ -16,7 +16,7 @@ from glyphspline.fitting.measures import survey
 from glyphspline.fitting.sharp.assembly import certify, cut_closer, cut_contours, put_together
 from glyphspline.fitting.sharp.bezier_fit import fit_cubic
 from glyphspline.fitting.sharp.split_contours import Settings
-from glyphspline.outlines.contour_arrays import flattened
+from glyphspline.outlines.outline import Contours
 from glyphspline.outlines.overlaps import remove_overlaps
 
 from .polygons import circle_contour, square_contour
@@ -127,19 +127,21 @@ SETTINGS = Settings(0.9, np.radians(12.0), 20.0, 0.02, 0.005, 4, 1, 2)
 
 def test_pieces_that_all_fail_become_the_source_itself() -> None:
     contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
-    chains, pieces = cut_contours(flattened(contours), SETTINGS)
+    chains, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
     exact = cut_closer(chains, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), 6, SETTINGS)
     curve = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
     bounds, _ = certify(chains, exact, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
-    areas = survey(curve, flattened(contours), exact.vertices, np.zeros(len(contours) + 1, dtype=np.int64)).area_change
+    areas = survey(
+        curve, Contours(contours).arrays, exact.vertices, np.zeros(len(contours) + 1, dtype=np.int64)
+    ).area_change
     np.testing.assert_allclose(areas, 0, atol=1e-6)
 
 
 def test_one_piece_is_replaced_and_the_others_stay() -> None:
     contours = glyph("永").contours
-    chains, pieces = cut_contours(flattened(contours), SETTINGS)
+    chains, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
     q = int((pieces.where[:, 2] - pieces.where[:, 1]).argmax())
     poor = np.arange(len(pieces.where)) == q
     closer = cut_closer(chains, pieces, poor, [(2, 0.9)], 6, SETTINGS)

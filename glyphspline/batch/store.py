@@ -14,6 +14,7 @@ from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..interpolation.result import Interpolation
 from ..outlines.outline import Contour, FontMetrics, Outline
+from ..types import Views
 
 KINDS: dict[str, type] = {
     kind.__name__: kind
@@ -51,7 +52,7 @@ def _plain(value: Any) -> Any:
         return {"array": kind, "shape": list(value.shape), "data": data}
     if is_dataclass(value):
         return {"kind": type(value).__name__} | {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | Views):
         return [_plain(item) for item in value]
     return value.item() if isinstance(value, np.generic) else value
 

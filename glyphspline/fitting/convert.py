@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Literal, overload
 
 from ..errors import GlyphsplineError
 from ..outlines.outline import Contour, Outline
@@ -13,15 +14,47 @@ from .results import ContourResult, GlyphResult
 DEFAULTS = Options()
 
 
-def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
-    """Interpolate every contour of a glyph on its own.
+@overload
+def convert_many(
+    outlines: Iterable[Outline], options: Options = ..., *, errors: Literal["raise"] = "raise"
+) -> list[GlyphResult]: ...
+@overload
+def convert_many(
+    outlines: Iterable[Outline], options: Options = ..., *, errors: Literal["return"]
+) -> list[GlyphResult | GlyphsplineError]: ...
+def convert_many(
+    outlines: Iterable[Outline], options: Options = DEFAULTS, *, errors: Literal["raise", "return"] = "raise"
+) -> list[GlyphResult] | list[GlyphResult | GlyphsplineError]:
+    """Interpolate every contour of every glyph on its own; the results do not depend on the batch.
 
     Contours with fewer than three distinct points enclose nothing and draw nothing; they are left out, and
     ``notes`` of the result says so.
 
+    Args:
+        outlines: of glyphs. options: for all of them.
+        errors: "return" puts the error of a glyph that cannot be converted in its place in the list.
+
     Raises:
-        GlyphsplineError: a contour that cannot be interpolated, or an option out of range; it names glyph and contour.
+        GlyphsplineError: a contour that cannot be interpolated, or options that contradict each other; it names glyph
+            and contour.
     """
+    found: list[GlyphResult | GlyphsplineError] = []
+    for outline in outlines:
+        try:
+            found.append(_convert_one(outline, options))
+        except GlyphsplineError as error:
+            if errors == "raise":
+                raise
+            found.append(error)
+    return found
+
+
+def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
+    """Interpolate every contour of a glyph on its own: :func:`convert_many` of a batch of one."""
+    return convert_many([outline], options)[0]
+
+
+def _convert_one(outline: Outline, options: Options) -> GlyphResult:
     tolerance = options.tolerance_for(outline.metrics.units_per_em)
     if not tolerance > 0:
         raise GlyphsplineError(f"tolerance is a positive distance, not {tolerance}")

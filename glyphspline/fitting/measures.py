@@ -12,7 +12,8 @@ import numpy as np
 from ..curves.crossings import crossings_and_overshoot
 from ..curves.cubics import jit
 from ..curves.integrals import integrals
-from ..outlines.contour_arrays import Flat, contour_cubics
+from ..outlines.contour_arrays import ContourArrays
+from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
 
 
@@ -31,7 +32,7 @@ class Survey(NamedTuple):
 
 
 @jit
-def survey(result: Flat, source: Flat, polygons: FloatArray, offsets: IntArray) -> Survey:
+def survey(result: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray) -> Survey:
     """Measure contours.
 
     Args:

@@ -1,14 +1,18 @@
-"""What comes out of the glyph pipeline: :class:`GlyphResult` and its parts, pure data."""
+"""What comes out of the glyph pipeline: arrays of all contours end to end, and objects that are views of them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from ..interpolation.result import Interpolation
-from ..outlines.outline import Contour, FontMetrics, Outline
-from ..types import FloatArray
+from ..outlines.contour_arrays import ContourArrays, Polylines, offsets_of, polylines
+from ..outlines.outline import Contour, Contours, FontMetrics, Outline
+from ..types import FloatArray, IntArray, Views
 from .options import Options
 
 
@@ -31,11 +35,11 @@ class Measures:
     vertices: int
     segments: int
     numbers: int
-    iterations: int
-    residual: float
-    converged: bool
-    rate_bound: float
-    fallbacks: int
+    iterations: int | None = None
+    residual: float | None = None
+    converged: bool | None = None
+    rate_bound: float | None = None
+    fallbacks: int | None = None
     deviation: float | None = None
     deviation_bound: float | None = None
     within_tolerance: bool | None = None
@@ -47,8 +51,14 @@ class Measures:
     new_crossings: int | None = None
 
 
-SOLVED = tuple(field.name for field in fields(Measures))[:8]
+MEASURES = tuple(field.name for field in fields(Measures))
+"""The measures, in the order in which they are written."""
+
+SOLVED = MEASURES[:8]
 """The first of the measures: those that the interpolation itself knows."""
+
+MeasureColumns = Mapping[str, Sequence[Any]]
+"""By measure its value for each contour; a measure that was computed of no contour is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +77,106 @@ class ContourResult:
 
 
 @dataclass(frozen=True, eq=False)
+class ConvertedContours:
+    """Results of C contours end to end, of one glyph or of many: what the writers read.
+
+    Attributes:
+        source: the contours. curves: the results as exact Béziers, before rounding.
+        polygons: C polygons, whose vertices the curves pass through.
+        arcs: A interpolations. controls: their A control polygons.
+        arc_offsets: (C + 1,) where among ``arcs`` those of each contour begin, and A.
+        measures: a column of C values for each measure.
+    """
+
+    source: ContourArrays
+    curves: ContourArrays
+    polygons: Polylines
+    arcs: Sequence[Interpolation]
+    controls: Polylines
+    arc_offsets: IntArray
+    measures: MeasureColumns
+
+    def part(self, first: int, last: int) -> ConvertedContours:
+        """The contours from ``first`` up to ``last``, as views."""
+        if first == 0 and last == self.source.num_contours:
+            return self
+        a, b = int(self.arc_offsets[first]), int(self.arc_offsets[last])
+        return ConvertedContours(
+            self.source.part(first, last),
+            self.curves.part(first, last),
+            self.polygons.part(first, last),
+            Views(b - a, lambda: self.arcs[a:b]),
+            self.controls.part(a, b),
+            self.arc_offsets[first : last + 1] - a,
+            {name: column[first:last] for name, column in self.measures.items()},
+        )
+
+    def contour_results(self) -> list[ContourResult]:
+        """An object for each contour."""
+        rows = zip(*self.measures.values(), strict=True) if self.measures else [()] * self.source.num_contours
+        each = zip(
+            Contours(self.source), pairwise(self.polygons.offsets.tolist()), pairwise(self.arc_offsets.tolist()),
+            Contours(self.curves), rows, strict=True,
+        )  # fmt: skip
+        return [
+            ContourResult(
+                source,
+                self.polygons.points[i:j],
+                tuple(self.arcs[a:b]),
+                curve,
+                Measures(**dict(zip(self.measures, row, strict=True))),
+            )
+            for source, (i, j), (a, b), curve, row in each
+        ]
+
+
+class ContourResults(Views[ContourResult]):
+    """The results of a glyph's contours: a sequence of :class:`ContourResult`, whose numbers lie in ``arrays``."""
+
+    __slots__ = ("arrays",)
+
+    def __init__(self, results: Iterable[ContourResult] | ConvertedContours) -> None:
+        if isinstance(results, ConvertedContours):
+            self.arrays = results
+            super().__init__(results.source.num_contours, results.contour_results)
+        else:
+            given = tuple(results)
+            self.arrays = _end_to_end(given)
+            super().__init__(len(given), lambda: given)
+
+
+def _end_to_end(results: tuple[ContourResult, ...]) -> ConvertedContours:
+    arcs = [arc for result in results for arc in result.interpolations]
+    splines = [arc.spline for arc in arcs]
+    return ConvertedContours(
+        Contours(result.source for result in results).arrays,
+        Contours(result.curve for result in results).arrays,
+        polylines([result.polygon for result in results], [True] * len(results)),
+        arcs,
+        polylines([spline.control_points for spline in splines], [spline.closed for spline in splines]),
+        offsets_of([len(result.interpolations) for result in results]),
+        {name: [getattr(result.measures, name) for result in results] for name in MEASURES},
+    )
+
+
+@dataclass(frozen=True, eq=False)
 class GlyphResult:
     """One glyph, converted: the source outline, the options, a result for each contour, and remarks."""
 
     outline: Outline
     options: Options
-    contours: tuple[ContourResult, ...]
+    contours: Sequence[ContourResult]
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.contours, ContourResults):
+            object.__setattr__(self, "contours", ContourResults(self.contours))
+
+    @property
+    def arrays(self) -> ConvertedContours:
+        """The contours' results end to end."""
+        assert isinstance(self.contours, ContourResults)
+        return self.contours.arrays
 
 
 def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
@@ -83,7 +186,7 @@ def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
     if isinstance(thing, Contour):
         extent = float(np.ptp(thing.points, axis=0).max()) if len(thing) else 1.0
         return as_glyph(Outline("", contours=(thing,), metrics=FontMetrics(units_per_em=extent or 1.0)))
-    nothing = Measures(0, 0, 0, 0, 0.0, True, 0.0, 0)
     drawn = [contour for contour in thing.contours if len(contour)]
-    contours = [ContourResult(c, c.points[c.offsets], (), c, nothing) for c in drawn]
+    known = [Measures(vertices=len(c), segments=len(c), numbers=2 * len(c.points)) for c in drawn]
+    contours = [ContourResult(c, c.points[c.offsets], (), c, m) for c, m in zip(drawn, known, strict=True)]
     return GlyphResult(thing, Options(), tuple(contours))

@@ -1,27 +1,22 @@
-"""The contours of a glyph end to end, as both modes take them up.
-
-All contours lie one after the other in flat arrays, so that compiled code sees a glyph and Python a single call.
-"""
+"""Contours end to end in flat arrays, as they go from the reader through the fit to the writer."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from ..curves.cubics import jit, raised
-from ..types import FloatArray, IntArray
-from .outline import Contour
+from ..types import BoolArray, FloatArray, IntArray
 
 
-class Flat(NamedTuple):
-    """Contours end to end.
+class ContourArrays(NamedTuple):
+    """C closed contours of m segments and N points, end to end.
 
     Attributes:
         points: (N, 2) and degrees: (m,) of all contours, each as :class:`.outline.Contour` has them.
-        offsets: (C + 1,) where in ``degrees``, starts: (C + 1,) where in ``points`` each contour begins.
+        offsets: (C + 1,) where in ``degrees`` each contour begins, and m.
+        starts: (C + 1,) where in ``points`` each contour begins, and N.
     """
 
     points: FloatArray
@@ -29,37 +24,75 @@ class Flat(NamedTuple):
     offsets: IntArray
     starts: IntArray
 
+    @property
+    def num_contours(self) -> int:
+        """C."""
+        return len(self.offsets) - 1
 
-def flattened(contours: Sequence[Contour]) -> Flat:
-    """Contours end to end."""
-    offsets, starts = np.zeros((2, len(contours) + 1), dtype=np.int64)
-    np.cumsum([len(contour.degrees) for contour in contours], out=offsets[1:])
-    np.cumsum([len(contour.points) for contour in contours], out=starts[1:])
-    points = np.concatenate([contour.points for contour in contours])
-    return Flat(points, np.concatenate([contour.degrees for contour in contours]), offsets, starts)
+    def part(self, first: int, last: int) -> ContourArrays:
+        """The contours from ``first`` up to ``last``, as views."""
+        offsets, starts = self.offsets[first : last + 1], self.starts[first : last + 1]
+        points, degrees = self.points[starts[0] : starts[-1]], self.degrees[offsets[0] : offsets[-1]]
+        return ContourArrays(points, degrees, offsets - offsets[0], starts - starts[0])
 
-
-def unflattened(flat: Flat) -> list[Contour]:
-    """The contours one by one."""
-    ends = zip(pairwise(flat.starts.tolist()), pairwise(flat.offsets.tolist()), strict=True)
-    return [Contour(flat.points[a:b], flat.degrees[i:j]) for (a, b), (i, j) in ends]
-
-
-@jit
-def contour_cubics(flat: Flat, c: int) -> FloatArray:
-    """(m, 4, 2) the segments of contour c as cubics."""
-    return raised(flat.points[flat.starts[c] : flat.starts[c + 1]], flat.degrees[flat.offsets[c] : flat.offsets[c + 1]])
+    def chosen(self, which: Sequence[int]) -> ContourArrays:
+        """Some of the contours, in the order given; the arrays themselves if that is all of them."""
+        if list(which) == list(range(self.num_contours)):
+            return self
+        return joined([self.part(c, c + 1) for c in which])
 
 
-@jit
-def lasting(cubics: FloatArray) -> IntArray:
-    """Indices of the segments of a chain that have a length."""
-    found, count = np.empty(len(cubics), dtype=np.int64), 0
-    for j in range(len(cubics)):
-        b = cubics[j]
-        for k in range(1, 4):
-            if b[k, 0] != b[0, 0] or b[k, 1] != b[0, 1]:
-                found[count] = j
-                count += 1
-                break
-    return found[:count]
+class Polylines(NamedTuple):
+    """P polygons and open polylines end to end.
+
+    Attributes:
+        points: (N, 2). offsets: (P + 1,) where in ``points`` each begins, and N. closed: (P,) whether it is closed.
+    """
+
+    points: FloatArray
+    offsets: IntArray
+    closed: BoolArray
+
+    def part(self, first: int, last: int) -> Polylines:
+        """Those from ``first`` up to ``last``, as views."""
+        offsets = self.offsets[first : last + 1]
+        return Polylines(self.points[offsets[0] : offsets[-1]], offsets - offsets[0], self.closed[first:last])
+
+
+def polylines(parts: Sequence[FloatArray], closed: Sequence[bool] | BoolArray) -> Polylines:
+    """Polygons (n, 2) end to end."""
+    points = np.concatenate([np.empty((0, 2)), *parts])
+    return Polylines(points, offsets_of([len(part) for part in parts]), np.array(closed, dtype=np.bool_))
+
+
+NONE = ContourArrays(
+    np.empty((0, 2)), np.empty(0, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
+)
+"""No contours."""
+
+
+def joined(parts: Sequence[ContourArrays]) -> ContourArrays:
+    """The contours of several arrays end to end."""
+    if len(parts) == 1:
+        return parts[0]
+    if not parts:
+        return NONE
+    return ContourArrays(
+        np.concatenate([part.points for part in parts]),
+        np.concatenate([part.degrees for part in parts]),
+        joined_offsets([part.offsets for part in parts]),
+        joined_offsets([part.starts for part in parts]),
+    )
+
+
+def joined_offsets(parts: Sequence[IntArray]) -> IntArray:
+    """Offsets (C + 1,) of arrays end to end, from those of each."""
+    ends = np.cumsum([0, *(int(part[-1]) for part in parts)])
+    return np.concatenate([[0], *(part[1:] + end for part, end in zip(parts, ends, strict=False))]).astype(np.int64)
+
+
+def offsets_of(lengths: Sequence[int] | IntArray) -> IntArray:
+    """(C + 1,) where each of C parts begins that lie end to end, and their total length."""
+    offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
+    np.cumsum(lengths, out=offsets[1:])
+    return offsets

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from ..types import FloatArray, IntArray
+from ..types import FloatArray, IntArray, Views
+from .contour_arrays import NONE, ContourArrays, offsets_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +83,37 @@ class Contour:
         pen.closePath()
 
 
+class Contours(Views[Contour]):
+    """The contours of a glyph: a sequence of :class:`Contour`, whose numbers lie end to end in ``arrays``."""
+
+    __slots__ = ("arrays",)
+
+    def __init__(self, contours: Iterable[Contour] | ContourArrays = ()) -> None:
+        if isinstance(contours, ContourArrays):
+            self.arrays = contours
+            super().__init__(contours.num_contours, self._views)
+        else:
+            given = tuple(contours)
+            self.arrays = _end_to_end(given)
+            super().__init__(len(given), lambda: given)
+
+    def _views(self) -> list[Contour]:
+        points, degrees, offsets, starts = self.arrays
+        ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
+        return [Contour(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
+
+
+def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:
+    if not contours:
+        return NONE
+    return ContourArrays(
+        np.concatenate([contour.points for contour in contours]),
+        np.concatenate([contour.degrees for contour in contours]),
+        offsets_of([len(contour.degrees) for contour in contours]),
+        offsets_of([len(contour.points) for contour in contours]),
+    )
+
+
 @dataclass(frozen=True)
 class FontMetrics:
     """What a drawing needs to know of the whole font, in font units."""
@@ -97,7 +130,7 @@ class Outline:
     Attributes:
         name: the glyph's name; gid: its index in the font; unicodes: its code points, ascending.
         advance: horizontal advance in font units.
-        contours: its contours in the font's order; empty for a space.
+        contours: its contours in the font's order, from any iterable of them; empty for a space.
         metrics: units per em, ascender and descender of its font.
         notes: what the reader left out and why, a sentence each.
     """
@@ -106,9 +139,19 @@ class Outline:
     gid: int = 0
     unicodes: tuple[int, ...] = ()
     advance: float = 0.0
-    contours: tuple[Contour, ...] = ()
+    contours: Sequence[Contour] = ()
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.contours, Contours):
+            object.__setattr__(self, "contours", Contours(self.contours))
+
+    @property
+    def arrays(self) -> ContourArrays:
+        """The contours end to end."""
+        assert isinstance(self.contours, Contours)
+        return self.contours.arrays
 
     def draw(self, pen: Any) -> None:
         """Draw with any fontTools segment pen."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -82,7 +83,7 @@ def contours_of(path: Any) -> list[Contour]:
     return found
 
 
-def _same_size(a: tuple[Contour, ...], b: tuple[Contour, ...]) -> bool:
+def _same_size(a: Sequence[Contour], b: Sequence[Contour]) -> bool:
     """Whether two outlines have the same numbers of contours and segments: then nothing was cut."""
     return sorted(len(contour) for contour in a) == sorted(len(contour) for contour in b)
 
@@ -93,7 +94,7 @@ def _outer_is_clockwise(outline: Outline) -> bool:
     return max(areas, key=abs) < 0
 
 
-def inked_area(contours: tuple[Contour, ...]) -> float:
+def inked_area(contours: Sequence[Contour]) -> float:
     """Area filled by the nonzero winding rule, on evenly spaced scan lines."""
     lines = [chords(contour.cubics())[0] for contour in contours if len(contour)]
     if not lines:

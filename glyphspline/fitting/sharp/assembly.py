@@ -13,7 +13,8 @@ import numpy as np
 
 from ...curves.cubics import bezier_points, bezier_weights, jit
 from ...outlines.canonical import flip
-from ...outlines.contour_arrays import Flat, contour_cubics
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.segments import contour_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from ..certified_distance import ROUNDING, extent, pair
 from .corners import find_joints
@@ -91,7 +92,7 @@ def _add_source(pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees:
 
 
 @jit
-def cut_contours(flat: Flat, settings: Settings) -> tuple[Chains, Pieces]:
+def cut_contours(flat: ContourArrays, settings: Settings) -> tuple[Chains, Pieces]:
     """All contours made ready and cut, by :mod:`.segmentation`; stretches that it cannot fit stay as they are."""
     C = len(flat.offsets) - 1
     most = 2 * len(flat.degrees)
@@ -187,7 +188,7 @@ def _closer(
 
 
 @jit
-def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray) -> Flat:
+def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray) -> ContourArrays:
     """The Bézier segments of all pieces as contours: one a span, of degree 1 for lines and 3 for arcs.
 
     Args:
@@ -221,12 +222,12 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
         at += max(3 * k, 1)
         count += max(k, 1)
         starts[c + 1], offsets[c + 1] = at, count
-    return Flat(points[:at], degrees, offsets, starts)
+    return ContourArrays(points[:at], degrees, offsets, starts)
 
 
 @jit
 def certify(
-    chains: Chains, pieces: Pieces, written: Flat, sharpness: float, limit: float
+    chains: Chains, pieces: Pieces, written: ContourArrays, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Certified bound between each piece, as written, and its stretch of chain; and the largest gap seen.
 

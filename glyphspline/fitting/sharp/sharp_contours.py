@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import flattened, unflattened
-from ...outlines.outline import Contour
+from ...outlines.outline import Contour, Contours
 from ..fixed_contours import certified_rate, check_coordinates
 from ..measures import Survey, survey
 from ..options import Options
@@ -46,13 +45,13 @@ def _contour_results(
     contours: Sequence[Contour], options: Options, tolerance: float, share: float, em: float
 ) -> list[ContourResult]:
     """Contours fitted to within a share of the tolerance, and measured."""
-    source = flattened(contours)
+    source = Contours(contours).arrays
     fit = fit_sharp(source, options, share * tolerance, em)
     _, starts, vertices, _ = fit.pieces
     # Where two pieces meet, the vertex belongs to the second one.
     polygons = np.delete(vertices, starts[1:] - 1, axis=0)
     offsets = starts[fit.offsets] - fit.offsets
-    curves = unflattened(fit.curve)
+    curves = Contours(fit.curve)
     measures = _measures(fit, survey(fit.curve, source, polygons, offsets), tolerance)
     return [
         ContourResult(contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c), curves[c], measures[c])

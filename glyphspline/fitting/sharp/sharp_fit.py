@@ -16,7 +16,7 @@ from ...curves.bspline import Spline
 from ...errors import PolygonError
 from ...interpolation.api import check_options, interpolate_many
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import Flat
+from ...outlines.contour_arrays import ContourArrays
 from ...types import FloatArray, IntArray
 from ..options import Options
 from .assembly import Pieces, certify, cut_closer, cut_contours, put_together
@@ -60,7 +60,7 @@ class SharpFit:
     pieces: Pieces
     offsets: IntArray
     splines: dict[int, Interpolation]
-    curve: Flat
+    curve: ContourArrays
     bounds: FloatArray
     gaps: FloatArray
 
@@ -99,7 +99,7 @@ class _SingleSpans:
         }
 
 
-def fit_sharp(contours: Flat, options: Options, tolerance: float, em: float) -> SharpFit:
+def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:
     """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
 
     Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end

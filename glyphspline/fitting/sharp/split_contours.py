@@ -11,7 +11,7 @@ import numpy as np
 
 from ...curves.cubics import jit
 from ...outlines.canonical import directed, farthest_joint
-from ...outlines.contour_arrays import lasting
+from ...outlines.segments import lasting
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, begun_at, find_joints
 

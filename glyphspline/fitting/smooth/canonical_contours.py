@@ -11,7 +11,8 @@ import numpy as np
 
 from ...curves.cubics import jet, jit
 from ...outlines.canonical import directed, direction, farthest_joint, turn
-from ...outlines.contour_arrays import Flat, contour_cubics, lasting
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.segments import contour_cubics, lasting
 from ...types import BoolArray, FloatArray, IntArray
 
 TABLE = 16
@@ -38,7 +39,7 @@ class Chains(NamedTuple):
 
 
 @jit
-def chains_of(flat: Flat) -> Chains:
+def chains_of(flat: ContourArrays) -> Chains:
     """The chains of contours end to end."""
     count = len(flat.offsets) - 1
     cubics = np.empty((len(flat.degrees), 4, 2))

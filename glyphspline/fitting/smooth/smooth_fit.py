@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import flattened
-from ...outlines.outline import Contour
+from ...outlines.outline import Contour, Contours
 from ...types import FloatArray, IntArray
 from ..certified_distance import certified_distance
 from ..fixed_contours import check_coordinates
@@ -45,7 +44,7 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     if not contours:
         return []
     check_coordinates(contours)
-    chains = chains_of(flattened(contours))
+    chains = chains_of(Contours(contours).arrays)
     source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}
