@@ -16,12 +16,13 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"errors", "types", "_version"}
+BASE = {"compiled", "errors", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 WRITERS = FITTING | {"readers", "writers"}
 PLAN = {
     "_version": set(),
+    "compiled": set(),
     "errors": set(),
     "types": set(),
     "curves": BASE,

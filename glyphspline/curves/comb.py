@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ..compiled import compiled
 from .bezier import NUDGE, SLOW
 
 TABLE = 16
@@ -33,7 +33,7 @@ X, Y, NX, NY, CURVATURE, WEIGHT = range(6)
 """Columns of the samples: point, unit normal to the left, signed curvature, arc length that the sample stands for."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def sampled(cubics, spacing, angle, flat):
     """Samples of all pieces in order, both ends of each included.
 
@@ -76,14 +76,14 @@ def sampled(cubics, spacing, angle, flat):
     return samples[:used], starts
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _legs(piece):
     """The three sides of a control polygon."""
     x0, y0, x1, y1, x2, y2, x3, y3 = piece
     return x1 - x0, y1 - y0, x2 - x1, y2 - y1, x3 - x2, y3 - y2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _even(piece):
     """Length and turn of a tame piece; -1 and 0 for another."""
     ax, ay, bx, by, cx, cy = _legs(piece)
@@ -100,7 +100,7 @@ def _even(piece):
     return 0.5 * (la + np.sqrt(x * x + y * y) + lc), turn * (1.0 + turn * turn / 5.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _curvature(piece, end):
     """Curvature where a piece begins or ends, which has to be one that does not stand still there."""
     ax, ay, bx, by, cx, cy = _legs(piece)
@@ -111,7 +111,7 @@ def _curvature(piece, end):
     return (2.0 / 3.0) * (ax * by - ay * bx) / (square * np.sqrt(square))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _sample_evenly(piece, length, n, samples, used):
     """Frames at n + 1 even parameters of a piece that stands still nowhere, into ``samples`` from ``used`` on."""
     x0, y0, x1, y1, x2, y2, x3, y3 = piece
@@ -133,7 +133,7 @@ def _sample_evenly(piece, length, n, samples, used):
     samples[used, WEIGHT] = samples[used + n, WEIGHT] = 0.5 * (length / n)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _measure(piece, table, spacing, angle):
     """Samples that a piece asks for, by its chords. Rows of the table, TABLE + 1 long: before each chord's end the
     samples, then the length; the others are room to work in."""
@@ -165,7 +165,7 @@ def _measure(piece, table, spacing, angle):
     return samples
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _point(piece, t):
     x0, y0, x1, y1, x2, y2, x3, y3 = piece
     s = 1.0 - t
@@ -175,7 +175,7 @@ def _point(piece, t):
     return s * (s * ax + t * bx) + t * (s * bx + t * cx), s * (s * ay + t * by) + t * (s * by + t * cy)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _sample(piece, table, n, samples, used):
     """Frames at the n + 1 places that divide a piece evenly by its table."""
     x0, y0, x1, y1, x2, y2, x3, y3 = piece
@@ -203,7 +203,7 @@ def _sample(piece, table, n, samples, used):
         behind = length
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _frame(piece, t, size):
     """Normal and curvature. Where the piece stands still they are those beside the point; a piece without extent has
     zeros."""
@@ -219,14 +219,14 @@ def _frame(piece, t, size):
     return 0.0, 0.0, 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _size(x, y):
     """Length of a vector, however small."""
     square = x * x + y * y
     return np.sqrt(square) if square > TINY else np.hypot(x, y)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _derivatives(piece, t):
     """First and second derivative by the local parameter."""
     ax, ay, bx, by, cx, cy = _legs(piece)
@@ -235,7 +235,7 @@ def _derivatives(piece, t):
     return 3.0 * dx, 3.0 * dy, 6.0 * (s * (bx - ax) + t * (cx - bx)), 6.0 * (s * (by - ay) + t * (cy - by))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def control_length(cubics):
     """Length of all control polygons, which is no less than that of the curves."""
     length = 0.0

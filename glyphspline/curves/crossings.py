@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiled import compiled
 from ..types import FloatArray, IntArray
-from .cubics import jet, jit
+from .cubics import jet
 
 STEPS = 12
 """Chords a cubic; a straight one takes a single chord. Loops smaller than a twelfth of a segment go uncounted."""
@@ -25,7 +26,7 @@ def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
     return float(farthest_outside(cubics, *chords(cubics), polygon))
 
 
-@jit
+@compiled
 def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[int, float]:
     """Both of a closed chain of cubics (m, 4, 2), from the same chords; no overshoot over a polygon of no vertices."""
     points, first = chords(cubics)
@@ -33,7 +34,7 @@ def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[in
     return count_crossings(cubics, points, first), beyond
 
 
-@jit
+@compiled
 def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
     """(N, 2) ends of the chords, the first not repeated at the end, and (m + 1,) where each segment's begin."""
     m = len(cubics)
@@ -56,7 +57,7 @@ def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
     return points[:count], first
 
 
-@jit
+@compiled
 def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> int:
     """Pairs of chords that cross properly, of a closed chain (m, 4, 2) and its :func:`chords`."""
     m = len(cubics)
@@ -84,7 +85,7 @@ def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> 
     return found
 
 
-@jit
+@compiled
 def _forward(cubics: FloatArray, i: int, j: int) -> bool:
     """Whether all legs of segments i to j run along the chord from the first point to the last."""
     x, y = cubics[j, 3, 0] - cubics[i, 0, 0], cubics[j, 3, 1] - cubics[i, 0, 1]
@@ -96,12 +97,12 @@ def _forward(cubics: FloatArray, i: int, j: int) -> bool:
     return True
 
 
-@jit
+@compiled
 def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
 
 
-@jit
+@compiled
 def _crossing_chords(p: FloatArray, first: IntArray, s: int, t: int) -> int:
     """Pairs of a chord of segment s and one of segment t that cross; those within a segment once."""
     n = len(p)
@@ -125,7 +126,7 @@ def _crossing_chords(p: FloatArray, first: IntArray, s: int, t: int) -> int:
     return found
 
 
-@jit
+@compiled
 def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, polygon: FloatArray) -> float:
     """Largest distance of ends of the chain's :func:`chords` outside a polygon's convex hull."""
     hull = _hull(polygon)
@@ -141,7 +142,7 @@ def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, po
     return worst
 
 
-@jit
+@compiled
 def _outside(hull: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a convex polygon, 0 within."""
     n = len(hull)
@@ -159,7 +160,7 @@ def _outside(hull: FloatArray, x: float, y: float) -> float:
     return np.sqrt(nearest) if outside else 0.0
 
 
-@jit
+@compiled
 def _hull(points: FloatArray) -> FloatArray:
     """The convex hull, counter-clockwise, by Andrew's monotone chain."""
     p = points[np.argsort(points[:, 1], kind="mergesort")]

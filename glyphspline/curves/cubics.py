@@ -7,15 +7,10 @@ and end tangents, through which :func:`glyphspline.interpolate` then puts the cu
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 
+from ..compiled import compiled
 from ..types import FloatArray, IntArray
-
-jit = nb.njit(cache=True, nogil=True, error_model="numpy")
-"""No ``fastmath``: were products and sums fused, where they are would depend on what is inlined, which differs between
-code just compiled and code out of the cache, and so would the last bits of a result and, at a threshold, its vertices.
-"""
 
 PEAK_SHARE = 0.9
 """As in :mod:`..interpolation.intervals`, for arcs of two spans, whose one free vertex has a peak of 1/2 at most.
@@ -24,13 +19,13 @@ Lemma 2 has no interval there, but does not need one: alone, a vertex has its er
 """
 
 
-@jit
+@compiled
 def length(x: float, y: float) -> float:
     """Length of a vector whose square neither over- nor underflows: in a third of the time of ``hypot``."""
     return np.sqrt(x * x + y * y)
 
 
-@jit
+@compiled
 def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
     """M[s]: the Bézier points of span s are ``M[s] @ P[s : s + 4]`` for a clamped cubic with breaks u[: k + 1]."""
     for s in range(k):
@@ -55,7 +50,7 @@ def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
                 M[s, 0, j] = (1 - weight) * left + weight * right
 
 
-@jit
+@compiled
 def bezier_points(M: FloatArray, P: FloatArray, k: int, b: FloatArray) -> None:
     """b[s]: the (4, 2) Bézier points of each of the k spans."""
     for s in range(k):
@@ -67,7 +62,7 @@ def bezier_points(M: FloatArray, P: FloatArray, k: int, b: FloatArray) -> None:
             b[s, r, 0], b[s, r, 1] = x, y
 
 
-@jit
+@compiled
 def raised(points: FloatArray, degrees: IntArray) -> FloatArray:
     """(m, 4, 2) the segments of a contour as cubics; see :class:`..outlines.outline.Contour`."""
     m, n = len(degrees), len(points)
@@ -89,7 +84,7 @@ def raised(points: FloatArray, degrees: IntArray) -> FloatArray:
     return cubics
 
 
-@jit
+@compiled
 def jet(b: FloatArray, s: int, x: float) -> tuple[float, float, float, float, float, float]:
     """Position, first and second derivative by the local parameter of piece s."""
     y = 1 - x
@@ -105,20 +100,20 @@ def jet(b: FloatArray, s: int, x: float) -> tuple[float, float, float, float, fl
     return px, py, dx, dy, 6 * (rx - lx), 6 * (ry - ly)
 
 
-@jit
+@compiled
 def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
     y = 1 - x
     return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
 
 
-@jit
+@compiled
 def _within(x: float, f: float, slope: float, low: float, high: float) -> float:
     """Newton's next estimate of a zero between ``low`` and ``high``, or their middle where that leads out of them."""
     new = x - f / slope if slope != 0 else (low + high) / 2
     return new if low < new < high else (low + high) / 2
 
 
-@jit
+@compiled
 def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
     """Where a cubic that is monotone on [low, high] takes a value between those at the ends."""
     rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)
@@ -138,7 +133,7 @@ def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: flo
     return x
 
 
-@jit
+@compiled
 def _top(c0: float, c1: float, c2: float, c3: float) -> float:
     """Local parameter of the maximum of a cubic whose derivative changes sign once on [0, 1]."""
     low, high = 0.0, 1.0
@@ -158,7 +153,7 @@ def _top(c0: float, c1: float, c2: float, c3: float) -> float:
     return x
 
 
-@jit
+@compiled
 def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float, float]:
     """Lemma 2 for one vertex: where B_i ≥ 1/2 + c, or all of its peak if that is lower.
 
@@ -204,7 +199,7 @@ def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -
     return low, high, min(level, min(a[0] if low == -1.0 else level, 9.0))
 
 
-@jit
+@compiled
 def solve_arc(
     p: FloatArray,
     k: int,
@@ -262,7 +257,7 @@ def solve_arc(
     return error
 
 
-@jit
+@compiled
 def _foot_error(
     b: FloatArray, u: FloatArray, i: int, x: float, y: float, t: float, low: float, high: float
 ) -> tuple[float, float, float]:

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled import compiled
 from ..types import FloatArray
-from .cubics import jet, jit
+from .cubics import jet
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """For integrals over a Bézier piece; exact for areas, converged for the rest but at near-cusps."""
@@ -36,7 +37,7 @@ def shape(pieces: FloatArray) -> Shape:
     return Shape(*integrals(np.ascontiguousarray(pieces)))
 
 
-@jit
+@compiled
 def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
     """The numbers of a :class:`Shape`, of some cubics (m, 4, 2), closed or not."""
     length = area = energy = highest = 0.0
@@ -54,7 +55,7 @@ def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
     return length, area, energy, highest
 
 
-@jit
+@compiled
 def _curvature(dx: float, dy: float, ax: float, ay: float) -> float:
     """Absolute curvature. Dividing by the speed three times keeps tiny and huge curves from under- and overflow."""
     square = dx * dx + dy * dy

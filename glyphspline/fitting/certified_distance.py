@@ -25,7 +25,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.cubics import jet, jit, length
+from ..compiled import compiled
+from ..curves.cubics import jet, length
 from ..types import FloatArray
 
 ROUNDING = 1e-14
@@ -80,7 +81,7 @@ def certified_distance(
     return Distance(bounds + ROUNDING * max(extent(result), extent(source)), gaps)
 
 
-@jit
+@compiled
 def extent(cubics: FloatArray) -> float:
     """The largest coordinate of (m, 4, 2) Bézier points."""
     most = 0.0
@@ -90,7 +91,7 @@ def extent(cubics: FloatArray) -> float:
     return most
 
 
-@jit
+@compiled
 def apart(A: FloatArray, B: FloatArray) -> tuple[float, float, float]:
     """The largest distance of the Bézier points (4, 2) of a pair, which bounds its own, and those of its two ends."""
     first, last = length(A[0, 0] - B[0, 0], A[0, 1] - B[0, 1]), length(A[3, 0] - B[3, 0], A[3, 1] - B[3, 1])
@@ -100,7 +101,7 @@ def apart(A: FloatArray, B: FloatArray) -> tuple[float, float, float]:
     return most, first, last
 
 
-@jit
+@compiled
 def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
     """Bézier points (4, 2) of a cubic between two parameters, by blossoming."""
     for c in range(2):
@@ -114,7 +115,7 @@ def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
             out[k, c] = p + x * (q - p)
 
 
-@jit
+@compiled
 def newton_step(at: float, slope: float, speed: float, bend: float, low: float, high: float) -> float:
     """Newton's next estimate of a nearest point, in [low, high]; Gauss and Newton's where the distance is not convex.
 
@@ -124,7 +125,7 @@ def newton_step(at: float, slope: float, speed: float, bend: float, low: float, 
     return min(max(at - slope / (bend if bend > 0.2 * speed else speed), low), high)
 
 
-@jit
+@compiled
 def nearest(cubics: FloatArray, s: int, low: float, high: float, guess: float, x: float, y: float) -> float:
     """A parameter in [low, high] of cubic s near (x, y): Newton's method from a guess."""
     at = guess
@@ -140,7 +141,7 @@ def nearest(cubics: FloatArray, s: int, low: float, high: float, guess: float, x
     return at
 
 
-@jit
+@compiled
 def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
     """The place between two places of a closed chain that is nearest (x, y), as far as coarse points tell."""
     m = len(cubics)
@@ -161,7 +162,7 @@ def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: floa
     return s + z if (px - x) ** 2 + (py - y) ** 2 <= best else at
 
 
-@jit
+@compiled
 def _pair_all(
     result: FloatArray, source: FloatArray, anchors: FloatArray, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -175,7 +176,7 @@ def _pair_all(
     return bounds, gaps
 
 
-@jit
+@compiled
 def pair(
     result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float,
     limit: float,
@@ -189,7 +190,7 @@ def pair(
     return bound, gap
 
 
-@jit
+@compiled
 def _pair(
     result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float
 ) -> tuple[float, float]:
@@ -210,7 +211,7 @@ def _pair(
         a, s = cut, partner
 
 
-@jit
+@compiled
 def _pair_segment(
     result: FloatArray, i: int, x0: float, x_end: float, source: FloatArray, before: float, after: float,
     sharpness: float, bound: float, gap: float,
@@ -235,7 +236,7 @@ def _pair_segment(
         x0, place = x1, s + 1.0
 
 
-@jit
+@compiled
 def _sections(
     a: FloatArray, x0: float, x1: float, b: FloatArray, y0: float, y1: float, sharpness: float, bound: float, gap: float
 ) -> tuple[float, float]:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled import compiled
 from ..curves.crossings import crossings_and_overshoot
-from ..curves.cubics import jit
 from ..curves.integrals import integrals
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.segments import contour_cubics
@@ -31,7 +31,7 @@ class Survey(NamedTuple):
     source_crossings: IntArray
 
 
-@jit
+@compiled
 def survey(result: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray) -> Survey:
     """Measure contours.
 
@@ -59,7 +59,7 @@ def survey(result: ContourArrays, source: ContourArrays, polygons: FloatArray, o
     return Survey(length, change, energy, curvature, beyond, crossings, before)
 
 
-@jit
+@compiled
 def _area(cubics: FloatArray) -> float:
     """Signed area of a closed chain, lines among it, exactly: the integral of its Bézier points' products."""
     total = 0.0

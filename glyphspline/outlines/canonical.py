@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..curves.cubics import jit
+from ..compiled import compiled
 from ..types import FloatArray
 
 
-@jit
+@compiled
 def farthest_joint(joints: FloatArray) -> int:
     """Index of the joint (m, 2) farthest from the middle of all; of several, that farthest right, then up."""
     m = len(joints)
@@ -22,7 +22,7 @@ def farthest_joint(joints: FloatArray) -> int:
     return best
 
 
-@jit
+@compiled
 def runs_backwards(cubics: FloatArray) -> bool:
     """Whether to fit a chain of cubics (m, 4, 2) the other way round.
 
@@ -38,20 +38,20 @@ def runs_backwards(cubics: FloatArray) -> bool:
     return total < 0
 
 
-@jit
+@compiled
 def flip(cubics: FloatArray) -> FloatArray:
     """The same chain of cubics run the other way, beginning at the same point."""
     return cubics[::-1, ::-1].copy()
 
 
-@jit
+@compiled
 def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
     """A chain of cubics in the direction in which it is fitted, and whether that is not its own."""
     flipped = runs_backwards(cubics)
     return flip(cubics) if flipped else cubics, flipped
 
 
-@jit
+@compiled
 def direction(cubic: FloatArray, at_end: bool, least: float) -> tuple[float, float, float]:
     """Where a cubic (4, 2) goes at an end: a vector along it and its length, all 0 if there is none.
 
@@ -68,7 +68,7 @@ def direction(cubic: FloatArray, at_end: bool, least: float) -> tuple[float, flo
     return 0.0, 0.0, 0.0
 
 
-@jit
+@compiled
 def turn(ax: float, ay: float, bx: float, by: float) -> float:
     """Angle between two directions, 0 to pi."""
     return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..compiled import compiled
 from ..curves.crossings import chords
-from ..curves.cubics import jit
 from ..curves.integrals import shape
 from ..errors import GlyphsplineError
 from ..types import FloatArray, IntArray
@@ -103,7 +103,7 @@ def inked_area(contours: Sequence[Contour]) -> float:
     return float(_scan(np.concatenate(lines), starts, SCANLINES))
 
 
-@jit
+@compiled
 def _scan(points: FloatArray, starts: IntArray, lines: int) -> float:
     low, high = points[:, 1].min(), points[:, 1].max()
     step = (high - low) / lines

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..curves.cubics import jit, raised
+from ..compiled import compiled
+from ..curves.cubics import raised
 from ..types import FloatArray, IntArray
 from .contour_arrays import ContourArrays
 
 
-@jit
+@compiled
 def contour_cubics(contours: ContourArrays, c: int) -> FloatArray:
     """(m, 4, 2) the segments of contour c as cubics."""
     points = contours.points[contours.starts[c] : contours.starts[c + 1]]
     return raised(points, contours.degrees[contours.offsets[c] : contours.offsets[c + 1]])
 
 
-@jit
+@compiled
 def lasting(cubics: FloatArray) -> IntArray:
     """Indices of the cubics (m, 4, 2) whose points are not all the same."""
     found, count = np.empty(len(cubics), dtype=np.int64), 0

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ..compiled import compiled
 from ..types import FloatArray
 from .sampling import CORNER_ANGLE, TABLE, TIE
 
@@ -29,7 +29,7 @@ def _weights() -> FloatArray:
 WEIGHTS = _weights()
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def stepped_points(cubics, offsets, step, max_ratio, most):
     """Vertices on all contours.
 
@@ -62,7 +62,7 @@ def stepped_points(cubics, offsets, step, max_ratio, most):
     return points[:used], ends, odd
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _arc_lengths(pieces):
     """(TABLE m + 1,) chord lengths summed along a contour."""
     m = len(pieces)
@@ -84,7 +84,7 @@ def _arc_lengths(pieces):
     return table
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _tangent(piece, backwards):
     """Direction, of length 1, in which a cubic leaves its first point, or its last if backwards."""
     for k in range(1, 4):
@@ -96,7 +96,7 @@ def _tangent(piece, backwards):
     return 0.0, 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _places(pieces, table, step, max_ratio, most):
     """Distances along a contour, ascending, where vertices are; empty if there would be too many."""
     m, length = len(pieces), table[-1]
@@ -133,7 +133,7 @@ def _places(pieces, table, step, max_ratio, most):
     return _from_start(_graded(at, length, max_ratio, most), length)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _graded(at, length, max_ratio, most):
     """Halve spacings that are more than max_ratio times a neighbour, until none is."""
     for _ in range(ROUNDS):
@@ -160,7 +160,7 @@ def _graded(at, length, max_ratio, most):
     return np.empty(0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _from_start(at, length):
     """The same distances beginning with the first after the contour's own beginning."""
     n = len(at)
@@ -174,7 +174,7 @@ def _from_start(at, length):
     return turned
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _evaluate(pieces, table, at, points):
     """Points at ascending distances along the contour, by the table."""
     cell, last = 0, len(table) - 2

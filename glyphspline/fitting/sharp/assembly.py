@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import bezier_points, bezier_weights, jit
+from ...compiled import compiled
+from ...curves.cubics import bezier_points, bezier_weights
 from ...outlines.canonical import flip
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import contour_cubics
@@ -40,7 +41,7 @@ class Pieces(NamedTuple):
     tangents: FloatArray
 
 
-@jit
+@compiled
 def room(count: int) -> Pieces:
     """Room for so many pieces."""
     return Pieces(
@@ -51,7 +52,7 @@ def room(count: int) -> Pieces:
     )
 
 
-@jit
+@compiled
 def _add(
     pieces: Pieces, count: int, c: int, i: int, j: int, k: int, p: FloatArray, tangents: FloatArray, flip_m: int
 ) -> int:
@@ -74,7 +75,7 @@ def _add(
     return count + 1
 
 
-@jit
+@compiled
 def _add_source(pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees: IntArray, i: int, j: int) -> int:
     """Add segments i to j - 1 of a chain as they are, as lines and arcs of one span."""
     p, tangents = np.empty((2, 2)), np.empty((2, 2))
@@ -91,7 +92,7 @@ def _add_source(pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees:
     return count
 
 
-@jit
+@compiled
 def cut_contours(flat: ContourArrays, settings: Settings) -> tuple[Chains, Pieces]:
     """All contours made ready and cut, by :mod:`.segmentation`; stretches that it cannot fit stay as they are."""
     C = len(flat.offsets) - 1
@@ -187,7 +188,7 @@ def _closer(
     return _part(new, 0, _add_source(new, 0, c, cubics, degrees, i, j))
 
 
-@jit
+@compiled
 def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray) -> ContourArrays:
     """The Bézier segments of all pieces as contours: one a span, of degree 1 for lines and 3 for arcs.
 
@@ -225,7 +226,7 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     return ContourArrays(points[:at], degrees, offsets, starts)
 
 
-@jit
+@compiled
 def certify(
     chains: Chains, pieces: Pieces, written: ContourArrays, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jit, length
+from ...compiled import compiled
+from ...curves.cubics import length
 from ...types import FloatArray
 from .spline_fit import HOPELESS, SLIDE
 
@@ -19,7 +20,7 @@ LONGEST, SHORTEST = 4.0, 0.1
 """Lengths between which end tangents are kept, in chords."""
 
 
-@jit
+@compiled
 def fit_cubic(
     Q: FloatArray, d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, tolerance: float, rounds: int,
     start: FloatArray, end: FloatArray,
@@ -67,7 +68,7 @@ def fit_cubic(
     return best
 
 
-@jit
+@compiled
 def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArray) -> None:
     """The cubic by powers of its parameter, about its first end: row k goes with the power k + 1."""
     last = len(Q) - 1
@@ -77,7 +78,7 @@ def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArra
         c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
 
 
-@jit
+@compiled
 def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
     """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
     ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
@@ -104,7 +105,7 @@ def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> floa
     return worst
 
 
-@jit
+@compiled
 def _sharpen(weight: FloatArray, e: FloatArray, error: float) -> None:
     """Weights that grow with the error, their mean staying 1: least squares turn towards the least maximum."""
     total = 0.0
@@ -115,7 +116,7 @@ def _sharpen(weight: FloatArray, e: FloatArray, error: float) -> None:
         weight[j] *= (len(e) - 2) / total
 
 
-@jit
+@compiled
 def _step(
     Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
@@ -167,7 +168,7 @@ def _step(
     _set_handle(handles[2:], -g[2] / chord, -g[3] / chord, d1, free1)
 
 
-@jit
+@compiled
 def _keep_direction(A: FloatArray, r: int, d: FloatArray, huge: float) -> None:
     """Make motion across d dear."""
     A[r, r] += huge * d[1] * d[1]
@@ -175,7 +176,7 @@ def _keep_direction(A: FloatArray, r: int, d: FloatArray, huge: float) -> None:
     A[r + 1, r + 1] += huge * d[0] * d[0]
 
 
-@jit
+@compiled
 def _solve(A: FloatArray, g: FloatArray) -> None:
     """Cholesky of the lower half of A in place; g becomes the solution."""
     n = len(g)
@@ -194,7 +195,7 @@ def _solve(A: FloatArray, g: FloatArray) -> None:
         g[r] /= A[r, r]
 
 
-@jit
+@compiled
 def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: bool) -> None:
     """Move a handle; it stays on its old side, and its tangent between SHORTEST and LONGEST."""
     old = length(handle[0], handle[1])

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import jet, jit
+from ...compiled import compiled
+from ...curves.cubics import jet
 from ...outlines.canonical import direction, turn
 from ...types import BoolArray, FloatArray, IntArray
 
@@ -42,14 +43,14 @@ class Joints(NamedTuple):
     line: BoolArray
 
 
-@jit
+@compiled
 def unit_tangent(cubic: FloatArray, at_end: bool) -> tuple[float, float]:
     """Direction of travel at an end of a cubic, whatever handles have no length."""
     x, y, length = direction(cubic, at_end, NO_HANDLE)
     return (x / length, y / length) if length > 0 else (1.0, 0.0)
 
 
-@jit
+@compiled
 def _steps(cubic: FloatArray, straight: bool, tolerance: float) -> int:
     """Samples a segment needs: the outline between two of them is straight to a seventh of the tolerance."""
     length = 0.0
@@ -67,7 +68,7 @@ def _steps(cubic: FloatArray, straight: bool, tolerance: float) -> int:
     return int(min(max(np.ceil(wanted), 2.0 if straight else 3.0), 40.0))
 
 
-@jit
+@compiled
 def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: float, shortest_line: float) -> Joints:
     """Sample a contour and classify its joints.
 
@@ -116,7 +117,7 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
     return Joints(samples, first, density, corner, hard, arriving, leaving, line)
 
 
-@jit
+@compiled
 def begun_at(joints: Joints, k: int) -> Joints:
     """The joints of the same contour begun at joint k."""
     m, last = len(joints.line), len(joints.samples) - 1
@@ -133,7 +134,7 @@ def begun_at(joints: Joints, k: int) -> Joints:
     )
 
 
-@jit
+@compiled
 def _sample_segment(
     cubics: FloatArray, j: int, at: int, n: int, tolerance: float, samples: FloatArray, density: FloatArray
 ) -> None:
@@ -156,7 +157,7 @@ something and stays within the tolerance; but never between lines that stay line
 """
 
 
-@jit
+@compiled
 def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     """Whether a corner is one at the scale of the tolerance too, and not the zigzag of a ragged outline.
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import jit
+from ...compiled import compiled
 from ...types import FloatArray, IntArray
 from .bezier_fit import fit_cubic
 from .corners import Joints
@@ -28,13 +28,13 @@ NEAR_MISS = 2.0
 """Arcs that miss the tolerance by less than this factor do not rule out longer ones of as many spans."""
 
 
-@jit
+@compiled
 def price(k: int) -> float:
     """Price of an arc of k spans; of a line for k = 0."""
     return 2.0 + SEGMENT_PRICE if k == 0 else 2.0 * k + 4.0 + SEGMENT_PRICE * k
 
 
-@jit
+@compiled
 def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
     """Whether samples a to b run along their chord, in order, within the tolerance."""
     x, y = samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]
@@ -52,14 +52,14 @@ def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
     return True
 
 
-@jit
+@compiled
 def set_ends(joints: Joints, i: int, j: int, p: FloatArray) -> None:
     """The vertices of a piece without inner ones."""
     for axis in range(2):
         p[0, axis], p[1, axis] = joints.samples[joints.first[i], axis], joints.samples[joints.first[j], axis]
 
 
-@jit
+@compiled
 def fit_between(
     joints: Joints,
     i: int,
@@ -121,14 +121,14 @@ class Cut(NamedTuple):
     errors: FloatArray
 
 
-@jit
+@compiled
 def room(count: int, most: int) -> Cut:
     """Room for so many pieces of at most so many spans."""
     rows = np.zeros((count, 3), dtype=np.int64)
     return Cut(rows, np.zeros((count, most + 1, 2)), np.zeros((count, 2, 2)), np.zeros(count))
 
 
-@jit
+@compiled
 def copy_piece(a: Cut, i: int, b: Cut, j: int) -> None:
     """Write a's piece i where b has its piece j."""
     b.errors[j] = a.errors[i]
@@ -141,7 +141,7 @@ def copy_piece(a: Cut, i: int, b: Cut, j: int) -> None:
             b.vertices[j, k, axis] = a.vertices[i, k, axis]
 
 
-@jit
+@compiled
 def cheapest(
     joints: Joints, nodes: IntArray, tolerance: float, margin: float, residual: float, rounds: int, most: int,
     result: Cut, count: int,
@@ -194,7 +194,7 @@ def cheapest(
     return count
 
 
-@jit
+@compiled
 def _farthest_line(joints: Joints, nodes: IntArray, i: int, rest: FloatArray, tolerance: float) -> int:
     """The node from which the rest is cheapest among those that a straight line from node i may end at; i if none."""
     found = i
@@ -209,7 +209,7 @@ def _farthest_line(joints: Joints, nodes: IntArray, i: int, rest: FloatArray, to
     return found
 
 
-@jit
+@compiled
 def cut(
     joints: Joints, tolerance: float, margin: float, residual: float, rounds: int, most: int, stride: int
 ) -> Cut:  # fmt: skip

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jet, jit, length, solve_arc
+from ...compiled import compiled
+from ...curves.cubics import jet, length, solve_arc
 from ...types import FloatArray, IntArray
 
 SLIDE = 0.001
@@ -22,7 +23,7 @@ BAND = 8
 """Neighbouring control points are at most 3 apart, so unknowns at most 7."""
 
 
-@jit
+@compiled
 def project(
     Q: FloatArray, n: int, b: FloatArray, k: int, known: bool, span: IntArray, x: FloatArray, e: FloatArray
 ) -> float:  # fmt: skip
@@ -46,7 +47,7 @@ def project(
     return worst
 
 
-@jit
+@compiled
 def _next_foot(
     qx: float, qy: float, b: FloatArray, k: int, s0: int, at0: float, s: int, at: float
 ) -> tuple[int, float]:  # fmt: skip
@@ -80,7 +81,7 @@ def _next_foot(
     return s, at
 
 
-@jit
+@compiled
 def _normal_equations(
     Q: FloatArray,
     n: int,
@@ -123,7 +124,7 @@ def _normal_equations(
                     A[r, q + 1 - r + BAND - 1] += both * xy
 
 
-@jit
+@compiled
 def solve_banded(A: FloatArray, rhs: FloatArray, size: int) -> None:
     """Cholesky of the banded matrix in place; rhs becomes the solution."""
     for r in range(size):
@@ -145,7 +146,7 @@ def solve_banded(A: FloatArray, rhs: FloatArray, size: int) -> None:
         rhs[r] /= A[r, BAND - 1]
 
 
-@jit
+@compiled
 def gauss_newton(
     Q: FloatArray,
     n: int,
@@ -185,7 +186,7 @@ def gauss_newton(
     solve_banded(A, rhs, size)
 
 
-@jit
+@compiled
 def place_vertices(Q: FloatArray, D: FloatArray, n: int, k: int, p: FloatArray) -> None:
     """Vertices p[: k + 1] on the outline at equal steps of the density's integral D."""
     j = 0
@@ -199,7 +200,7 @@ def place_vertices(Q: FloatArray, D: FloatArray, n: int, k: int, p: FloatArray) 
     p[k] = Q[n - 1]
 
 
-@jit
+@compiled
 def respace(
     b: FloatArray, u: FloatArray, k: int, e: FloatArray, span: IntArray, n: int, p: FloatArray, most: float
 ) -> None:
@@ -224,7 +225,7 @@ def respace(
         p[i, 0], p[i, 1], _, _, _, _ = jet(b, s, (at - u[s]) / (u[s + 1] - u[s]))
 
 
-@jit
+@compiled
 def graded(p: FloatArray, k: int, ratio: float) -> bool:
     """Whether adjacent chords stay within a ratio of each other."""
     before = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1])
@@ -236,7 +237,7 @@ def graded(p: FloatArray, k: int, ratio: float) -> bool:
     return True
 
 
-@jit
+@compiled
 def _advance(
     p: FloatArray,
     k: int,
@@ -266,7 +267,7 @@ def _advance(
     _set_tangent(end, 3 * bx / h1, 3 * by / h1)
 
 
-@jit
+@compiled
 def _set_tangent(v: FloatArray, x: float, y: float) -> None:
     """A new end tangent, kept on the old one's side and between 0.1 and 4 in length."""
     old = np.hypot(v[0], v[1])
@@ -278,7 +279,7 @@ def _set_tangent(v: FloatArray, x: float, y: float) -> None:
     v[0], v[1] = x / new * length, y / new * length
 
 
-@jit
+@compiled
 def fit_arc(
     Q: FloatArray,
     D: FloatArray,

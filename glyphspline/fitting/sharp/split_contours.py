@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import jit
+from ...compiled import compiled
 from ...outlines.canonical import directed, farthest_joint
 from ...outlines.segments import lasting
 from ...types import BoolArray, FloatArray, IntArray
@@ -52,7 +52,7 @@ class Chains(NamedTuple):
     flipped: BoolArray
 
 
-@jit
+@compiled
 def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
     """The segments that have a length, those that end where they begin cut in two: an arc needs two ends."""
     those = lasting(cubics)
@@ -70,7 +70,7 @@ def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
     return found[:count].copy(), kept[:count].copy()
 
 
-@jit
+@compiled
 def _halve(cubic: FloatArray, first: FloatArray, second: FloatArray) -> None:
     for axis in range(2):
         p, q, r, s = cubic[0, axis], cubic[1, axis], cubic[2, axis], cubic[3, axis]
@@ -81,7 +81,7 @@ def _halve(cubic: FloatArray, first: FloatArray, second: FloatArray) -> None:
         second[0, axis], second[1, axis], second[2, axis], second[3, axis] = middle, right, rs, s
 
 
-@jit
+@compiled
 def first_joint(joints: Joints) -> int:
     """A hard joint to begin at, or else that farthest from the middle: the same whatever the contour's first point."""
     m = len(joints.line)
@@ -91,7 +91,7 @@ def first_joint(joints: Joints) -> int:
     return farthest_joint(joints.samples[joints.first[:m]])
 
 
-@jit
+@compiled
 def laid_out(
     cubics: FloatArray, degrees: IntArray, settings: Settings
 ) -> tuple[FloatArray, IntArray, bool, Joints]:  # fmt: skip

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import jet, jit
+from ...compiled import compiled
+from ...curves.cubics import jet
 from ...outlines.canonical import directed, direction, farthest_joint, turn
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import contour_cubics, lasting
@@ -38,7 +39,7 @@ class Chains(NamedTuple):
     lengths: FloatArray
 
 
-@jit
+@compiled
 def chains_of(flat: ContourArrays) -> Chains:
     """The chains of contours end to end."""
     count = len(flat.offsets) - 1
@@ -61,7 +62,7 @@ def chains_of(flat: ContourArrays) -> Chains:
     return Chains(cubics, offsets, flipped, turns, lengths)
 
 
-@jit
+@compiled
 def _turns(cubics: FloatArray, turns: FloatArray) -> None:
     """Into ``turns``; at whatever scale, so that no handle is too short."""
     for j in range(len(cubics)):
@@ -70,7 +71,7 @@ def _turns(cubics: FloatArray, turns: FloatArray) -> None:
         turns[j] = turn(ax, ay, bx, by)
 
 
-@jit
+@compiled
 def _lengths(cubics: FloatArray, lengths: FloatArray) -> None:
     total = 0.0
     for j in range(len(cubics)):
@@ -83,7 +84,7 @@ def _lengths(cubics: FloatArray, lengths: FloatArray) -> None:
             x, y = px, py
 
 
-@jit
+@compiled
 def length_at(lengths: FloatArray, place: float) -> float:
     """Distance along a contour from its first point; ``place`` may be laps ahead."""
     m = len(lengths)
@@ -94,7 +95,7 @@ def length_at(lengths: FloatArray, place: float) -> float:
     return j // m * lengths[m - 1, TABLE] + row[k] + (x - k) * (row[min(k + 1, TABLE)] - row[k])
 
 
-@jit
+@compiled
 def place_at(lengths: FloatArray, distance: float) -> float:
     """The inverse of :func:`length_at`."""
     m = len(lengths)
@@ -115,7 +116,7 @@ def place_at(lengths: FloatArray, distance: float) -> float:
     return lap * m + low + x
 
 
-@jit
+@compiled
 def vertices(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(n, 2) the points at places of a contour, all in its first lap."""
     points = np.empty((len(places), 2))

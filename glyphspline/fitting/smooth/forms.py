@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled
 from ...curves.crossings import crossings_and_overshoot
-from ...curves.cubics import jit
 from ...curves.integrals import CURVATURE_STEPS, NODES, WEIGHTS
 from ...types import FloatArray, IntArray
 
@@ -19,7 +19,7 @@ PLACES = np.concatenate([(NODES + 1) / 2, np.arange(CURVATURE_STEPS + 1) / CURVA
 """Parameters at which speed and curvature are looked at: for integrals, then for the largest curvature."""
 
 
-@jit
+@compiled
 def forms(pieces: FloatArray, offsets: IntArray, polygons: FloatArray, corners: IntArray) -> FloatArray:
     """(K, 6) measures of ragged closed chains of cubics.
 
@@ -36,7 +36,7 @@ def forms(pieces: FloatArray, offsets: IntArray, polygons: FloatArray, corners: 
     return found
 
 
-@jit
+@compiled
 def _integrals(pieces: FloatArray, found: FloatArray) -> None:
     """:func:`...curves.integrals.integrals` by loops that become SIMD, in a third of the time."""
     count = len(PLACES)

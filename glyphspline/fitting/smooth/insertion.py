@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jit
+from ...compiled import compiled
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, length_at, place_at, vertices
 
@@ -22,7 +22,7 @@ MARGIN = 0.3
 """Share of a span at either end where it is not divided."""
 
 
-@jit
+@compiled
 def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(n,) length along the contour at which each place lies, and to the next one."""
     n = len(places)
@@ -35,7 +35,7 @@ def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, Float
     return at, h
 
 
-@jit
+@compiled
 def with_more(
     lengths: FloatArray, places: FloatArray, errors: FloatArray, worst: FloatArray, near: float
 ) -> FloatArray:
@@ -68,7 +68,7 @@ def with_more(
     return np.sort(new[:count])
 
 
-@jit
+@compiled
 def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: float) -> FloatArray:
     """The places with chords cut where they are more than ``ratio`` times a neighbour, until none is.
 
@@ -97,7 +97,7 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
         places = np.sort(new[:count])
 
 
-@jit
+@compiled
 def _uneven(chords: FloatArray, ratio: float) -> bool:
     for i in range(len(chords)):
         a, b = chords[i - 1], chords[i]
@@ -106,7 +106,7 @@ def _uneven(chords: FloatArray, ratio: float) -> bool:
     return False
 
 
-@jit
+@compiled
 def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
     """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
     even = np.ones(len(offsets) - 1, dtype=np.bool_)
@@ -115,7 +115,7 @@ def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> Bool
     return even
 
 
-@jit
+@compiled
 def _chords(points: FloatArray) -> FloatArray:
     """(n,) distance from each vertex to the next, the last to the first."""
     n = len(points)

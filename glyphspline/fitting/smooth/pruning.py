@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jit
+from ...compiled import compiled
 from ...types import BoolArray, FloatArray
 
 
-@jit
+@compiled
 def sparse(
     points: FloatArray, corners: BoolArray, stay: BoolArray, errors: FloatArray, near: float, ratio: float, power: float
 ) -> BoolArray:
@@ -47,7 +47,7 @@ def sparse(
     return keep
 
 
-@jit
+@compiled
 def _height(points: FloatArray, i: int, j: int, k: int) -> float:
     """Distance of vertex j from the chord between i and k."""
     ax, ay = points[k, 0] - points[i, 0], points[k, 1] - points[i, 1]
@@ -57,12 +57,12 @@ def _height(points: FloatArray, i: int, j: int, k: int) -> float:
     return np.sqrt((bx - along * ax) ** 2 + (by - along * ay) ** 2)
 
 
-@jit
+@compiled
 def _chord(points: FloatArray, i: int, j: int) -> float:
     return np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
 
 
-@jit
+@compiled
 def _kept(keep: BoolArray, i: int, step: int) -> int:
     """The next vertex kept from i on."""
     i = (i + step) % len(keep)
@@ -71,7 +71,7 @@ def _kept(keep: BoolArray, i: int, step: int) -> int:
     return i
 
 
-@jit
+@compiled
 def put_back(points: FloatArray, keep: BoolArray, errors: FloatArray, near: float, ratio: float) -> BoolArray:
     """Keep again what had been taken out of the spans that are now too far off, or of those beside them.
 

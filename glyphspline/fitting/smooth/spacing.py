@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jet, jit
+from ...compiled import compiled
+from ...curves.cubics import jet
 from ...types import FloatArray, IntArray
 from .canonical_contours import TABLE
 
@@ -43,7 +44,7 @@ FEWEST = 4
 """Vertices a contour has at least."""
 
 
-@jit
+@compiled
 def seeds(
     cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float,
     variant: int,
@@ -75,7 +76,7 @@ def seeds(
     return _laid(field, lengths, corners)
 
 
-@jit
+@compiled
 def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float) -> FloatArray:
     """The field at all entries of ``lengths`` in turn, (m TABLE + 1,), before its growth is limited."""
     m = len(cubics)
@@ -108,7 +109,7 @@ def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corne
     return field
 
 
-@jit
+@compiled
 def _curvatures(cubics: FloatArray, j: int, kappa: FloatArray) -> bool:
     """Signed curvature of segment j at even parameters; False if it is straight."""
     c = cubics[j]
@@ -125,7 +126,7 @@ def _curvatures(cubics: FloatArray, j: int, kappa: FloatArray) -> bool:
     return True
 
 
-@jit
+@compiled
 def _limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None:
     """Lower the field until it nowhere grows faster than ``growth`` a unit of length, round the contour."""
     n = len(field) - 1
@@ -140,13 +141,13 @@ def _limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None
         field[n] = field[0]
 
 
-@jit
+@compiled
 def _parts(a: float, b: float, length: float) -> float:
     """Integral of 1/field over a stretch on which the field goes linearly from a to b."""
     return length * np.log(b / a) / (b - a) if abs(b - a) > 1e-6 * a else length / a
 
 
-@jit
+@compiled
 def _laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
     """Places at the corners and, evenly by the field, between them."""
     m = len(lengths)
@@ -182,7 +183,7 @@ def _laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArr
     return np.sort(places)
 
 
-@jit
+@compiled
 def _share(a: float, b: float, x: float) -> float:
     """Share of a stretch's length at which the integral of 1/field has come to the share x of the whole."""
     return a * ((b / a) ** x - 1) / (b - a) if abs(b - a) > 1e-6 * a else x

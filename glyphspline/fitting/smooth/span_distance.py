@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...curves.cubics import jet, jit
+from ...compiled import compiled
+from ...curves.cubics import jet
 from ...types import FloatArray
 from ..certified_distance import apart, extent, newton_step, section
 
@@ -27,7 +28,7 @@ DEEPEST = 12
 NEWTON_STEPS = 4
 
 
-@jit
+@compiled
 def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, y: float) -> float:
     """A parameter in [low, high] of a cubic (4, 2) near (x, y): Newton's method from a guess.
 
@@ -54,7 +55,7 @@ def closest(cubic: FloatArray, low: float, high: float, guess: float, x: float, 
     return at
 
 
-@jit
+@compiled
 def partner(cubics: FloatArray, place: float, low: float, high: float, x: float, y: float) -> float:
     """The place in [low, high] of a closed chain near which (x, y) has its nearest point, from one in between."""
     m = len(cubics)
@@ -82,7 +83,7 @@ def partner(cubics: FloatArray, place: float, low: float, high: float, x: float,
     return at
 
 
-@jit
+@compiled
 def stretches(pieces: FloatArray, cubics: FloatArray, places: FloatArray, ends: FloatArray) -> None:
     """Where on the outline the spans of a closed curve begin, into ``ends`` (n + 1,): near the vertices, in order.
 
@@ -100,7 +101,7 @@ def stretches(pieces: FloatArray, cubics: FloatArray, places: FloatArray, ends: 
     ends[n] = ends[0] + m
 
 
-@jit
+@compiled
 def span_distance(
     piece: FloatArray, cubics: FloatArray, start: float, end: float, enough: float, sharpness: float,
     work: FloatArray, marks: FloatArray,
@@ -135,7 +136,7 @@ def span_distance(
         x, y = cut, stop
 
 
-@jit
+@compiled
 def _halve(
     work: FloatArray, marks: FloatArray, start: float, end: float, enough: float, sharpness: float, bound: float,
     gap: float, where: float,
@@ -168,7 +169,7 @@ def _halve(
     return bound, gap, where
 
 
-@jit
+@compiled
 def _split(c: FloatArray, x: float, first: FloatArray) -> None:
     """Cut a cubic: its part before x into ``first``, that after x in its own place."""
     for k in range(2):
@@ -180,7 +181,7 @@ def _split(c: FloatArray, x: float, first: FloatArray) -> None:
         c[0, k], c[1, k], c[2, k], c[3, k] = middle, bde, de, e
 
 
-@jit
+@compiled
 def check(
     pieces: FloatArray, cubics: FloatArray, places: FloatArray, enough: float, sharpness: float, bounds: FloatArray,
     gaps: FloatArray, worst: FloatArray, ends: FloatArray,
@@ -197,7 +198,7 @@ def check(
         )
 
 
-@jit
+@compiled
 def sharpened(
     pieces: FloatArray, cubics: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
 ) -> tuple[float, float]:

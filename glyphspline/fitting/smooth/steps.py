@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.cubics import jit
+from ...compiled import compiled
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import Chains, vertices
 from .insertion import MOST_VERTICES, graded, with_more
@@ -18,7 +18,7 @@ ROUGHLY = 0.1
 """While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
 
 
-@jit
+@compiled
 def first_places(
     chains: Chains, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
 ) -> tuple[FloatArray, IntArray]:
@@ -32,7 +32,7 @@ def first_places(
     return _joined(parts)
 
 
-@jit
+@compiled
 def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
     """All but the first of some arrays as one, and where each begins."""
     offsets = np.zeros(len(parts), dtype=np.int64)
@@ -44,7 +44,7 @@ def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
     return values, offsets
 
 
-@jit
+@compiled
 def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
     """Ragged points of the outline at the places."""
     points = np.empty((len(places), 2))
@@ -55,7 +55,7 @@ def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntAr
     return points
 
 
-@jit
+@compiled
 def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
     """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
 
@@ -90,7 +90,7 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
     return pieces, written
 
 
-@jit
+@compiled
 def examined(
     chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray, near: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -110,7 +110,7 @@ def examined(
     return bounds, gaps, worst, ends
 
 
-@jit
+@compiled
 def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> BoolArray:
     """(n,) which vertices of a contour are at corners."""
     corners = np.zeros(len(places), dtype=np.bool_)
@@ -120,7 +120,7 @@ def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> Bool
     return corners
 
 
-@jit
+@compiled
 def changed(
     chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray,
     gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray, corner_angle: float,
@@ -154,7 +154,7 @@ def changed(
     return those[: len(parts) - 1].copy(), values, new
 
 
-@jit
+@compiled
 def certificate(
     chains: Chains, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray,
     sharpness: float,
@@ -180,7 +180,7 @@ class Good(NamedTuple):
     needed: BoolArray
 
 
-@jit
+@compiled
 def thinned(
     chains: Chains, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
     places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, good: Good,

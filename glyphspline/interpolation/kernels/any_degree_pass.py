@@ -10,9 +10,10 @@ from math import comb
 
 import numpy as np
 
+from ...compiled import compiled
 from ...curves.bspline import bezier_pieces, full_knots, span_controls
 from ...types import FloatArray, IntArray
-from .footpoint import WORK, compiled, search_piece
+from .footpoint import WORK, search_piece
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .footpoint import GUARD, WORK, compiled, search_piece
+from ...compiled import compiled, select
+from .footpoint import GUARD, WORK, search_piece
 from .newton_simd import (
     BAD,
     DD,
@@ -35,7 +36,6 @@ from .newton_simd import (
     expanded,
     quartic,
 )
-from .select import select
 
 BEYOND = 1 + 1e-9
 CUT = 0.125

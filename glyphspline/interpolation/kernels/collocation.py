@@ -12,11 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled, select
 from . import blocks as fields
 from .blocks import HALO, LANES
-from .footpoint import compiled
 from .layout import PAD
-from .select import select
 
 BAND, RIGHT, ROW = 5, 5, 9
 X, EX, EY, RATE, HALF, THIRD = (

@@ -32,8 +32,8 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled
 from ..reference import TIE
 
 GUARD = 1e-12
@@ -51,9 +51,6 @@ for _m in range(2 * MAX_DEGREE + 1):
 
 WORK = (5, 64)
 """Shape of the scratch array: shifted x and y, squared distance, and the two ends of the parts to do."""
-
-compiled = njit(cache=True, nogil=True, error_model="numpy")
-inlined = njit(inline="always", error_model="numpy")
 
 
 @compiled

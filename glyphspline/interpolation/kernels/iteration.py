@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled, select
 from . import blocks as fields
 from .blocks import HALO, LANES
 from .certificate import flagged
 from .collocation import solve
-from .footpoint import compiled
 from .newton_simd import errors_at, seek, whole_vectors
-from .select import select
 
 PX, PY, EX, EY, DD = (np.uint64(k) for k in (fields.PX, fields.PY, fields.EX, fields.EY, fields.DD))
 TWO, FOUR = np.uint64(2), np.uint64(4)

@@ -9,11 +9,10 @@ import math
 
 import numpy as np
 
+from ...compiled import compiled, inlined, select
 from ..polygon import LARGEST, SAME_VERTEX, SMALLEST
 from . import blocks as fields
 from .blocks import HALO
-from .footpoint import compiled, inlined
-from .select import select
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """What became of a polygon. Words for it are found by the plain modules, which look at it again."""

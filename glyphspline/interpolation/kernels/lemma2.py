@@ -10,13 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled, fma, inlined, select, wide_vectors
 from . import blocks as fields
 from .blocks import HALO, LANES, STRIDE
-from .footpoint import compiled, inlined
-from .fused import cubic, fma
 from .layout import PAD
-from .select import select
-from .wide import wide
+from .newton_simd import cubic
 
 ONE, TWO, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 4, 8))
 LOW, HIGH, X = np.uint64(fields.LOW), np.uint64(fields.HIGH), np.uint64(fields.X)
@@ -67,19 +65,19 @@ def _prepare(h, S, m, margin, peak_share, step):
 
 @compiled
 def _prepare_1(h, S, m, margin, peak_share):
-    wide()
+    wide_vectors()
     _prepare(h, S, m, margin, peak_share, ONE)
 
 
 @compiled
 def _prepare_4(h, S, m, margin, peak_share):
-    wide()
+    wide_vectors()
     _prepare(h, S, m, margin, peak_share, FOUR)
 
 
 @compiled
 def _prepare_8(h, S, m, margin, peak_share):
-    wide()
+    wide_vectors()
     _prepare(h, S, m, margin, peak_share, EIGHT)
 
 
@@ -97,7 +95,7 @@ def _start(S, problem, first, m):
 @compiled
 def _newton(S, problem, first, m):
     """One step for every crossing; the number of those still under way."""
-    wide()
+    wide_vectors()
     pending = 0
     for j in range(first, np.uint64(m) + first):
         b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]

@@ -22,11 +22,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled, fma, inlined, select, wide_vectors
 from .blocks import FIELDS, STRIDE
-from .footpoint import GUARD, compiled, inlined
-from .fused import cubic, dot, fma
-from .select import select
-from .wide import wide
+from .footpoint import GUARD
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
@@ -52,6 +50,18 @@ LEFT = 1e-14
 Near a cusp c is not small until steps are much smaller than above. Gauss and Newton's step has no correction, and may
 leave as much as it is itself.
 """
+
+
+@inlined
+def dot(ax, ay, bx, by):
+    """a · b"""
+    return fma(ax, bx, ay * by)
+
+
+@inlined
+def cubic(e, v, w, z, y):
+    """e + v y + w y² + z y³"""
+    return fma(fma(fma(z, y, w), y, v), y, e)
 
 
 @inlined
@@ -150,19 +160,19 @@ def _taylor(B, S, m, step):
 
 @compiled
 def _taylor_1(B, S, m):
-    wide()
+    wide_vectors()
     _taylor(B, S, m, ONE)
 
 
 @compiled
 def _taylor_4(B, S, m):
-    wide()
+    wide_vectors()
     _taylor(B, S, m, FOUR)
 
 
 @compiled
 def _taylor_8(B, S, m):
-    wide()
+    wide_vectors()
     _taylor(B, S, m, EIGHT)
 
 
@@ -180,7 +190,7 @@ def taylor(B, S, first, m):
 @compiled
 def newton(S, first, m):
     """One step for every vertex that has not settled; the number of those that still have not."""
-    wide()
+    wide_vectors()
     pending = 0
     for j in range(first, np.uint64(m) + first):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
@@ -217,7 +227,7 @@ def newton(S, first, m):
 @compiled
 def certify(B, S, first, m):
     """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
-    wide()
+    wide_vectors()
     bad, wild = 0, 0
     for j in range(first, np.uint64(m) + first):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]

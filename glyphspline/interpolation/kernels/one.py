@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...compiled import compiled
 from ..reference import SETTLED, TIE_DISTANCE
 from . import blocks as fields
 from .blocks import HALO, LANES
-from .footpoint import compiled
 from .iteration import freeze
 from .layout import (
     BAD_KNOTS,

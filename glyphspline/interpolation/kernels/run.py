@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...compiled import borrowed, compiled, keep_alive
 from ..reference import TIE_DISTANCE
 from .blocks import BLOCK, LANES, SCRATCH, STRIDE
-from .borrowed import hold, lend
 from .collocation import ROW
-from .footpoint import compiled
 from .iteration import grown, iterate
 from .layout import PAD, fill_side_by_side, pad_intervals
 from .lemma2 import fill_intervals_side_by_side
@@ -177,10 +176,18 @@ def run(
         The residuals of all polygons one after another.
     """
     given = Given(
-        lend(points), lend(offsets), lend(own_knots), lend(tangents), lend(tolerances), closed, variant, margin,
-        exponent, peak_share, max_iterations, solve,
+        borrowed(points), borrowed(offsets), borrowed(own_knots), borrowed(tangents), borrowed(tolerances), closed,
+        variant, margin, exponent, peak_share, max_iterations, solve,
     )  # fmt: skip
-    found = Found(lend(knots), lend(controls), lend(parameters), lend(bounds), lend(kept), lend(whole), lend(rates))
+    found = Found(
+        borrowed(knots),
+        borrowed(controls),
+        borrowed(parameters),
+        borrowed(bounds),
+        borrowed(kept),
+        borrowed(whole),
+        borrowed(rates),
+    )
     most = 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
@@ -189,11 +196,12 @@ def run(
         blocks = np.empty((needed, BLOCK))
     scratch, h, rows = np.zeros(SCRATCH * STRIDE), np.zeros(most + 2 * PAD + 16), np.empty((most if solve else 0, ROW))
     natural, base, own = np.zeros(2), np.zeros((2, 2)), _company(8 if closed and k1 - k0 > FEW[8] else 0)
-    room = Room(lend(blocks), lend(scratch), lend(h), lend(rows), lend(natural), lend(base))
+    room = Room(borrowed(blocks), borrowed(scratch), borrowed(h), borrowed(rows), borrowed(natural), borrowed(base))
     company = Company(
-        lend(own.block), lend(own.alone), lend(own.H), lend(own.who), lend(own.sizes), lend(own.fallbacks),
-        lend(own.passes), lend(own.searched), lend(own.limits), lend(own.least),
+        borrowed(own.block), borrowed(own.alone), borrowed(own.H), borrowed(own.who), borrowed(own.sizes),
+        borrowed(own.fallbacks), borrowed(own.passes), borrowed(own.searched), borrowed(own.limits),
+        borrowed(own.least),
     )  # fmt: skip
     residuals = _all(k0, k1, given, found, room, company)
-    hold((blocks, scratch, h, rows, natural, base, own))  # as what was lent is not counted
+    keep_alive((blocks, scratch, h, rows, natural, base, own))  # as what was lent is not counted
     return residuals

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled, select
 from . import blocks as fields
 from .blocks import FIELDS, HALO, LESS_SHORT, SHORT, STRIDE
 from .certificate import SEARCHED, flagged
-from .footpoint import compiled
 from .layout import PAD
 from .newton_simd import BAD, WIDTH, errors_at, seek, whole_vectors
-from .select import select
 
 PX, PY, EX, EY, DD = (np.uint64(k) for k in (fields.PX, fields.PY, fields.EX, fields.EY, fields.DD))
 INTERVALS = 256

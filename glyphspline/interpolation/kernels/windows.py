@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import compiled
 from ..intervals import BISECTIONS
-from .footpoint import MAX_DEGREE, compiled
+from .footpoint import MAX_DEGREE
 
 KNOTS = MAX_DEGREE + 2
 """The most knots a basis function lives on."""

@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled
 from ..pens import COINCIDENT, MAX_SEGMENTS
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def cubics_of(buffer, starts):
     """Cubic segments of glyphs drawn end to end.
 
@@ -79,7 +79,7 @@ def cubics_of(buffer, starts):
     )  # fmt: skip
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _raise(cubic, kind, x, y, to):
     """Write a line, quadratic or cubic from (x, y) as a cubic."""
     for axis in range(2):
@@ -100,7 +100,7 @@ def _raise(cubic, kind, x, y, to):
             cubic[2, axis], cubic[3, axis] = to[2 + axis], to[4 + axis]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy):
     """End a contour after m segments of p points: the number of contours, which is one more if it encloses anything."""
     start = offsets[contours]
@@ -118,7 +118,7 @@ def _closed(cubics, offsets, own, degrees, owns, contours, m, p, x, y, sx, sy):
     return contours + 1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _collinear(cubics):
     """Whether all control points lie within ``COINCIDENT`` of the line from the first to the farthest."""
     ox, oy = cubics[0, 0, 0], cubics[0, 0, 1]

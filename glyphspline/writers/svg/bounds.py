@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled
 from ...curves.cubics import raised
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def ink_box(cubics):
     """(4,) left, bottom, right, top of the curves of pieces (m, 4, 2); infinite the wrong way round without any."""
     box = np.array([np.inf, np.inf, -np.inf, -np.inf])
@@ -27,7 +27,7 @@ def ink_box(cubics):
     return box
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def contours_box(points, degrees, contours):
     """The same around closed contours one after the other: ``points`` (N, 2), ``degrees`` (m,), and (c + 1,) where
     those of each contour begin among these."""
@@ -44,7 +44,7 @@ def contours_box(points, degrees, contours):
     return box
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _turning(p0, p1, p2, p3):
     """Both values of a cubic where its derivative is zero, or at an end where there is no such place."""
     a, half_b, c = p3 - 3.0 * p2 + 3.0 * p1 - p0, p2 - 2.0 * p1 + p0, p1 - p0
@@ -54,7 +54,7 @@ def _turning(p0, p1, p2, p3):
     return _at(p0, p1, p2, p3, q, a), _at(p0, p1, p2, p3, c, q)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _at(p0, p1, p2, p3, numerator, denominator):
     """The cubic at a quotient, if that is between 0 and 1, or else at the nearer end."""
     x = numerator / denominator if abs(denominator) > abs(numerator) else 0.0

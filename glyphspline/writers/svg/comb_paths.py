@@ -8,13 +8,12 @@ All of it is relative but for the first point, in whole units of the last digit,
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled, store
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
 from .colours import SIDES
 from .numbers import LARGEST, SLACK, WIDEST
 from .path_data import DOT, LINE_BY, MOVE, MOVE_BY, more, nearest, step
-from .words import store
 
 __all__ = ["comb_text", "control_length", "dots_text", "sampled"]
 
@@ -26,7 +25,7 @@ FLAT = -1
 TWO = np.uint64(2)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def comb_text(samples, contours, tooth, scale, longest, least, precision, power, limit, words):
     """The texts of a glyph's comb.
 
@@ -62,7 +61,7 @@ def comb_text(samples, contours, tooth, scale, longest, least, precision, power,
     return text[: parts[LAYERS]], parts, box / power
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _place(samples, tooth, scale, longest, least, power, points, classes, used):
     """Feet and tips of a contour's teeth, rounded; their colour classes, FLAT if left out, beyond CLASSES if cut.
 
@@ -90,12 +89,12 @@ def _place(samples, tooth, scale, longest, least, power, points, classes, used):
     return used
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _same(points, i, x, y, tx, ty):
     return points[i, 0] == x and points[i, 1] == y and points[i, 2] == tx and points[i, 3] == ty
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _bounds(points):
     left = bottom = np.inf
     right = top = -np.inf
@@ -105,7 +104,7 @@ def _bounds(points):
     return np.array([left, bottom, right, top])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _teeth(at, points, classes, parts, figures):
     """Every tooth a stroke from foot to tip, class after class."""
     start = at
@@ -134,7 +133,7 @@ def _teeth(at, points, classes, parts, figures):
     return at
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _line(at, points, classes, ends, figures):
     """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
     x = y = 0.0
@@ -158,7 +157,7 @@ def _line(at, points, classes, ends, figures):
     return at
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _marks(at, points, classes, figures):
     """A dot on every tip that was cut."""
     x = y = 0.0
@@ -173,7 +172,7 @@ def _marks(at, points, classes, figures):
     return at
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def dots_text(points, precision, power, limit, words):
     """Path data of a dot on each of the points (n, 2), as bytes; nothing if one is too large to be written."""
     figures = (precision, power, limit, np.uint64(words.ctypes.data))

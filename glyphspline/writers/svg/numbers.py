@@ -9,10 +9,9 @@ Whole part and decimals of an ordinary number are looked up (see ``figures``). P
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled, load, store
 from .digit_tables import WHOLE
-from .words import load, store
 
 WIDEST = 20
 """Characters of the longest number written, with what separates it from the next."""
@@ -28,7 +27,7 @@ ONE, EIGHT, TOP = np.uint64(1), np.uint64(8), np.uint64(56)
 PARTS = np.uint64(8 * WHOLE)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def decimal(at, value, figures):
     """Write value / power with no zeros at its end, and none before its point.
 
@@ -54,7 +53,7 @@ def decimal(at, value, figures):
     return at + (word >> TOP)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def by_digits(at, value, precision, power):
     """The same digit by digit, for any value from 0 up and any number of decimals."""
     whole = value // power

@@ -9,10 +9,9 @@ are written with, ``figures``, is explained in ``digits``.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled, store
 from .numbers import LARGEST, ONE, SLACK, SPACE, WIDEST, decimal
-from .words import store
 
 MOVE, QUADRATIC, CUBIC, CLOSE = (np.uint8(ord(c)) for c in "MQCZ")
 MOVE_BY, LINE_BY, QUADRATIC_BY, CUBIC_BY = (np.uint8(ord(c)) for c in "mlqc")
@@ -24,27 +23,27 @@ TIE = 1e-6
 """Fractions this near to a half are rounded up: rounding errors should not decide which way."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def nearest(value):
     """The whole number nearest."""
     return np.floor(value + (0.5 + TIE))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def apart(at, value, figures):
     """One more number: a minus sets it apart from the one before as well as a space."""
     store(at, SPACE)
     return decimal(at + np.uint64(value >= 0), value, figures)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def more(at, dx, dy, figures):
     """One more pair of numbers of the command before."""
     at = apart(at, np.int64(dx), figures)
     return apart(at, -np.int64(dy), figures)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def step(at, letter, dx, dy, figures):
     """A command with one pair of numbers."""
     store(at, letter)
@@ -52,7 +51,7 @@ def step(at, letter, dx, dy, figures):
     return apart(at, -np.int64(dy), figures)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def curve(at, points, degrees, figures):
     """A closed chain of Bézier segments: M, then l, q or c, then Z, which also draws a last line.
 
@@ -85,7 +84,7 @@ def curve(at, points, degrees, figures):
     return at + ONE
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def polyline(at, points, closed, figures):
     """Points joined by straight lines: M, then l."""
     at = step(at, MOVE, points[0, 0], points[0, 1], figures)
@@ -98,7 +97,7 @@ def polyline(at, points, closed, figures):
     return at
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def fit(whole):
     """Whether all numbers of an array (N, 2) can be written digit by digit."""
     fine = True
@@ -107,7 +106,7 @@ def fit(whole):
     return fine
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def curves_text(points, degrees, contours, precision, power, limit, words):
     """Path data of closed contours as bytes; None if a number is too large for it.
 
@@ -131,7 +130,7 @@ def curves_text(points, degrees, contours, precision, power, limit, words):
     return text[: np.int64(at - start)]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def polylines_text(points, starts, stops, closed, precision, power, limit, words):
     """Path data of polygons as bytes; None if a number is too large for it.
 

@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ...compiled import compiled
 from .bounds import ink_box
 from .numbers import SLACK, WIDEST
 from .path_data import curve, fit
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def cubics_of_splines(controls, knots, offsets, counts):
     """Bézier pieces of closed splines, those of each in curve order.
 
@@ -34,7 +34,7 @@ def cubics_of_splines(controls, knots, offsets, counts):
     return cubics, starts
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def bezier_points(controls, knots, cubics):
     """Bézier points of a closed spline, one piece a span.
 
@@ -64,7 +64,7 @@ def bezier_points(controls, knots, cubics):
         before = h
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def paths(cubics, starts, before, precision, power, limit, words):
     """SVG path data of many glyphs, one after the other.
 
@@ -98,7 +98,7 @@ def paths(cubics, starts, before, precision, power, limit, words):
     return text[: np.int64(at - start)], ends, boxes, odd
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def whole_units(cubics, power):
     """(3 m, 2) Bézier points, joints once, in whole units of the last digit; and (m, 4, 2) the pieces, rounded so."""
     flat, unit = cubics.reshape(-1), np.float64(power)
