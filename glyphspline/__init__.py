@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from . import notebook as display
 from ._version import __version__
 from .curves.bspline import Spline
-from .errors import FontError, GlyphsplineError, PolygonError
+from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
 from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
@@ -64,8 +64,10 @@ __all__ = [
     "GlyphsplineError",
     "Interpolation",
     "Measures",
+    "OptionError",
     "Options",
     "Outline",
+    "OutputError",
     "PolygonError",
     "Spline",
     "__version__",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 
-class GlyphsplineError(ValueError):
-    """Bad input. ``font``, ``glyph`` and ``contour`` say where, as far as it is known.
+class GlyphsplineError(Exception):
+    """What the package raises by design. ``font``, ``glyph`` and ``contour`` say where, as far as it is known.
 
     The parts are filled in from the inside out: the interpolation knows only its polygon, the glyph
     pipeline adds contour and glyph, the batch adds the font. ``str()`` gives the whole sentence.
@@ -41,9 +41,17 @@ class GlyphsplineError(ValueError):
         return f"{', '.join(place)}: {self.message}" if place else self.message
 
 
-class PolygonError(GlyphsplineError):
+class PolygonError(GlyphsplineError, ValueError):
     """A polygon that no curve can be put through: wrong shape, not finite, or too few distinct vertices."""
+
+
+class OptionError(GlyphsplineError, ValueError):
+    """An option out of its range or of the wrong kind, or options that contradict each other."""
 
 
 class FontError(GlyphsplineError):
     """A font that cannot be opened, or a face, axis or glyph that it does not have."""
+
+
+class OutputError(GlyphsplineError, OSError):
+    """A file or folder that cannot be written, or one of a run that cannot be read."""

@@ -6,8 +6,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ..errors import OutputError
     from .atlas_run import make_atlas
-    from .files import OutputError
     from .font_search import find_fonts, folders_for
     from .galleries import write_gallery
     from .manifest import entries_of
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Limits": ".spec",
-    "OutputError": ".files",
+    "OutputError": "..errors",
     "RunSpec": ".spec",
     "Summary": ".summary",
     "convert_font": ".run",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
 
-from ..errors import GlyphsplineError
+from ..errors import OutputError
 
 LONGEST_NAME = 150
 """Bytes of a file name before its suffix. File systems take 255; the rest is room for clash numbers and suffixes."""
@@ -25,10 +25,6 @@ _PLAIN = re.compile(r"[a-z0-9_]{1,75}")
 """Names that the rules leave as they are: most names of a large font, for which asking them takes half a second."""
 
 _NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
-
-
-class OutputError(GlyphsplineError):
-    """The output folder cannot be written, or holds something that a run must not touch."""
 
 
 def file_names(glyph_names: Iterable[str]) -> list[str]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..errors import OutputError
 from ..report import write_index, write_report
-from .files import OutputError
 from .manifest import MANIFEST, entries_of
 from .spec import read_run
 

@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from .files import PARTIAL, OutputError, sizes
+from ..errors import OutputError
+from .files import PARTIAL, sizes
 from .job import Done
 from .spec import SUFFIXES
 from .summary import Facts, Summary
@@ -209,6 +210,8 @@ def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
         os.replace(partial_sizes, out / SIZES)
         os.replace(partial, out / MANIFEST)
         (out / JOURNAL).unlink(missing_ok=True)
+    except OutputError:
+        raise
     except OSError as error:
         raise OutputError(f"cannot be written: {error.strerror or error}", font=str(out / MANIFEST)) from error
     finally:

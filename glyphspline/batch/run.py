@@ -12,12 +12,13 @@ from operator import itemgetter
 from pathlib import Path
 
 from ..curves.curvature import robust_scale
+from ..errors import OutputError
 from ..readers import Font, Source
 from ..report.data import FOLDER
 from ..report.gallery import Gallery, is_whole, shown
 from .calls import survey, work
 from .entry import told_of
-from .files import OutputError, file_names, make_folder, remove_partials
+from .files import file_names, make_folder, remove_partials
 from .job import Job, Task, failed, page_of
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, OutputError
 from ..fitting.options import Options
 from ..writers.svg.document import VIEW_BOXES, ViewBox
-from .files import OutputError, write_whole
+from .files import write_whole
 
 if TYPE_CHECKING:
     from ..readers import Source

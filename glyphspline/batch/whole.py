@@ -7,10 +7,11 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from ..errors import OutputError
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
-from .files import PARTIAL, OutputError, write_whole
+from .files import PARTIAL, write_whole
 from .manifest import entries_of
 from .spec import RESULTS, RunSpec
 from .store import from_text
@@ -28,6 +29,8 @@ def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
         path = out / f"{file_stem(source)}.{name}"
         try:
             remarks += WRITERS[name](source, stored(source, out, spec.options), path, spec)
+        except OutputError:
+            raise
         except OSError as error:
             raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
     return remarks
