@@ -8,13 +8,19 @@ compares the date of a function's own file, not of the files of the functions it
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar, overload
 
 from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
+Function = TypeVar("Function", bound=Callable[..., Any])
 
+
+@overload
+def compiled(function: Function, /) -> Function: ...
+@overload
+def compiled(*, internal: bool) -> Callable[[Function], Function]: ...
 def compiled(function: Callable[..., Any] | None = None, /, *, internal: bool = False) -> Any:
     """Compile a function at its first call, cache the machine code, and release the interpreter's lock while it runs.
 
@@ -35,13 +41,14 @@ def compiled(function: Callable[..., Any] | None = None, /, *, internal: bool = 
     return decorate if function is None else decorate(function)
 
 
-def inlined(function: Callable[..., Any]) -> Any:
+def inlined(function: Function) -> Function:
     """A function whose body takes the place of each call before types are inferred: for helpers of SIMD loops.
 
     LLVM inlines a call too, but too late for some loops to become SIMD. The body is typed again for every call, so this
     is for a few lines only.
     """
-    return njit(inline="always", error_model="numpy")(function)
+    inline: Function = njit(inline="always", error_model="numpy")(function)
+    return inline
 
 
 def _fma(context: Any, a: Any, b: Any, c: Any) -> Any:

@@ -7,7 +7,6 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.fitting.certified_distance import certified_distance
-from glyphspline.outlines.sampling import Track
 from glyphspline.types import FloatArray
 
 from .polygons import circle_contour, square_contour
@@ -15,7 +14,7 @@ from .polygons import circle_contour, square_contour
 
 def true_distance(a: gs.Contour, b: gs.Contour, samples: int = 6000) -> float:
     """Two-sided distance of dense polylines, too small by what they miss."""
-    p, q = (Track(c)(np.linspace(0, len(c), samples)) for c in (a, b))
+    p, q = (c.at(np.linspace(0, len(c), samples)) for c in (a, b))
     gaps = np.hypot(*np.moveaxis(p[::5, None] - q[None], 2, 0)).min(axis=1).max()
     back = np.hypot(*np.moveaxis(q[::5, None] - p[None], 2, 0)).min(axis=1).max()
     return float(max(gaps, back))

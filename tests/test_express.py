@@ -20,8 +20,8 @@ from glyphspline.batch.job import Job
 from glyphspline.batch.lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
 from glyphspline.batch.run import tasks_of
 from glyphspline.fitting.options import Options
+from glyphspline.outlines.places import sampled
 from glyphspline.outlines.sampling import sample
-from glyphspline.outlines.stepping import stepped_points
 from glyphspline.readers import open_font
 from glyphspline.readers.opentype.bulk import BulkReader
 from glyphspline.readers.opentype.bulk_contours import cubics_of
@@ -168,7 +168,7 @@ def test_vertices_are_those_of_the_sampling(step: float) -> None:
     gid = font.glyph_names.index("uni9F8D")
     buffer, starts, _, _ = reader.read([gid])
     cubics, contours, *_ = cubics_of(buffer, starts)
-    points, offsets, odd = stepped_points(cubics, contours, step, 4.0, 10_000)
+    points, _, offsets, odd = sampled(cubics, contours, step, 0, 4.0, np.radians(12.0), 10_000)
     assert not odd.any()
     for k, contour in enumerate(font.outline("uni9F8D").contours):
         expected = sample(contour, step=step)

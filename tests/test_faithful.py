@@ -12,10 +12,8 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.crossings import self_crossings
-from glyphspline.fitting.fixed_contours import certified_rate
-from glyphspline.fitting.fixed_sampling import chords
+from glyphspline.fitting.measures import certified_rate
 from glyphspline.outlines.overlaps import inked_area, remove_overlaps
-from glyphspline.outlines.sampling import Track
 from glyphspline.types import FloatArray
 
 from .polygons import circle_contour, square_contour
@@ -29,8 +27,7 @@ def glyph(character: str) -> gs.Outline:
 
 
 def points(contour: gs.Contour, spacing: float = 1.0) -> FloatArray:
-    track = Track(contour)
-    return track(track.place_at(np.arange(0, track.length, spacing)))
+    return gs.sample(contour, step=spacing)
 
 
 def true_distance(result: gs.ContourResult, precision: int = 2) -> float:
@@ -122,7 +119,7 @@ def test_smooth_is_one_closed_curve_graded_and_twice_differentiable_at_the_seam(
         (interpolation,) = contour.interpolations
         spline = interpolation.spline
         assert spline.closed
-        h = chords(contour.polygon)
+        h = np.hypot(*(np.roll(contour.polygon, -1, axis=0) - contour.polygon).T)
         assert (h <= 4.0001 * np.roll(h, 1)).all()
         assert (np.roll(h, 1) <= 4.0001 * h).all()
         pieces = spline.to_bezier()

@@ -15,7 +15,7 @@ from ..fitting.policy import CERTAIN_RATIO
 from ..fitting.smooth.insertion import graded_polygons
 from ..interpolation.batched import Ragged, interpolate_ragged
 from ..outlines.outline import Outline
-from ..outlines.stepping import stepped_points
+from ..outlines.places import sampled
 from ..readers.opentype.bulk import BulkReader
 from ..readers.opentype.bulk_contours import cubics_of
 from ..types import BoolArray, FloatArray, IntArray
@@ -160,7 +160,9 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
     assert options.step is not None
     buffer, starts, advances, broken = reader.read(gids)
     source_cubics, segments, before, strange, own, degrees, owns = cubics_of(buffer, starts)
-    points, offsets, unsampled = stepped_points(source_cubics, segments, options.step, options.max_ratio, MOST_VERTICES)
+    points, _, offsets, unsampled = sampled(
+        source_cubics, segments, options.step, 0, options.max_ratio, np.radians(options.corner_angle), MOST_VERTICES
+    )
     ragged = interpolated(points, offsets, options)
     refused = (ragged.whole[:, 0] != 0) | unsampled
     counts = np.where(refused, 0, ragged.whole[:, 1])

@@ -1,15 +1,19 @@
-"""A glyph's way through the pipeline: an outline in, a :class:`GlyphResult` out."""
+"""From outlines to results: glyphs go through the fit in batches, and one glyph is a batch of one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import Literal, overload
 
+import numpy as np
+
 from ..errors import GlyphsplineError
-from ..outlines.outline import Contour, Outline
-from ..types import FloatArray
+from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.outline import Contours, Outline
+from ..types import BoolArray
 from .options import Options
-from .results import ContourResult, GlyphResult
+from .results import ContourResults, ConvertedContours, GlyphResult
 
 DEFAULTS = Options()
 
@@ -38,83 +42,109 @@ def convert_many(
         GlyphsplineError: a contour that cannot be interpolated, or options that contradict each other; it names glyph
             and contour.
     """
-    found: list[GlyphResult | GlyphsplineError] = []
-    for outline in outlines:
-        try:
-            found.append(_convert_one(outline, options))
-        except GlyphsplineError as error:
-            if errors == "raise":
-                raise
-            found.append(error)
-    return found
+    glyphs = list(outlines)
+    try:
+        return _convert_batch(glyphs, options)
+    except GlyphsplineError:
+        if errors == "raise":
+            raise
+        return [_attempt(outline, options) for outline in glyphs]
 
 
 def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
     """Interpolate every contour of a glyph on its own: :func:`convert_many` of a batch of one."""
-    return convert_many([outline], options)[0]
+    return _convert_batch([outline], options)[0]
 
 
-def _convert_one(outline: Outline, options: Options) -> GlyphResult:
-    tolerance = options.tolerance_for(outline.metrics.units_per_em)
-    if not tolerance > 0:
-        raise GlyphsplineError(f"tolerance is a positive distance, not {tolerance}")
-    if options.corners == "sharp" and (options.step is not None or options.count is not None):
-        raise GlyphsplineError('step and count sample whole contours, which corners="sharp" cuts: give a tolerance')
-    notes: list[str] = []
+def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineError:
+    try:
+        return convert(outline, options)
+    except GlyphsplineError as error:
+        return error
+
+
+def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]:
+    """Glyphs of one em at a time: the tolerance depends on it."""
+    notes: list[list[str]] = [[] for _ in glyphs]
     if options.remove_overlaps:
         from ..outlines.overlaps import remove_overlaps
 
-        outline, note = remove_overlaps(outline)
-        notes += [note] if note else []
-    kept = [index for index, contour in enumerate(outline.contours) if encloses(contour.points)]
-    for index in sorted(set(range(len(outline.contours))) - set(kept)):
-        notes.append(f"contour {index} has fewer than three distinct points and is left out")
+        for k, outline in enumerate(glyphs):
+            glyphs[k], note = remove_overlaps(outline)
+            notes[k] += [note] if note else []
+    results: dict[int, GlyphResult] = {}
+    for em in {outline.metrics.units_per_em for outline in glyphs}:
+        those = [k for k, outline in enumerate(glyphs) if outline.metrics.units_per_em == em]
+        found = _convert_em([glyphs[k] for k in those], [notes[k] for k in those], options, em)
+        results |= zip(those, found, strict=True)
+    return [results[k] for k in range(len(glyphs))]
+
+
+def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options, em: float) -> list[GlyphResult]:
+    """Glyphs whose em is ``em``: all contours end to end through one of the two modes."""
+    tolerance = options.tolerance_for(em)
+    given = joined([outline.arrays for outline in glyphs])
+    before = offsets_of([len(outline.contours) for outline in glyphs])
+    kept = enclosing(given)
+    for index in np.flatnonzero(~kept).tolist():
+        k = int(np.searchsorted(before, index, side="right")) - 1
+        notes[k].append(f"contour {index - before[k]} has fewer than three distinct points and is left out")
+    which = np.flatnonzero(kept)
     try:
-        results = _converted([outline.contours[index] for index in kept], options, tolerance, outline)
+        found = _convert_contours(given.chosen(which.tolist()), options, tolerance, em)
     except GlyphsplineError as error:
-        error.contour = None if error.contour is None else kept[error.contour]
-        raise error.locate(glyph=outline.name) from error.__cause__
-    return GlyphResult(outline, options, tuple(results), (*notes, *remarks(results, tolerance)))
+        k = 0
+        if error.contour is not None:
+            index = int(which[error.contour])
+            k = int(np.searchsorted(before, index, side="right")) - 1
+            error.contour = index - int(before[k])
+        raise error.locate(glyph=glyphs[k].name) from error.__cause__
+    ends = np.searchsorted(which, before).tolist()
+    results = []
+    for outline, (first, last), said in zip(glyphs, pairwise(ends), notes, strict=True):
+        own = found.part(first, last)
+        results.append(GlyphResult(outline, options, ContourResults(own), (*said, *remarks(own, tolerance))))
+    return results
 
 
-def _converted(
-    contours: list[Contour], options: Options, tolerance: float, outline: Outline
-) -> list[ContourResult]:  # fmt: skip
-    """The contours' results; an error's ``contour`` is the index in the list."""
+def _convert_contours(
+    contours: ContourArrays, options: Options, tolerance: float, em: float
+) -> ConvertedContours:  # fmt: skip
+    """All contours through the mode that the options ask for; an error's ``contour`` is the index."""
     # Here and not above, as these bring the compiler with them: the package opens without.
     if options.corners == "sharp":
         from .sharp.sharp_contours import convert_sharp
 
-        return convert_sharp(contours, options, tolerance, outline.metrics.units_per_em)
+        return ContourResults(convert_sharp(Contours(contours), options, tolerance, em)).arrays
     if options.step is None and options.count is None:
         from .smooth.smooth_fit import convert_smooth
 
-        return convert_smooth(contours, options, tolerance)
-    from .fixed_contours import convert_contour
+        return ContourResults(convert_smooth(Contours(contours), options, tolerance)).arrays
+    from .fixed_sampling import convert_fixed
 
-    results: list[ContourResult] = []
-    for index, contour in enumerate(contours):
-        try:
-            results.append(convert_contour(contour, options, tolerance))
-        except GlyphsplineError as error:
-            error.contour = index
-            raise
-    return results
+    return convert_fixed(contours, options, tolerance)
 
 
-def encloses(points: FloatArray) -> bool:
-    """Whether three of the points (n, 2) are distinct."""
-    if len({tuple(point) for point in points[:4].tolist()}) >= 3:
-        return True  # at once, for nearly all contours
-    others = points[(points != points[:1]).any(axis=1)]
-    return bool((others != others[:1]).any())
+def enclosing(contours: ContourArrays) -> BoolArray:
+    """(C,) whether three of a contour's points are distinct."""
+    starts = contours.starts[:-1]
+    long = np.diff(contours.starts) >= 3
+    p, q, r = (contours.points[np.where(long, starts + k, 0)] for k in range(3))
+    kept: BoolArray = long & (p != q).any(axis=1) & (q != r).any(axis=1) & (p != r).any(axis=1)  # nearly all
+    for c in np.flatnonzero(~kept).tolist():
+        points = contours.points[contours.starts[c] : contours.starts[c + 1]]
+        others = points[(points != points[:1]).any(axis=1)]
+        kept[c] = bool((others != others[:1]).any())
+    return kept
 
 
-def remarks(results: list[ContourResult], tolerance: float) -> Iterator[str]:
+def remarks(found: ConvertedContours, tolerance: float) -> Iterator[str]:
     """What a reader has to know: contours out of tolerance, or crossing themselves where their source does not."""
-    for index, result in enumerate(results):
-        measures = result.measures
-        if measures.within_tolerance is False:
-            yield f"result contour {index} is certified to {measures.deviation_bound:.3g} units, not to {tolerance:g}"
-        if measures.new_crossings:
-            yield f"result contour {index} crosses itself, {measures.new_crossings} times more than its source"
+    measures = found.measures
+    for index, within in enumerate(measures.get("within_tolerance", ())):
+        if within is False:
+            bound = measures["deviation_bound"][index]
+            yield f"result contour {index} is certified to {bound:.3g} units, not to {tolerance:g}"
+    for index, crossings in enumerate(measures.get("new_crossings", ())):
+        if crossings:
+            yield f"result contour {index} crosses itself, {crossings} times more than its source"

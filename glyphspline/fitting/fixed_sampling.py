@@ -1,93 +1,129 @@
-"""Smooth curves through polygons sampled by count or by step, measured only if asked for."""
+"""Curves through polygons sampled by step or by count: one interpolation a contour, no search."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from ..interpolation.api import interpolate
+from ..errors import GlyphsplineError
 from ..interpolation.result import Interpolation
-from ..outlines.outline import Contour
-from ..outlines.sampling import Track, even_places, stepped_places
-from ..types import FloatArray
-from .certified_distance import Distance, certified_distance
+from ..outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ..outlines.places import sampled
+from ..outlines.sampling import MOST_VERTICES
+from ..outlines.segments import all_cubics
+from ..types import FloatArray, IntArray, Views
+from .certified_distance import certified_distance
+from .measures import check_coordinates, geometric_columns, solved_columns
 from .options import Options
-from .policy import CERTAIN_RATIO
+from .policy import interpolated
+from .results import ConvertedContours
+from .smooth.steps import beziers
 
 SHARPNESS = 0.02
 """The certified bound may exceed the distances seen by this share of the tolerance."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """A closed curve for a contour.
+def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
+    """Put a closed C2 curve through points of each contour, as many or as far apart as the options ask for.
 
-    Attributes:
-        places: (n,) where on the contour the polygon's vertices lie (see :class:`..outlines.sampling.Track`).
-        polygon: (n, 2) the vertices. result: the curve through them.
-        distance: certified distance of the written curve from the outline; None if not measured.
+    Args:
+        contours: of one glyph or of many. options: with ``step`` or ``count``.
+        tolerance: in font units, what the distance is compared with if ``options.measure`` asks for it.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be interpolated; its ``contour`` is the index.
     """
-
-    places: FloatArray
-    polygon: FloatArray
-    result: Interpolation
-    distance: Distance | None = None
-
-
-def fit_even(contour: Contour, options: Options, tolerance: float) -> Fit:
-    """One closed C2 curve through points of a contour, as many or as far apart as the options ask for."""
-    track = Track(contour)
-    if options.count is not None:
-        places = even_places(track, options.count, options.max_ratio)
-    else:
-        assert options.step is not None
-        places = stepped_places(track, options.step, options.max_ratio)
-    fit = _interpolate(track, places, options)
-    return certified(track, fit, options, tolerance) if options.measure else fit
+    check_coordinates(contours)
+    cubics = all_cubics(contours)
+    points, places, offsets, refused = sampled(
+        cubics, contours.offsets, options.step or 0.0, options.count or 0, options.max_ratio,
+        np.radians(options.corner_angle), MOST_VERTICES,
+    )  # fmt: skip
+    if refused.any():
+        message = f"sampling takes more than {MOST_VERTICES} vertices"
+        raise GlyphsplineError(message, contour=int(np.flatnonzero(refused)[0]))
+    return through_polygons(contours, points, offsets, options, tolerance, places)
 
 
-def is_graded(polygon: FloatArray, max_ratio: float) -> bool:
-    """Whether chords are even enough for Lemma 2 to have an interval everywhere, so that its own rule converges."""
-    h = chords(polygon)
-    before = np.roll(h, 1)
-    most = min(max_ratio, CERTAIN_RATIO) * (1 + 1e-9)
-    return bool((h <= most * before).all() and (before <= most * h).all())
+def through_polygons(
+    contours: ContourArrays,
+    points: FloatArray,
+    offsets: IntArray,
+    options: Options,
+    tolerance: float,
+    places: FloatArray | None = None,
+) -> ConvertedContours:
+    """Put a closed C2 curve through each of some polygons.
+
+    Args:
+        contours: what the polygons stand for. points: (N, 2) and offsets: (C + 1,) of the polygons.
+        places: (N,) where on the contours the vertices lie; without them distances are not measured.
+
+    Raises:
+        PolygonError: a polygon that cannot be interpolated; its ``contour`` is the index.
+    """
+    found = interpolated(points, offsets, options)
+    counts = found.whole[:, 1]
+    if counts.sum() < len(points):  # duplicates were merged
+        kept = found.kept[_leading(offsets, counts)] + np.repeat(offsets[:-1], counts)
+        points, places = points[kept], None if places is None else places[kept]
+    ends = offsets_of(counts)
+    controls = found.controls[_leading(offsets, counts)]
+    knots = found.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
+    pieces, written = beziers(controls, knots, ends, 10.0**options.precision)
+    closed = np.ones(len(counts), dtype=np.bool_)
+    curves = ContourArrays(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3), ends, 3 * ends)
+    polygons = Polylines(points, ends, closed)
+    measures: dict[str, Sequence[Any]] = solved_columns(found)
+    if options.measure:
+        if places is not None:
+            measures |= _distances(contours, written, places, ends, found.results(), tolerance)
+        measures |= geometric_columns(curves, contours, polygons)
+    return ConvertedContours(
+        contours, curves, polygons, Views(len(counts), found.results), Polylines(controls, ends, closed),
+        np.arange(len(counts) + 1), measures,
+    )  # fmt: skip
 
 
-def chords(polygon: FloatArray) -> FloatArray:
-    """(n,) distance from each vertex to the next, the last to the first."""
-    return np.hypot(*(np.roll(polygon, -1, axis=0) - polygon).T)
+def _leading(offsets: IntArray, counts: IntArray) -> IntArray:
+    """Indices of the first ``counts[k]`` entries of each part."""
+    total = int(counts.sum())
+    if total == offsets[-1]:
+        return np.arange(total)
+    return np.arange(total) + np.repeat(offsets[:-1] - offsets_of(counts)[:-1], counts)
 
 
-def _interpolate(track: Track, places: FloatArray, options: Options) -> Fit:
-    polygon = track(places)
-    result = interpolate(
-        polygon,
-        options.variant,
-        margin=options.margin,
-        fallback="knot" if is_graded(polygon, options.max_ratio) else options.fallback,
-        residual_tolerance=options.residual_tolerance,
-        max_iterations=options.max_iterations,
-    )
-    return Fit(np.delete(places, result.merged), np.delete(polygon, result.merged, axis=0), result)
+def _distances(
+    contours: ContourArrays,
+    written: FloatArray,
+    places: FloatArray,
+    ends: IntArray,
+    arcs: Sequence[Interpolation],
+    tolerance: float,
+) -> dict[str, Sequence[Any]]:
+    """Certified distances of the curves, as they are written, from the contours."""
+    cubics = all_cubics(contours)
+    bounds, gaps = [], []
+    each = zip(arcs, pairwise(contours.offsets.tolist()), pairwise(ends.tolist()), strict=True)
+    for arc, (a, b), (i, j) in each:
+        anchors = _anchors(places[i:j], arc, b - a)
+        distance = certified_distance(written[i:j], cubics[a:b], anchors, SHARPNESS * tolerance, tolerance)
+        bounds.append(distance.bound)
+        gaps.append(distance.measured)
+    within = [bound <= tolerance for bound in bounds]
+    return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 
-def _anchors(track: Track, fit: Fit) -> FloatArray:
+def _anchors(places: FloatArray, arc: Interpolation, segments: int) -> FloatArray:
     """(n + 1, 2) places on the curve and on the outline of all vertices, the first one again at the end."""
-    u, n = fit.result.spline.knots, len(fit.places)
-    t = np.maximum.accumulate(fit.result.parameters)
+    u, n = arc.spline.knots, len(places)
+    t = np.maximum.accumulate(arc.parameters)
     laps = np.floor(t / u[-1])
     within = t - laps * u[-1]
     span = np.clip(np.searchsorted(u, within, side="right") - 1, 0, n - 1)
     on_curve = laps * n + span + (within - u[span]) / (u[span + 1] - u[span])
-    anchors = np.stack([np.minimum(on_curve, on_curve[0] + n), fit.places], axis=1)
-    return np.concatenate([anchors, anchors[:1] + np.array([n, track.places])])
-
-
-def certified(track: Track, fit: Fit, options: Options, tolerance: float) -> Fit:
-    """The fit with the certified distance of its curve, rounded as it is written, from the outline."""
-    written = Contour.from_segments(fit.result.spline.to_bezier()).rounded(options.precision)
-    sharpness = SHARPNESS * tolerance
-    distance = certified_distance(written.cubics(), track.cubics, _anchors(track, fit), sharpness, tolerance)
-    return replace(fit, distance=distance)
+    anchors = np.stack([np.minimum(on_curve, on_curve[0] + n), places], axis=1)
+    return np.concatenate([anchors, anchors[:1] + np.array([n, segments])])

@@ -1,20 +1,79 @@
-"""The measures of all contours of a glyph cut into lines and arcs, in one compiled call.
-
-For closed curves, which have no lines, :mod:`.smooth.forms` has the same numbers.
-"""
+"""Measures of contours, column-wise: what the interpolation knows, and the geometry of source and result."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compiled import compiled
 from ..curves.crossings import crossings_and_overshoot
 from ..curves.integrals import integrals
-from ..outlines.contour_arrays import ContourArrays
+from ..errors import GlyphsplineError
+from ..interpolation.batched import Ragged
+from ..interpolation.polygon import LARGEST, clean_polygon
+from ..interpolation.result import Interpolation
+from ..outlines.contour_arrays import ContourArrays, Polylines
 from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
+
+Columns = dict[str, Sequence[Any]]
+"""By measure its value for each contour."""
+
+
+def check_coordinates(contours: ContourArrays) -> None:
+    """Refuse coordinates that are not finite, or too large.
+
+    Raises:
+        GlyphsplineError: its ``contour`` is the index.
+    """
+    if len(contours.points) == 0 or np.abs(contours.points).max() < LARGEST / 4:
+        return
+    for k in range(contours.num_contours):
+        points = contours.points[contours.starts[k] : contours.starts[k + 1]]
+        if not np.abs(points).max() < LARGEST / 4:
+            try:
+                if not np.isfinite(points).all():
+                    raise GlyphsplineError("the outline has a coordinate that is not finite")
+                clean_polygon(points)
+            except GlyphsplineError as error:
+                raise error.locate(contour=k) from None
+
+
+def solved_columns(found: Ragged) -> Columns:
+    """What the interpolation itself knows of closed curves, one a contour: the measures of ``results.SOLVED``."""
+    counts, iterations, fallbacks = found.whole[:, 1:4].T
+    residuals = found.residuals[found.residual_offsets[1:] - 1]
+    return {
+        "vertices": counts.tolist(),
+        "segments": counts.tolist(),
+        "numbers": (2 * counts).tolist(),
+        "iterations": iterations.tolist(),
+        "residual": residuals.tolist(),
+        "converged": (residuals < found.tolerances).tolist(),
+        "rate_bound": found.rates.tolist(),
+        "fallbacks": fallbacks.tolist(),
+    }
+
+
+def certified_rate(arc: Interpolation) -> float:
+    """Factor a step by Theorem 2, or by Theorem 1 for an arc of two spans, whose one free vertex moves alone."""
+    alone = not arc.spline.closed and len(arc.parameters) == 3
+    return arc.rate_bound / 2 if alone else arc.rate_bound
+
+
+def geometric_columns(result: ContourArrays, source: ContourArrays, polygons: Polylines) -> Columns:
+    """Length, area, curvature and crossings of results, compared with their sources."""
+    found = survey(result, source, polygons.points, polygons.offsets)
+    return {
+        "overshoot": found.overshoot.tolist(),
+        "length": found.length.tolist(),
+        "area_change": found.area_change.tolist(),
+        "bending_energy": found.bending_energy.tolist(),
+        "max_curvature": found.max_curvature.tolist(),
+        "new_crossings": np.maximum(found.crossings - found.source_crossings, 0).tolist(),
+    }
 
 
 class Survey(NamedTuple):

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..curves.bezier import evaluate
 from ..types import FloatArray, IntArray, Views
 from .contour_arrays import NONE, ContourArrays, offsets_of
 
@@ -64,6 +65,11 @@ class Contour:
         from ..curves.cubics import raised
 
         return raised(self.points, self.degrees)
+
+    def at(self, places: FloatArray) -> FloatArray:
+        """(k, 2) points at (k,) places: j + x is local parameter x of segment j, and places wrap at ``len(self)``."""
+        segments = np.floor(places).astype(np.int64)
+        return evaluate(self.cubics()[segments % len(self)], places - segments)
 
     def rounded(self, digits: int) -> Contour:
         """The contour as it is written with ``digits`` decimals."""

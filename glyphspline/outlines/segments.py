@@ -18,6 +18,15 @@ def contour_cubics(contours: ContourArrays, c: int) -> FloatArray:
 
 
 @compiled
+def all_cubics(contours: ContourArrays) -> FloatArray:
+    """(m, 4, 2) the segments of all contours as cubics; those of contour c begin at ``offsets[c]``."""
+    cubics = np.empty((len(contours.degrees), 4, 2))
+    for c in range(len(contours.offsets) - 1):
+        cubics[contours.offsets[c] : contours.offsets[c + 1]] = contour_cubics(contours, c)
+    return cubics
+
+
+@compiled
 def lasting(cubics: FloatArray) -> IntArray:
     """Indices of the cubics (m, 4, 2) whose points are not all the same."""
     found, count = np.empty(len(cubics), dtype=np.int64), 0

@@ -8,20 +8,17 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from threading import RLock
-from typing import Any
 
 import numpy as np
 
-from ..curves import integrals as measure
 from ..curves.curvature import Comb, robust_scale
 from ..errors import GlyphsplineError
 from ..fitting.convert import convert
-from ..fitting.fixed_sampling import fit_even, is_graded
+from ..fitting.fixed_sampling import through_polygons
 from ..fitting.options import Options
-from ..fitting.results import ContourResult, GlyphResult, Measures, as_glyph
-from ..interpolation.api import interpolate
+from ..fitting.results import ContourResult, GlyphResult, as_glyph
 from ..interpolation.result import Interpolation
-from ..outlines.outline import Contour, Outline
+from ..outlines.outline import Contours, Outline
 from ..readers import Font, open_font
 from ..types import FloatArray
 from ..writers.svg.curvature_map import combs
@@ -54,8 +51,7 @@ class Work:
             return self.at(location).outline(glyph)
 
     def _convert(self, glyph: str, location: tuple[tuple[str, float], ...], options: Options) -> GlyphResult:
-        outline = self.outline(glyph, location)
-        return convert(outline, options) if options.measure or not is_even(options) else quick(outline, options)
+        return convert(self.outline(glyph, location), options)
 
     def result(self, state: State, variant: int | None = None) -> GlyphResult:
         """The glyph of a state; by another variant if one is given.
@@ -102,23 +98,6 @@ class Work:
         return shlex.join([*words, "--out", f"outputs/gid-{gid}"])
 
 
-def is_even(options: Options) -> bool:
-    """Whether polygons are sampled by step or count, and do not depend on how far the result is from the source."""
-    return options.step is not None or options.count is not None
-
-
-def quick(outline: Outline, options: Options) -> GlyphResult:
-    """What :func:`convert` gives by step or count, less the measures that take longer than the curves themselves."""
-    if options.corners == "sharp":
-        return convert(outline, options)  # says what is wrong with that
-    contours = []
-    for contour in outline.contours:
-        if len(np.unique(contour.points, axis=0)) >= 3:
-            fit = fit_even(contour, options, options.tolerance_for(outline.metrics.units_per_em))
-            contours.append(curve_result(contour, fit.polygon, fit.result))
-    return GlyphResult(outline, options, tuple(contours))
-
-
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:
     """The glyph with polygon vertices elsewhere, its touched contours interpolated anew; smooth contours only."""
     contours = list(result.contours)
@@ -139,41 +118,10 @@ def is_smooth(contour: ContourResult) -> bool:
 
 
 def through(contour: ContourResult, polygon: FloatArray, options: Options) -> ContourResult:
-    """The closed curve through a polygon, as :mod:`glyphspline.fitting.fixed_sampling` would run it."""
-    found = interpolate(polygon, **settings(polygon, options))
-    return curve_result(contour.source, np.delete(polygon, found.merged, axis=0), found)
-
-
-def curve_result(source: Contour, polygon: FloatArray, found: Interpolation) -> ContourResult:
-    """A closed curve, measured as far as it can be without its places on the source."""
-    pieces = found.spline.to_bezier()
-    shape = measure.shape(pieces)
-    measures = Measures(
-        vertices=len(polygon),
-        segments=len(pieces),
-        numbers=2 * len(polygon),
-        iterations=found.iterations,
-        residual=found.max_error,
-        converged=found.converged,
-        rate_bound=found.rate_bound,
-        fallbacks=found.fallbacks,
-        length=shape.length,
-        bending_energy=shape.bending_energy,
-        max_curvature=shape.max_curvature,
-        area_change=shape.area - measure.area(source.cubics()),
-    )
-    return ContourResult(source, polygon, (found,), Contour.from_segments(pieces), measures)
-
-
-def settings(polygon: FloatArray, options: Options) -> dict[str, Any]:
-    """What of a glyph's options concerns the interpolation of one polygon."""
-    return {
-        "variant": options.variant,
-        "margin": options.margin,
-        "fallback": "knot" if is_graded(polygon, options.max_ratio) else options.fallback,
-        "residual_tolerance": options.residual_tolerance,
-        "max_iterations": options.max_iterations,
-    }
+    """The closed curve through a polygon, as a conversion by step or count makes it."""
+    source = Contours([contour.source]).arrays
+    found = through_polygons(source, polygon, np.array([0, len(polygon)]), replace(options, measure=True), 0.0)
+    return found.contour_results()[0]
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
@@ -182,7 +130,7 @@ def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
     most = max((contour.interpolations[0].iterations for contour in closed), default=0)
     for m in shown_steps(most):
         options = replace(result.options, max_iterations=m)
-        yield m, [interpolate(contour.polygon, **settings(contour.polygon, options)) for contour in closed]
+        yield m, [through(contour, contour.polygon, options).interpolations[0] for contour in closed]
 
 
 def shown_steps(most: int) -> list[int]:

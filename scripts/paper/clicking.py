@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from glyphspline.outlines.outline import Contour
-from glyphspline.outlines.sampling import Track
 from glyphspline.readers.opentype.font import open_font
 from glyphspline.types import FloatArray, IntArray
 
@@ -31,6 +30,9 @@ TURN, BESIDE = 35.0, 0.028
 SHAKE = 0.0012
 """How far, in em, a click misses the outline (standard deviation)."""
 
+DENSE = 32
+"""Points a segment from which arc length is summed up."""
+
 LONGEST = 0.24
 """No chord longer than this, in em: on a long straight stroke one still clicks now and then."""
 
@@ -41,17 +43,19 @@ def clicked(contour: Contour, em: float, seed: int) -> FloatArray:
     Vertices are set at the point farthest from the chord, again and again, until none is farther than
     ``SAG`` (Ramer, Douglas and Peucker); then each one is shaken a little.
     """
-    track = Track(contour)
-    steps = max(64, int(track.length / em * 500))
-    outline = track(track.place_at(track.length * np.arange(steps) / steps))
+    places = np.arange(len(contour) * DENSE + 1) / DENSE
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(contour.at(places), axis=0).T))])
+    length = float(along[-1])
+    steps = max(64, int(length / em * 500))
+    outline = contour.at(np.interp(length * np.arange(steps) / steps, along, places))
     start = int(np.argmax(outline @ np.array([-1.0, 1.0])))
     outline = np.roll(outline, -start, axis=0)
     opposite = int(np.argmax(np.hypot(*(outline - outline[0]).T)))
     closed = np.concatenate([outline, outline[:1]])
     kept = [*_simplify(closed, 0, opposite, em), *_simplify(closed, opposite, steps, em)]
-    places = _beside_turns(closed[kept], np.array(kept), steps, BESIDE * steps * em / track.length)
+    clicks = _beside_turns(closed[kept], np.array(kept), steps, BESIDE * steps * em / length)
     rng = np.random.default_rng(seed)
-    return np.rint(closed[places] + rng.normal(0, SHAKE * em, (len(places), 2)))
+    return np.rint(closed[clicks] + rng.normal(0, SHAKE * em, (len(clicks), 2)))
 
 
 def _beside_turns(p: FloatArray, kept: IntArray, steps: int, beside: float) -> IntArray:
@@ -105,8 +109,7 @@ def source_contours(font_file: Path, character: str) -> list[FloatArray]:
     """The original outline as dense closed polylines, for the picture."""
     font = open_font(font_file)
     (name,) = font.select(text=character)
-    tracks = [Track(c) for c in font.outline(name).contours]
-    return [t(np.arange(t.places * 16) / 16) for t in tracks]
+    return [c.at(np.arange(len(c) * 16) / 16) for c in font.outline(name).contours]
 
 
 def main() -> None:

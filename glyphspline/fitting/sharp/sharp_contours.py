@@ -8,8 +8,7 @@ import numpy as np
 
 from ...interpolation.result import Interpolation
 from ...outlines.outline import Contour, Contours
-from ..fixed_contours import certified_rate, check_coordinates
-from ..measures import Survey, survey
+from ..measures import Survey, certified_rate, check_coordinates, survey
 from ..options import Options
 from ..results import ContourResult, Measures
 from .sharp_fit import SharpFit, fit_sharp
@@ -29,7 +28,7 @@ def convert_sharp(contours: Sequence[Contour], options: Options, tolerance: floa
     """
     if not contours:
         return []
-    check_coordinates(contours)
+    check_coordinates(Contours(contours).arrays)
     results: dict[int, ContourResult] = {}
     left = list(range(len(contours)))
     for share in CLOSER:

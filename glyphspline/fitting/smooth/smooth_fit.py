@@ -10,7 +10,7 @@ from ...interpolation.result import Interpolation
 from ...outlines.outline import Contour, Contours
 from ...types import FloatArray, IntArray
 from ..certified_distance import certified_distance
-from ..fixed_contours import check_coordinates
+from ..measures import check_coordinates
 from ..options import Options
 from ..policy import Backwards, turned
 from ..results import ContourResult, Measures
@@ -43,8 +43,9 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     """
     if not contours:
         return []
-    check_coordinates(contours)
-    chains = chains_of(Contours(contours).arrays)
+    given = Contours(contours).arrays
+    check_coordinates(given)
+    chains = chains_of(given)
     source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}

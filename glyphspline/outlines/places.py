@@ -1,20 +1,24 @@
-"""Vertices on contours at even steps between corners, graded: ``sampling.stepped_places``, compiled."""
+"""Places of vertices on contours, by step or by count, compiled.
 
-# mypy: disable-error-code="no-untyped-def"
+A *place* j + x on a contour is local parameter x of its segment j. Distances along a contour come from a table of
+chords: they only decide where vertices lie, and vertices lie on the outline wherever that is.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray
-from .sampling import CORNER_ANGLE, TABLE, TIE
+from ..types import BoolArray, FloatArray, IntArray
 
-TURN = np.cos(np.radians(CORNER_ANGLE))
+TABLE = 32
+"""Steps a segment in the table of arc lengths."""
+
+TIE = 1e-6
+"""A half part, or a ratio just at its bound, is common among straight lines; rounding errors must not decide there."""
 
 ROUNDS = 64
-"""Gradings after which a contour is left to the long way: each halves, and no length is halved more often."""
-
+"""Rounds of grading after which a contour is refused: each halves, and no length is halved more often."""
 
 ONE = np.uint64(1)
 
@@ -30,40 +34,48 @@ WEIGHTS = _weights()
 
 
 @compiled
-def stepped_points(cubics, offsets, step, max_ratio, most):
+def sampled(
+    cubics: FloatArray, offsets: IntArray, step: float, count: int, max_ratio: float, corner_angle: float, most: int
+) -> tuple[FloatArray, FloatArray, IntArray, BoolArray]:
     """Vertices on all contours.
 
     Args:
-        cubics: (M, 4, 2). offsets: (K + 1,) where contours begin. step: in font units. max_ratio: of neighbouring
-            spacings. most: vertices a contour may have.
+        cubics: (M, 4, 2). offsets: (K + 1,) where contours begin.
+        step: in font units, or 0 to sample by ``count``, vertices a contour.
+        max_ratio: of neighbouring spacings. corner_angle: turn in radians from which a joint is a corner.
+        most: vertices a contour may have.
 
     Returns:
-        (N, 2) vertices; (K + 1,) where each polygon begins; (K,) whether a contour is odd, and then has none.
+        (N, 2) vertices; (N,) their places, increasing within a contour; (K + 1,) where each polygon begins; (K,)
+        whether a contour would have more than ``most`` vertices, and then has none.
     """
-    count = len(offsets) - 1
-    points = np.empty((1024, 2))
-    ends = np.zeros(count + 1, dtype=np.int64)
-    odd = np.zeros(count, dtype=np.bool_)
+    contours = len(offsets) - 1
+    found = np.empty((1024, 3))
+    ends = np.zeros(contours + 1, dtype=np.int64)
+    refused = np.zeros(contours, dtype=np.bool_)
     used = 0
-    for k in range(count):
+    for k in range(contours):
         pieces = cubics[offsets[k] : offsets[k + 1]]
         table = _arc_lengths(pieces)
-        at = _places(pieces, table, step, max_ratio, most)
+        corners = _corners(pieces, table, np.cos(corner_angle))
+        if count > 0:
+            at = _even(corners, table[-1], count, max_ratio)
+        else:
+            at = _stepped(corners, table[-1], step, max_ratio, most)
         n = len(at)
-        odd[k] = n < 3
-        if n >= 3:
-            while used + n > len(points):
-                larger = np.empty((2 * len(points), 2))
-                larger[:used] = points[:used]
-                points = larger
-            _evaluate(pieces, table, at, points[used : used + n])
-            used += n
+        refused[k] = n < 3
+        while used + n > len(found):
+            longer = np.empty((2 * len(found), 3))
+            longer[:used] = found[:used]
+            found = longer
+        _evaluate(pieces, table, at, found[used : used + n])
+        used += n
         ends[k + 1] = used
-    return points[:used], ends, odd
+    return found[:used, :2].copy(), found[:used, 2].copy(), ends, refused
 
 
-@compiled
-def _arc_lengths(pieces):
+@compiled(internal=True)
+def _arc_lengths(pieces: FloatArray) -> FloatArray:
     """(TABLE m + 1,) chord lengths summed along a contour."""
     m = len(pieces)
     table = np.empty(m * TABLE + 1)
@@ -84,8 +96,8 @@ def _arc_lengths(pieces):
     return table
 
 
-@compiled
-def _tangent(piece, backwards):
+@compiled(internal=True)
+def _tangent(piece: FloatArray, backwards: bool) -> tuple[float, float]:
     """Direction, of length 1, in which a cubic leaves its first point, or its last if backwards."""
     for k in range(1, 4):
         i, o = (3 - k, 3) if backwards else (k, 0)
@@ -96,20 +108,49 @@ def _tangent(piece, backwards):
     return 0.0, 0.0
 
 
-@compiled
-def _places(pieces, table, step, max_ratio, most):
-    """Distances along a contour, ascending, where vertices are; empty if there would be too many."""
-    m, length = len(pieces), table[-1]
-    corners = np.empty(m)
-    c = 0
+@compiled(internal=True)
+def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
+    """Distances along a contour of the joints that turn by an angle whose cosine is ``turn`` or less."""
+    m = len(pieces)
+    corners, c = np.empty(m), 0
     for j in range(m):
         ax, ay = _tangent(pieces[j - 1], True)
         bx, by = _tangent(pieces[j], False)
-        if -(ax * bx + ay * by) <= TURN:
+        if -(ax * bx + ay * by) <= turn:
             corners[c] = table[j * TABLE]
             c += 1
+    return corners[:c]
+
+
+@compiled(internal=True)
+def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> FloatArray:
+    """Distances at even spacing, the nearest moved onto each corner where spacings stay within ``max_ratio``."""
+    at = length * np.arange(count) / count
+    for corner in corners:
+        nearest = np.argmin(np.abs(at - corner))
+        before = at[nearest]
+        at[nearest] = corner
+        for k in range(nearest - 1, nearest + 2):
+            h, g = _spacing(at, k - 1, length), _spacing(at, k, length)
+            if not max(h, g) <= max_ratio * min(h, g):
+                at[nearest] = before
+                break
+    return at
+
+
+@compiled(internal=True)
+def _spacing(at: FloatArray, k: int, length: float) -> float:
+    """Distance from vertex k to the next, round the contour."""
+    k %= len(at)
+    return at[k + 1] - at[k] if k + 1 < len(at) else at[0] + length - at[k]
+
+
+@compiled(internal=True)
+def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, most: int) -> FloatArray:
+    """Distances along a contour, ascending, where vertices are; empty if there would be too many."""
+    c = len(corners)
     if c == 0:
-        corners[0], c = 0.0, 1
+        corners, c = np.zeros(1), 1
     parts = np.empty(c, dtype=np.int64)
     total = 0
     for j in range(c):
@@ -133,8 +174,8 @@ def _places(pieces, table, step, max_ratio, most):
     return _from_start(_graded(at, length, max_ratio, most), length)
 
 
-@compiled
-def _graded(at, length, max_ratio, most):
+@compiled(internal=True)
+def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> FloatArray:
     """Halve spacings that are more than max_ratio times a neighbour, until none is."""
     for _ in range(ROUNDS):
         n = len(at)
@@ -160,8 +201,8 @@ def _graded(at, length, max_ratio, most):
     return np.empty(0)
 
 
-@compiled
-def _from_start(at, length):
+@compiled(internal=True)
+def _from_start(at: FloatArray, length: float) -> FloatArray:
     """The same distances beginning with the first after the contour's own beginning."""
     n = len(at)
     wrapped = 0
@@ -174,9 +215,9 @@ def _from_start(at, length):
     return turned
 
 
-@compiled
-def _evaluate(pieces, table, at, points):
-    """Points at ascending distances along the contour, by the table."""
+@compiled(internal=True)
+def _evaluate(pieces: FloatArray, table: FloatArray, at: FloatArray, found: FloatArray) -> None:
+    """Points, and their places, at ascending distances along the contour, by the table; into ``found`` (n, 3)."""
     cell, last = 0, len(table) - 2
     for i in range(len(at)):
         while cell < last and table[cell + 1] <= at[i]:
@@ -184,9 +225,10 @@ def _evaluate(pieces, table, at, points):
         width = table[cell + 1] - table[cell]
         place = (cell + ((at[i] - table[cell]) / width if width > 0.0 else 0.0)) / TABLE
         j = min(int(place), len(pieces) - 1)
+        found[i, 2] = place
         t = place - j
         s = 1.0 - t
         for axis in range(2):
             a, b, c, d = pieces[j, 0, axis], pieces[j, 1, axis], pieces[j, 2, axis], pieces[j, 3, axis]
             ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
-            points[i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)
+            found[i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)
