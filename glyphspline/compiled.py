@@ -47,8 +47,8 @@ def inlined(function: Function) -> Function:
     LLVM inlines a call too, but too late for some loops to become SIMD. The body is typed again for every call, so this
     is for a few lines only.
     """
-    inline: Function = njit(inline="always", error_model="numpy")(function)
-    return inline
+    decorated: Any = njit(inline="always", error_model="numpy")(function)
+    return decorated  # type: ignore[no-any-return, unused-ignore]
 
 
 def _fma(context: Any, a: Any, b: Any, c: Any) -> Any:

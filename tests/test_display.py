@@ -133,7 +133,7 @@ def test_the_example_notebook_runs_and_keeps_no_outputs() -> None:
     import nbformat
 
     path = ROOT / "scripts" / "notebooks" / "example.ipynb"
-    notebook: Any = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]
+    notebook: Any = nbformat.read(path, as_version=4)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not any(cell.outputs or cell.execution_count for cell in code)
     os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")

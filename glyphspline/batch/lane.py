@@ -204,7 +204,7 @@ def _how(options: Options, fallback: str) -> dict[str, Any]:
     return {
         "margin": options.margin,
         "fallback": fallback,
-        "residual_tolerance": options.residual_tolerance,
+        "residual_tolerance": options.solver_tolerance,
         "max_iterations": options.max_iterations,
         "threads": 1,
     }

@@ -116,7 +116,7 @@ def _convert_contours(
         from .sharp.sharp_contours import convert_sharp
 
         return ContourResults(convert_sharp(Contours(contours), options, tolerance, em)).arrays
-    if options.step is None and options.count is None:
+    if not options.is_fixed:
         from .smooth.smooth_fit import convert_smooth
 
         return ContourResults(convert_smooth(Contours(contours), options, tolerance)).arrays

@@ -36,7 +36,7 @@ def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Rag
     if options.variant not in STEPWISE and (even.all() or options.fallback == "knot"):
         found = interpolate_ragged(
             points, offsets, options.variant, margin=options.margin, fallback="knot",
-            residual_tolerance=options.residual_tolerance, max_iterations=options.max_iterations, threads=1,
+            residual_tolerance=options.solver_tolerance, max_iterations=options.max_iterations, threads=1,
         )  # fmt: skip
         for k in np.flatnonzero(found.whole[:, 0]).tolist():
             raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
@@ -47,7 +47,7 @@ def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Rag
             results.append(
                 interpolate(
                     points[a:b], options.variant, margin=options.margin,
-                    fallback="knot" if even[k] else options.fallback, residual_tolerance=options.residual_tolerance,
+                    fallback="knot" if even[k] else options.fallback, residual_tolerance=options.solver_tolerance,
                     max_iterations=options.max_iterations,
                 )
             )  # fmt: skip
@@ -63,7 +63,7 @@ def _gathered(results: list[Interpolation], offsets: IntArray, options: Options)
         offsets, np.empty(total + count), np.empty((total, 2)), np.empty(total), np.empty((total, 2)),
         np.empty(total, dtype=np.int64), np.zeros((count, 5), dtype=np.int64),
         np.array([r.rate_bound for r in results]), np.concatenate([r.residuals for r in results]),
-        np.cumsum([0] + [len(r.residuals) for r in results]), np.full(count, options.residual_tolerance), True,
+        np.cumsum([0] + [len(r.residuals) for r in results]), np.full(count, options.solver_tolerance), True,
     )  # fmt: skip
     for k, r in enumerate(results):
         a, n = int(offsets[k]), len(r.parameters)

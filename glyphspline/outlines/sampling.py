@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, OptionError
 from ..types import FloatArray
 from .outline import Contour
 
@@ -39,7 +39,8 @@ def sample(
         (n, 2) vertices, in the contour's direction.
 
     Raises:
-        GlyphsplineError: neither or both of ``count`` and ``step``, values out of range, or too many vertices.
+        OptionError: neither or both of ``count`` and ``step``, or a value out of range.
+        GlyphsplineError: too many vertices.
     """
     # Here and not above, as it brings the compiler with it: the package opens without.
     from .places import sampled
@@ -59,15 +60,15 @@ def check_sampling(count: int | None, step: float | None, max_ratio: float, corn
     """Refuse a sampling that cannot be made.
 
     Raises:
-        GlyphsplineError: neither or both of ``count`` and ``step``, or a value out of range.
+        OptionError: neither or both of ``count`` and ``step``, or a value out of range.
     """
     if (count is None) == (step is None):
-        raise GlyphsplineError("sample by count or by step")
+        raise OptionError("sample by count or by step")
     if count is not None and not 3 <= count <= MOST_VERTICES:
-        raise GlyphsplineError(f"count is 3 to {MOST_VERTICES}, not {count}")
+        raise OptionError(f"count is 3 to {MOST_VERTICES}, not {count}")
     if step is not None and not 0 < step < np.inf:
-        raise GlyphsplineError(f"step is a positive length, not {step}")
+        raise OptionError(f"step is a positive length, not {step}")
     if not 2 <= max_ratio < np.inf:
-        raise GlyphsplineError(f"max_ratio is 2 or more, not {max_ratio}")
+        raise OptionError(f"max_ratio is 2 or more, not {max_ratio}")
     if not 0 < corner_angle <= 180:
-        raise GlyphsplineError(f"corner_angle is an angle up to 180 degrees, not {corner_angle}")
+        raise OptionError(f"corner_angle is an angle up to 180 degrees, not {corner_angle}")

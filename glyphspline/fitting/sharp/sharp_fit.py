@@ -106,13 +106,13 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
     become the source's own segments, of which each is an arc of one span.
     """
     check_options(
-        options.variant, 3, options.margin, options.fallback, options.residual_tolerance, options.max_iterations,
+        options.variant, 3, options.margin, options.fallback, options.solver_tolerance, options.max_iterations,
         False, None, "iterate",
     )  # fmt: skip
     settings = Settings(
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
         angle=np.radians(options.corner_angle), line=LONG_LINE * em, margin=float(options.margin),
-        residual=options.residual_tolerance, rounds=ROUNDS[options.effort], most=MOST_SPANS[options.effort],
+        residual=options.solver_tolerance, rounds=ROUNDS[options.effort], most=MOST_SPANS[options.effort],
         stride=STRIDE[options.effort],
     )  # fmt: skip
     chains, pieces = cut_contours(contours, settings)
@@ -161,7 +161,7 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
             found = interpolate_many(
                 [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
                 end_tangents=[(t[0], t[1]) for t in tangents[chosen]], threads=1, margin=options.margin,
-                fallback=fallback, residual_tolerance=options.residual_tolerance,
+                fallback=fallback, residual_tolerance=options.solver_tolerance,
                 max_iterations=options.max_iterations, closed=False,
             )  # fmt: skip
         except PolygonError as error:
