@@ -185,6 +185,15 @@ def test_overlaps_are_united() -> None:
     assert result.contours[0].measures.segments == 8
 
 
+def test_contours_without_a_point_on_the_curve_are_united() -> None:
+    """Skia gives a circle of quadratics back as off-curve points alone."""
+    font = gs.open_font(FONT.parent / "variable.ttf")
+    for name in font.glyph_names:
+        united, _ = remove_overlaps(font.outline(name))
+        for contour in united.contours:
+            assert np.isfinite(contour.points).all()
+
+
 def test_an_outline_without_overlaps_is_not_touched() -> None:
     pytest.importorskip("pathops")
     outline = glyph("永")

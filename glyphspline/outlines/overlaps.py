@@ -52,6 +52,8 @@ def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
 
 def contours_of(path: Any) -> list[Contour]:
     """The contours of a ``pathops.Path``."""
+    from fontTools.pens.basePen import decomposeQuadraticSegment
+
     found: list[Contour] = []
     segments: list[FloatArray] = []
     start = here = (0.0, 0.0)
@@ -64,21 +66,17 @@ def contours_of(path: Any) -> list[Contour]:
         segments.clear()
 
     for verb, points in path.segments:
-        if verb == "moveTo":
+        if verb in ("moveTo", "closePath", "endPath"):
             close()
-            start = here = points[0]
-        elif verb in ("lineTo", "curveTo"):
-            segments.append(np.array([here, *points]))
-            here = points[-1]
-        elif verb == "qCurveTo":
-            # Implied points lie midway between neighbouring off-curve points.
-            for k, control in enumerate(points[:-1]):
-                a, b = np.array(control), np.array(points[k + 1])
-                to = points[-1] if k == len(points) - 2 else tuple((a + b) / 2)
-                segments.append(np.array([here, control, to]))
-                here = to
-        else:
-            close()
+            start = here = points[0] if points else start
+            continue
+        if verb == "qCurveTo" and points[-1] is None:  # a contour without a point on the curve begins midway
+            (ax, ay), (bx, by) = points[-2], points[0]
+            start = here = ((ax + bx) / 2, (ay + by) / 2)
+            points = (*points[:-1], start)
+        for to in decomposeQuadraticSegment(points) if verb == "qCurveTo" else [points]:
+            segments.append(np.array([here, *to]))
+            here = to[-1]
     close()
     return found
 
