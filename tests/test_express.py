@@ -23,9 +23,7 @@ from glyphspline.fitting.options import Options
 from glyphspline.outlines.places import sampled
 from glyphspline.outlines.sampling import sample
 from glyphspline.readers import open_font
-from glyphspline.readers.opentype.bulk import BulkReader
-from glyphspline.readers.opentype.bulk_contours import cubics_of
-from glyphspline.readers.opentype.bulk_outlines import read_chunk
+from glyphspline.readers.opentype.bulk_contours import BulkReader, cubics_of, read_chunk
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.curvature_map import to_curvature_svg
 from glyphspline.writers.svg.document import to_svg

@@ -12,12 +12,12 @@ from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import GlyphComponent
+from glyphspline.readers.opentype.routes import FontTools, HarfBuzz
 
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
 from glyphspline.readers.opentype.containers import unpacked
-from glyphspline.readers.opentype.routes import FontTools, HarfBuzz
 from glyphspline.types import FloatArray
 
 FONTS = Path(__file__).parent.parent / "fonts_test"

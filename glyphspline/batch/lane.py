@@ -16,8 +16,7 @@ from ..fitting.smooth.insertion import graded_polygons
 from ..interpolation.batched import Ragged, interpolate_ragged
 from ..outlines.outline import Outline
 from ..outlines.places import sampled
-from ..readers.opentype.bulk import BulkReader
-from ..readers.opentype.bulk_contours import cubics_of
+from ..readers.opentype.bulk_contours import BulkReader, cubics_of
 from ..types import BoolArray, FloatArray, IntArray
 from ..writers.svg.bounds import ink_box
 from ..writers.svg.curvature_map import comb_precision, map_document

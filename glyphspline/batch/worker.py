@@ -18,8 +18,7 @@ from ..fitting.convert import convert
 from ..fitting.results import GlyphResult
 from ..outlines.outline import Outline
 from ..readers import Source, open_source
-from ..readers.opentype.bulk import BulkReader
-from ..readers.opentype.bulk_outlines import read_chunk
+from ..readers.opentype.bulk_contours import BulkReader, read_chunk
 from ..report.data import files_text, glyph_text, page_file, page_text
 from ..report.drawings import Drawing, drawing, drawing_of
 from ..writers.svg.curvature_map import combs, combs_of, to_curvature_svg

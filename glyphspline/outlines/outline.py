@@ -97,16 +97,17 @@ class Contours(Views[Contour]):
     def __init__(self, contours: Iterable[Contour] | ContourArrays = ()) -> None:
         if isinstance(contours, ContourArrays):
             self.arrays = contours
-            super().__init__(contours.num_contours, self._views)
+            super().__init__(contours.num_contours, lambda: _views(contours))
         else:
             given = tuple(contours)
             self.arrays = _end_to_end(given)
             super().__init__(len(given), lambda: given)
 
-    def _views(self) -> list[Contour]:
-        points, degrees, offsets, starts = self.arrays
-        ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
-        return [Contour(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
+
+def _views(contours: ContourArrays) -> list[Contour]:
+    points, degrees, offsets, starts = contours
+    ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
+    return [Contour(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
 
 
 def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:

@@ -1,52 +1,121 @@
-"""What the rooms after this one rely on, whatever kind of file the outlines come from."""
-
-# The properties are described in the class's docstring.
-# ruff: noqa: D102
+"""Sources of glyphs: what fonts, UFOs and SVG drawings have in common."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from abc import ABC, abstractmethod
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, NamedTuple, TypeAlias, overload
 
+from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
-from .selection import Request, Selection
+from .selection import Request, Selection, select
+
+OutlineOrError: TypeAlias = Outline | GlyphsplineError
 
 
-class Source(Protocol):
-    """A file of glyphs, opened: a font, a UFO, a folder of SVG drawings.
+class Head(NamedTuple):
+    """A glyph without its contours: name, glyph index and code points in ascending order."""
 
-    A source is opened in each worker anew rather than sent to it, by what is kept here: ``path``,
-    ``face_index`` and ``location``.
+    name: str
+    gid: int
+    unicodes: tuple[int, ...]
+
+
+class Source(ABC):
+    """An opened file of glyphs: a font, a UFO, or a folder of SVG drawings.
+
+    Pickling keeps ``path``, ``face_index`` and ``location`` and opens the source again.
 
     Attributes:
-        path: the file as it was named by the caller. sha256: of the bytes read, in hexadecimal.
+        path: the file as the caller named it.
         face_index: which font of a collection; 0 otherwise.
-        location: where in the design space, axis tag to user-space value; empty at the default.
+        location: place in the design space, axis tag to user-space value; empty at the default.
         family, style: names for people, never empty.
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
         cmap: code point to glyph name.
     """
 
+    path: Path
+    face_index: int
+    location: Mapping[str, float]
+    family: str
+    style: str
+    metrics: FontMetrics
+    glyph_names: tuple[str, ...]
+    cmap: Mapping[int, str]
+
     @property
-    def path(self) -> Path: ...
-    @property
-    def sha256(self) -> str: ...
-    @property
-    def face_index(self) -> int: ...
-    @property
-    def location(self) -> Mapping[str, float]: ...
-    @property
-    def family(self) -> str: ...
-    @property
-    def style(self) -> str: ...
-    @property
-    def metrics(self) -> FontMetrics: ...
-    @property
-    def glyph_names(self) -> tuple[str, ...]: ...
-    @property
-    def cmap(self) -> Mapping[int, str]: ...
+    @abstractmethod
+    def sha256(self) -> str:
+        """Hash of the bytes read, in hexadecimal."""
+
+    @abstractmethod
+    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        """Read glyphs; an error takes the place of the glyph that it concerns."""
+
+    def outline(self, name: str) -> Outline:
+        """Read the outline of a glyph, components decomposed, at the font's location.
+
+        Raises:
+            FontError: the source has no glyph of that name.
+            GlyphsplineError: the glyph is broken; the error names file and glyph.
+        """
+        return self.outlines([name])[0]
+
+    @overload
+    def outlines(self, glyphs: Iterable[str | int], *, errors: Literal["raise"] = "raise") -> list[Outline]: ...
+    @overload
+    def outlines(self, glyphs: Iterable[str | int], *, errors: Literal["return"]) -> list[OutlineOrError]: ...
+    def outlines(
+        self, glyphs: Iterable[str | int], *, errors: Literal["raise", "return"] = "raise"
+    ) -> list[Outline] | list[OutlineOrError]:
+        """Read the outlines of many glyphs; the result of a glyph does not depend on the others.
+
+        Args:
+            glyphs: names or glyph indices.
+            errors: "return" puts the error of a glyph that cannot be read in its place in the list.
+
+        Raises:
+            FontError: the source has no such glyph.
+            GlyphsplineError: a glyph is broken; the error names file and glyph.
+        """
+        heads = [self._head(glyph) for glyph in glyphs]
+        read = iter(self._read([head for head in heads if isinstance(head, Head)]))
+        found = [next(read) if isinstance(head, Head) else head for head in heads]
+        if errors == "return":
+            return found
+        outlines = []
+        for outline in found:
+            if isinstance(outline, GlyphsplineError):
+                raise outline
+            outlines.append(outline)
+        return outlines
+
+    def _head(self, glyph: str | int) -> Head | FontError:
+        if isinstance(glyph, str):
+            gid = self._gids.get(glyph, -1)
+        else:
+            gid = glyph if 0 <= glyph < len(self.glyph_names) else -1
+        if gid < 0:
+            return FontError("the font has no such glyph", font=str(self.path), glyph=str(glyph))
+        name = self.glyph_names[gid]
+        return Head(name, gid, self._unicodes.get(name, ()))
+
+    @cached_property
+    def _gids(self) -> dict[str, int]:
+        return {name: gid for gid, name in enumerate(self.glyph_names)}
+
+    @cached_property
+    def _unicodes(self) -> dict[str, tuple[int, ...]]:
+        codes = defaultdict(list)
+        for code in sorted(self.cmap):
+            codes[self.cmap[code]].append(code)
+        return {name: tuple(of_name) for name, of_name in codes.items()}
 
     def select(
         self,
@@ -57,14 +126,59 @@ class Source(Protocol):
         gids: Request | None = None,
         all_glyphs: bool = False,
     ) -> Selection:
-        """Names of the glyphs asked for, each once, in glyph index order; see :func:`.selection.select`."""
-        ...
+        """Select glyph names, unique, in glyph index order; see :func:`.selection.select`.
 
-    def outline(self, name: str) -> Outline:
-        """The glyph's outline.
+        Returns:
+            A tuple of names. Its ``missing`` lists what the source does not have.
 
         Raises:
-            FontError: there is no glyph of that name.
-            GlyphsplineError: the glyph is broken; the error names file and glyph.
+            FontError: no argument is given, or a string is not a list of numbers.
         """
-        ...
+        try:
+            return select(
+                self.glyph_names,
+                self.cmap,
+                text=text,
+                unicodes=unicodes,
+                glyphs=glyphs,
+                gids=gids,
+                all_glyphs=all_glyphs,
+            )
+        except GlyphsplineError as error:
+            raise FontError(error.message, font=str(self.path)) from error
+
+
+@contextmanager
+def opening(path: Path, kind: str = "font") -> Iterator[None]:
+    """Turn every exception within into a FontError that names the file."""
+    try:
+        yield
+    except FontError as error:
+        error.locate(font=str(path))
+        raise
+    except GlyphsplineError as error:
+        raise FontError(error.message, font=error.font or str(path), glyph=error.glyph) from error
+    except OSError as error:
+        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+    except Exception as error:  # broken data raises any of a dozen types, AssertionError among them
+        raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
+
+
+@contextmanager
+def drawing(path: Path, name: str) -> Iterator[None]:
+    """Turn every exception within into a GlyphsplineError that names file and glyph."""
+    try:
+        yield
+    except GlyphsplineError as error:
+        error.locate(font=str(path), glyph=name)
+        raise
+    except Exception as error:  # as in opening
+        message = f"cannot be drawn: {reason(error)}"
+        raise GlyphsplineError(message, font=str(path), glyph=name) from error
+
+
+def reason(error: Exception) -> str:
+    """The message of a library's exception, or its type if it has none."""
+    if isinstance(error, RecursionError):
+        return "components or subroutines nested without end"
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

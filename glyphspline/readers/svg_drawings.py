@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -22,8 +23,8 @@ from fontTools import agl
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
-from .base import NamedGlyphs, reason
 from .pens import ContourPen
+from .source import Head, OutlineOrError, Source, opening, reason
 
 LARGEST_FILE = 1 << 26
 """Bytes of one drawing."""
@@ -32,8 +33,8 @@ COINCIDENT = 1e-7
 """Points nearer than this, in units of the em, are one: drawings may be made in metres as well as in pixels."""
 
 
-class SvgDrawings(NamedGlyphs):
-    """One SVG file or a folder of them; made by :func:`open_svg`. A :class:`.source.Source`.
+class SvgDrawings(Source):
+    """One SVG file or a folder of them; made by :func:`open_svg`.
 
     Attributes:
         path: file or folder, as given. face_index, location: 0 and empty.
@@ -80,15 +81,8 @@ class SvgDrawings(NamedGlyphs):
             digest.update(file.read_bytes())
         return digest.hexdigest()
 
-    def outline(self, name: str) -> Outline:
-        """The drawing's outline.
-
-        Raises:
-            FontError: there is none of that name.
-        """
-        gid = self._gid(name)
-        found = self._outlines[name]
-        return Outline(name, gid, found.unicodes, found.advance, found.contours, found.metrics, found.notes)
+    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        return [replace(self._outlines[head.name], gid=head.gid) for head in heads]
 
 
 def open_svg(path: str | Path) -> SvgDrawings:
@@ -98,13 +92,8 @@ def open_svg(path: str | Path) -> SvgDrawings:
         FontError: it cannot be read, or a drawing is broken or declares XML entities.
     """
     path = Path(path)
-    try:
-        files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
-        return SvgDrawings(path, files)
-    except GlyphsplineError as error:
-        raise FontError(error.message, font=error.font or str(path), glyph=error.glyph) from error
-    except OSError as error:
-        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+    with opening(path, "drawing"):
+        return SvgDrawings(path, sorted(path.glob("*.svg")) if path.is_dir() else [path])
 
 
 def read_drawing(file: Path) -> Outline:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
@@ -17,14 +17,14 @@ from fontTools.ufoLib import UFOReader
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
-from .base import NamedGlyphs, reason
 from .pens import ContourPen
+from .source import Head, OutlineOrError, Source, drawing, opening
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
 
 
-class Ufo(NamedGlyphs):
-    """A UFO folder; made by :func:`open_ufo`. A :class:`.source.Source`.
+class Ufo(Source):
+    """A UFO folder; made by :func:`open_ufo`.
 
     Attributes:
         path: the folder, as given. face_index, location: 0 and empty, as a UFO is one master.
@@ -74,30 +74,25 @@ class Ufo(NamedGlyphs):
             digest.update(f"{file.relative_to(self.path).as_posix()}\0{len(content)}\0".encode() + content)
         return digest.hexdigest()
 
-    def outline(self, name: str) -> Outline:
-        """The glyph's contours from the default layer, components decomposed.
+    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        found: list[OutlineOrError] = []
+        for head in heads:
+            try:
+                found.append(self._outline(head))
+            except GlyphsplineError as error:
+                found.append(error)
+        return found
 
-        Raises:
-            FontError: there is no glyph of that name.
-            GlyphsplineError: the glyph's file is broken, or its components are nested in a loop.
-        """
-        gid = self._gid(name)
-        pen = ContourPen(_Drawable(self), name)
-        with self._drawing(name):
-            glyph = self._read(name)
+    def _outline(self, head: Head) -> Outline:
+        """The contours of the default layer, components decomposed."""
+        pen = ContourPen(_Drawable(self), head.name)
+        with drawing(self.path, head.name):
+            glyph = self._glyph(head.name)
             glyph.draw(pen)
             pen.finish()
-        return Outline(
-            name=name,
-            gid=gid,
-            unicodes=self._unicodes.get(name, ()),
-            advance=float(glyph.width),
-            contours=tuple(pen.contours),
-            metrics=self.metrics,
-            notes=pen.notes,
-        )
+        return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes)
 
-    def _read(self, name: str) -> _Glyph:
+    def _glyph(self, name: str) -> _Glyph:
         glyph = _Glyph()
         self._glyphs.readGlyph(name, glyph, glyph.record, validate=True)
         return glyph
@@ -148,7 +143,7 @@ class _Drawable:
         return name in self._ufo._glyphs.contents
 
     def __getitem__(self, name: str) -> _Glyph:
-        return self._ufo._read(name)
+        return self._ufo._glyph(name)
 
 
 def open_ufo(path: str | Path) -> Ufo:
@@ -158,17 +153,11 @@ def open_ufo(path: str | Path) -> Ufo:
         FontError: it cannot be read or is no UFO.
     """
     path = Path(path)
-    try:
+    with opening(path, "UFO"):
         for file in _files(path):
             if file.suffix == ".plist":
                 parsed(file.read_bytes())
         return Ufo(path)
-    except GlyphsplineError as error:
-        raise FontError(error.message, font=str(path), glyph=error.glyph) from error
-    except OSError as error:
-        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
-    except Exception as error:
-        raise FontError(f"a broken UFO: {reason(error)}", font=str(path)) from error
 
 
 def parsed(document: bytes) -> Any:

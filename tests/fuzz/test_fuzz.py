@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from glyphspline import Font, Options, convert, open_font, to_svg
 from glyphspline.batch.lane import Drawn, draw_chunk
 from glyphspline.errors import GlyphsplineError
-from glyphspline.readers.opentype.bulk import BulkReader
+from glyphspline.readers.opentype.bulk_contours import BulkReader
 
 from .batch import round_of
 from .mutants import mutant

@@ -1,63 +1,84 @@
-"""Outlines of many glyphs as one flat array of drawing operations, from HarfBuzz through compiled callbacks."""
+"""Outlines of many glyphs in one compiled pass, from HarfBuzz's callbacks to contours end to end.
 
-# numba's decorators and HarfBuzz's capsules have no types.
-# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
+2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
+the rules of :class:`~glyphspline.readers.pens.ContourPen`. Wherever these rules leave anything out, and wherever the
+drawing may not be whole, the careful reader reads the glyph again: it has the words for what is wrong.
+"""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
-from functools import cache
+from collections.abc import Mapping, Sequence
+from functools import cache, cached_property
+from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from threading import Lock
+from typing import Any, TypeAlias
 
 import numpy as np
 import uharfbuzz as hb
+from fontTools.ttLib import TTFont
 from numba import cfunc, types
 
+from ...compiled import compiled
+from ...errors import GlyphsplineError
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.outline import Contours, FontMetrics, Outline
 from ...types import BoolArray, FloatArray, IntArray
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS
+from ..source import Head, OutlineOrError, drawing, opening
+from .careful import CarefulReader
+from .containers import unpacked
+from .harfbuzz import HarfBuzz
 
-MOVE, LINE, QUADRATIC, CUBIC, CLOSE = range(5)
+USED, CAPACITY, FIRST = 0, 1, 2
+"""Places in the buffer: of the count of numbers in use, of the size, and of the first operation."""
 
-USED, CAPACITY, HEAD = 0, 1, 2
-"""The first numbers of a buffer: how many are in use, how many there is room for, and where operations begin."""
-
-ROOM = 2_000_000
-"""Numbers in a buffer: 16 MB. A glyph that does not fit is left to the long way, which has limits of its own."""
+BUFFER_SIZE = 1 << 18
+"""Numbers in the buffer: 2 MB. The careful reader reads a glyph of more, some 37,000 cubics."""
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
 
-_HEADER = (types.intp, types.CPointer(types.double), types.intp)
-_PAIR = (types.float32, types.float32)
+LARGEST = 1e12
+"""Coordinates beyond this go to the careful reader, which refuses infinities and NaN."""
+
+WIDE = 3 * COINCIDENT
+"""Distance of a point from the line from the first point to the farthest, above which a contour is certainly not flat.
+
+The careful reader decides at ``COINCIDENT``, but may take another of several farthest points.
+"""
+
+HeadLike: TypeAlias = Head | tuple[str, int, tuple[int, ...]]
+
+UNUSUAL, UNCOUNTED = -1, -2
+"""In place of a glyph's number of contours: the careful reader has to read it; the number is not known beforehand."""
 
 
-# One function an operation: (functions, buffer, state, coordinates ..., user data). Nothing is written beyond the
-# capacity, however much a font draws; a buffer that is full stays full.
-@cfunc(types.void(*_HEADER, *_PAIR, types.intp), cache=True)
-def _move(functions, buffer, state, x, y, user):
+def _callback(points: int) -> Any:
+    """The signature of a drawing operation: functions, buffer, state, coordinates, user data."""
+    coordinates = (types.float32,) * (2 * points)
+    return types.void(types.intp, types.CPointer(types.double), types.intp, *coordinates, types.intp)
+
+
+# The callbacks write nothing beyond the capacity. A buffer that is full stays full.
+@cfunc(_callback(1), cache=True)
+def _point(functions: int, buffer: Any, state: int, x: float, y: float, user: int) -> None:
+    """A move (user data 1) or a line (2)."""
     used = int(buffer[0])
-    if used + 7 < buffer[1]:
-        buffer[used], buffer[used + 1], buffer[used + 2] = 0.0, x, y
+    if used + LONGEST < buffer[1]:
+        buffer[used], buffer[used + 1], buffer[used + 2] = user - 1, x, y
         buffer[0] = used + 3
     else:
         buffer[0] = buffer[1]
 
 
-@cfunc(types.void(*_HEADER, *_PAIR, types.intp), cache=True)
-def _line(functions, buffer, state, x, y, user):
+@cfunc(_callback(2), cache=True)
+def _quadratic(functions: int, buffer: Any, state: int, ax: float, ay: float, x: float, y: float, user: int) -> None:
     used = int(buffer[0])
-    if used + 7 < buffer[1]:
-        buffer[used], buffer[used + 1], buffer[used + 2] = 1.0, x, y
-        buffer[0] = used + 3
-    else:
-        buffer[0] = buffer[1]
-
-
-@cfunc(types.void(*_HEADER, *_PAIR, *_PAIR, types.intp), cache=True)
-def _quadratic(functions, buffer, state, ax, ay, x, y, user):
-    used = int(buffer[0])
-    if used + 7 < buffer[1]:
+    if used + LONGEST < buffer[1]:
         buffer[used], buffer[used + 1], buffer[used + 2] = 2.0, ax, ay
         buffer[used + 3], buffer[used + 4] = x, y
         buffer[0] = used + 5
@@ -65,23 +86,15 @@ def _quadratic(functions, buffer, state, ax, ay, x, y, user):
         buffer[0] = buffer[1]
 
 
-@cfunc(types.void(*_HEADER, *_PAIR, *_PAIR, *_PAIR, types.intp), cache=True)
-def _cubic(functions, buffer, state, ax, ay, bx, by, x, y, user):
+@cfunc(_callback(3), cache=True)
+def _cubic(
+    functions: int, buffer: Any, state: int, ax: float, ay: float, bx: float, by: float, x: float, y: float, user: int
+) -> None:
     used = int(buffer[0])
-    if used + 7 < buffer[1]:
+    if used + LONGEST < buffer[1]:
         buffer[used], buffer[used + 1], buffer[used + 2] = 3.0, ax, ay
         buffer[used + 3], buffer[used + 4], buffer[used + 5], buffer[used + 6] = bx, by, x, y
         buffer[0] = used + 7
-    else:
-        buffer[0] = buffer[1]
-
-
-@cfunc(types.void(*_HEADER, types.intp), cache=True)
-def _close(functions, buffer, state, user):
-    used = int(buffer[0])
-    if used + 7 < buffer[1]:
-        buffer[used] = 4.0
-        buffer[0] = used + 1
     else:
         buffer[0] = buffer[1]
 
@@ -94,35 +107,273 @@ def _capsule(address: int | None) -> Any:
 
 @cache
 def _functions() -> Any:
+    """The callbacks as HarfBuzz takes them. None closes a path: every path is closed."""
     functions = hb.DrawFuncs()
-    functions.set_move_to_func(_capsule(_move.address))
-    functions.set_line_to_func(_capsule(_line.address))
+    functions.set_move_to_func(_capsule(_point.address), _capsule(1))
+    functions.set_line_to_func(_capsule(_point.address), _capsule(2))
     functions.set_quadratic_to_func(_capsule(_quadratic.address))
     functions.set_cubic_to_func(_capsule(_cubic.address))
-    functions.set_close_path_func(_capsule(_close.address))
     return functions
 
 
+@compiled
+def _contours(
+    buffer: FloatArray, places: IntArray, expected: IntArray
+) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, BoolArray]:
+    """Contours of glyphs from their drawing operations.
+
+    Args:
+        buffer: the operations. places: (k + 1,) where in it each glyph begins, and the end.
+        expected: (k,) the number of contours of each glyph, or ``UNUSUAL``, or ``UNCOUNTED``.
+
+    Returns:
+        Points (N, 2) and degrees (m,) of all contours. Offsets and starts as in :class:`ContourArrays`, from 0 on in
+        each glyph: those of glyph g are in ``[firsts[g] + g : firsts[g + 1] + g + 1]``. (k + 1,) firsts, the number of
+        contours before each glyph. (k,) whether the careful reader has to read a glyph.
+    """
+    count = len(expected)
+    room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
+    points, degrees = np.empty((room, 2)), np.empty(room, dtype=np.int64)
+    offsets, starts = np.zeros(room + count, dtype=np.int64), np.zeros(room + count, dtype=np.int64)
+    firsts, unusual = np.zeros(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    first_segment, first_point = 0, 0
+    for g in range(count):
+        at, stop = places[g], places[g + 1]
+        odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
+        c = firsts[g] + g
+        offsets[c] = starts[c] = 0
+        m, p = first_segment, first_point
+        begin = p
+        drawing = False
+        sx = sy = x = y = 0.0
+        while not odd:
+            kind = int(buffer[at]) if at < stop else 0
+            if kind == 0:
+                if drawing:
+                    if abs(x - sx) > COINCIDENT or abs(y - sy) > COINCIDENT:
+                        points[p, 0], points[p, 1], degrees[m] = x, y, 1
+                        m, p = m + 1, p + 1
+                    farthest, fx, fy = 0.0, 0.0, 0.0
+                    for j in range(begin, p):
+                        dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
+                        if dx * dx + dy * dy > farthest:
+                            farthest, fx, fy = dx * dx + dy * dy, dx, dy
+                    odd = True
+                    for j in range(begin, p):
+                        dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
+                        if abs(dx * fy - dy * fx) > WIDE * np.sqrt(farthest):
+                            odd = False
+                            break
+                    c += 1
+                    offsets[c], starts[c] = m - first_segment, p - first_point
+                    begin = p
+                if at >= stop:
+                    break
+                sx, sy = x, y = buffer[at + 1], buffer[at + 2]
+                odd = odd or not (abs(x) < LARGEST and abs(y) < LARGEST)
+                drawing = True
+                at += 3
+                continue
+            moves = False
+            for k in range(at + 1, at + 1 + 2 * kind, 2):
+                moves = moves or abs(buffer[k] - x) > COINCIDENT or abs(buffer[k + 1] - y) > COINCIDENT
+                odd = odd or not (abs(buffer[k]) < LARGEST and abs(buffer[k + 1]) < LARGEST)
+            if moves:
+                degrees[m] = kind
+                for k in range(kind):
+                    points[p + k, 0], points[p + k, 1] = x, y
+                    x, y = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
+                m, p = m + 1, p + kind
+            at += 1 + 2 * kind
+        found = c - firsts[g] - g
+        if odd or (expected[g] >= 0 and found != expected[g]):
+            unusual[g] = True
+            found, m, p = 0, first_segment, first_point
+        firsts[g + 1] = firsts[g] + found
+        first_segment, first_point = m, p
+    return points, degrees, offsets, starts, firsts, unusual
+
+
+@compiled
+def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
+    """How many contours glyphs have by their records, components included; ``UNUSUAL`` where any contour has one point.
+
+    As :class:`.glyf.GlyphRecords` counts them; ``UNUSUAL`` wherever that finds fault, too.
+
+    Args:
+        glyf: (B,) bytes of the table. loca: where in it records begin, and the end. gids: (k,) of the glyphs.
+    """
+    found = np.zeros(len(gids), dtype=np.int64)
+    stack = np.empty(MAX_COMPONENTS + 1, dtype=np.int64)
+    for k in range(len(gids)):
+        stack[0], pending, components = gids[k], 1, 0
+        while pending > 0 and found[k] >= 0:
+            pending -= 1
+            gid = stack[pending]
+            if gid + 1 >= len(loca):
+                found[k] = UNUSUAL
+                break
+            start, end = loca[gid], min(loca[gid + 1], len(glyf))
+            if loca[gid] >= loca[gid + 1]:
+                continue
+            if start + 10 > end:
+                found[k] = UNUSUAL
+                break
+            contours = glyf[start] << 8 | glyf[start + 1]
+            at = start + 10
+            if contours < 0x8000:
+                if found[k] + contours > MAX_SEGMENTS or at + 2 * contours > end:
+                    found[k] = UNUSUAL
+                    break
+                found[k] += contours
+                last = -1
+                for j in range(at, at + 2 * contours, 2):
+                    point = glyf[j] << 8 | glyf[j + 1]
+                    if point < last + 2:
+                        found[k] = UNUSUAL
+                        break
+                    last = point
+                continue
+            more = True
+            while more:
+                components += 1
+                if at + 4 > end or components > MAX_COMPONENTS:
+                    found[k] = UNUSUAL
+                    break
+                flags = glyf[at] << 8 | glyf[at + 1]
+                stack[pending] = glyf[at + 2] << 8 | glyf[at + 3]
+                pending += 1
+                at += 8 if flags & 0x01 else 6
+                at += 2 if flags & 0x08 else 4 if flags & 0x40 else 8 if flags & 0x80 else 0
+                more = flags & 0x20 != 0
+    return found
+
+
 class BulkReader:
-    """A font face, for drawing many of its glyphs into one array."""
+    """One face of a font file at one location, for reading many of its glyphs; quick to open.
 
-    def __init__(self, path: Path, face_index: int) -> None:
-        self._font = hb.Font(hb.Face(hb.Blob.from_file_path(str(path)), face_index))
-        self._buffer = np.zeros(ROOM)
+    A batch's workers open it instead of the font. Reading from several threads is safe.
+
+    Args:
+        path: the file. face_index: which face of a collection.
+        location: axis tag to user-space value, within the axes' limits.
+        data: the file's bytes without compression, if they are in memory already.
+        careful: the reader of unusual glyphs; by default it is made for the first of them.
+
+    Raises:
+        FontError: the file cannot be read.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        face_index: int = 0,
+        location: Mapping[str, float] | Sequence[tuple[str, float]] = (),
+        data: bytes | None = None,
+        careful: CarefulReader | None = None,
+    ) -> None:
+        self._path, self._face_index = path, face_index
+        with opening(path):
+            self._data = data or _without_compression(path)
+            if careful is not None:
+                self._careful = careful
+                self._hb = careful.hb
+            else:
+                blob = hb.Blob(self._data) if self._data else hb.Blob.from_file_path(str(path))
+                self._hb = HarfBuzz(blob, face_index, dict(location))
+        self._buffer = np.zeros(BUFFER_SIZE)
+        self._buffer[CAPACITY] = BUFFER_SIZE
         self._pointer = _capsule(self._buffer.ctypes.data)
+        self._lock = Lock()
 
-    def read(self, gids: Sequence[int]) -> tuple[FloatArray, IntArray, list[int], BoolArray]:
-        """Draw glyphs one after the other.
+    @cached_property
+    def _careful(self) -> CarefulReader:
+        data = self._data or self._path.read_bytes()
+        return CarefulReader(self._path, self._hb, TTFont(BytesIO(data), fontNumber=self._face_index, lazy=True))
+
+    def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
+        """Read glyphs; an error takes the place of the glyph that it concerns.
+
+        Args:
+            heads: name, glyph index and code points of each glyph. metrics: of the font at the location.
+        """
+        found: list[OutlineOrError] = []
+        while len(found) < len(heads):
+            found += self._as_many_as_fit(heads[len(found) :], metrics)
+        return found
+
+    def _as_many_as_fit(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
+        gids = [gid for _, gid, _ in heads]
+        with self._lock:
+            places, expected = self._draw(gids)
+            points, degrees, offsets, starts, firsts, unusual = _contours(self._buffer, places, expected)
+        found: list[OutlineOrError] = []
+        point = segment = 0
+        spans = pairwise(firsts.tolist())
+        for g, (head, (a, b), strange) in enumerate(zip(heads, spans, unusual.tolist(), strict=False)):
+            if strange:
+                found.append(self._read_carefully(Head(*head), metrics))
+                continue
+            name, gid, unicodes = head
+            o, s = offsets[a + g : b + g + 1], starts[a + g : b + g + 1]
+            m, p = segment + int(o[-1]), point + int(s[-1])
+            contours = Contours(ContourArrays(points[point:p], degrees[segment:m], o, s))
+            found.append(Outline(name, gid, unicodes, self._hb.advance(gid), contours, metrics))
+            segment, point = m, p
+        return found
+
+    def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:
+        """Draw glyphs into the buffer until it is full.
 
         Returns:
-            The buffer, which the next call overwrites; (k + 1,) where in it each glyph begins and the last ends;
-            advances; and (k,) which glyphs break off. One for which there was no room ends at the buffer's end.
+            (k + 1,) where in the buffer each of the k glyphs drawn begins, and the end; (k,) expected numbers of
+            contours. k is at least 1; a glyph alone that does not fit ends at the capacity.
         """
-        buffer, font, functions, pointer = self._buffer, self._font, _functions(), self._pointer
-        buffer[USED], buffer[CAPACITY] = HEAD, ROOM
-        starts = [HEAD]
-        for gid in gids:
-            font.draw_glyph(gid, functions, pointer)
-            starts.append(int(buffer[USED]))
-        broken = np.array([font.get_glyph_extents(gid) is None for gid in gids], dtype=np.bool_)
-        return buffer, np.array(starts, dtype=np.int64), [font.get_glyph_h_advance(gid) for gid in gids], broken
+        buffer, font, functions, pointer = self._buffer, self._hb.font, _functions(), self._pointer
+        expected = self._expected(gids)
+        buffer[USED] = FIRST
+        places = [FIRST]
+        for gid, count in zip(gids, expected.tolist(), strict=True):
+            if count > 0 or count == UNCOUNTED:
+                font.draw_glyph(gid, functions, pointer)
+            used = int(buffer[USED])
+            if used == BUFFER_SIZE and len(places) > 1:
+                break
+            places.append(used)
+        drawn = len(places) - 1
+        if not self._hb.has_records:
+            for k, gid in enumerate(gids[:drawn]):
+                if not self._hb.is_whole(gid):
+                    expected[k] = UNUSUAL
+        return np.array(places, dtype=np.int64), expected[:drawn]
+
+    def _expected(self, gids: Sequence[int]) -> IntArray:
+        if self._records is None:
+            return np.full(len(gids), UNCOUNTED, dtype=np.int64)
+        counts: IntArray = _expected(*self._records, np.array(gids, dtype=np.int64))
+        return counts
+
+    @cached_property
+    def _records(self) -> tuple[Any, IntArray] | None:
+        """The ``glyf`` table and the offsets of its records."""
+        face = self._hb.face
+        if not self._hb.has_records:
+            return None
+        head, loca = face.reference_table("head").data, face.reference_table("loca").data
+        kind, size = (">u4", 1) if head[50:52] == b"\0\1" else (">u2", 2)
+        offsets = np.frombuffer(loca, kind, count=len(loca) // np.dtype(kind).itemsize).astype(np.int64) * size
+        return np.frombuffer(face.reference_table("glyf").data, dtype=np.uint8), offsets
+
+    def _read_carefully(self, head: Head, metrics: FontMetrics) -> OutlineOrError:
+        try:
+            with drawing(self._path, head.name):
+                return self._careful.outline(head, metrics)
+        except GlyphsplineError as error:
+            return error
+
+
+def _without_compression(path: Path) -> bytes | None:
+    """The bytes of a WOFF or WOFF2 file, decompressed; None for others, which HarfBuzz maps to memory."""
+    with open(path, "rb") as file:
+        compressed = file.read(4) in (b"wOFF", b"wOF2")
+    return unpacked(path.read_bytes()) if compressed else None

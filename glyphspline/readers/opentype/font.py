@@ -3,32 +3,37 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import uharfbuzz as hb
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
 from ...errors import FontError
-from ...outlines.outline import FontMetrics, Outline
-from ..base import NamedGlyphs, reason
+from ...outlines.outline import FontMetrics
+from ..source import Head, OutlineOrError, Source, opening
+from .careful import CarefulReader
 from .containers import FORMATS, unpacked
-from .routes import FontTools, HarfBuzz
+from .harfbuzz import HarfBuzz
 from .tables import axes_of, instances_of, location_within, metrics_of, names_of
+
+if TYPE_CHECKING:
+    from .bulk import BulkReader
 
 REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
 OUTLINES = ("glyf", "CFF ", "CFF2")
 PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 
 
-class Font(NamedGlyphs):
+class Font(Source):
     """One face of a font file at one place of its design space; made by :func:`open_font`.
 
-    A :class:`..source.Source`. Pickling a font keeps only how it was opened, and opens it again.
+    Pickling a font keeps how it was opened, and opens it again.
 
     Attributes:
         path: the file, as given. face_index: which face of a collection. num_faces: how many it has.
@@ -68,10 +73,10 @@ class Font(NamedGlyphs):
         self.num_glyphs = len(self.glyph_names)
         mapped = (tables.getBestCmap() or {}).items()
         self.cmap: Mapping[int, str] = MappingProxyType({code: name for code, name in mapped if name in self._gids})
-        self._fast = HarfBuzz(plain, face_index, tables, self.location)
+        face = HarfBuzz(hb.Blob(plain), face_index, self.location)
         if self.location:
-            self.metrics = FontMetrics(self.metrics.units_per_em, *self._fast.extents())
-        self._careful = FontTools(tables, self._fast.normalized)
+            self.metrics = FontMetrics(self.metrics.units_per_em, *face.extents())
+        self._careful = CarefulReader(path, face, tables)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
@@ -85,27 +90,14 @@ class Font(NamedGlyphs):
         """All tables, to be changed at will; of a variable font they are the default's, and the axes are there."""
         return TTFont(BytesIO(self._plain), fontNumber=self.face_index, recalcTimestamp=False)
 
-    def outline(self, name: str) -> Outline:
-        """The glyph's contours, components decomposed, at the font's location.
+    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        return self._bulk.outlines(heads, self.metrics)
 
-        Read through HarfBuzz; where that leaves anything out, through fontTools, which knows what is wrong.
+    @cached_property
+    def _bulk(self) -> BulkReader:
+        from .bulk import BulkReader  # brings the compiler with it, which opening and selecting do without
 
-        Raises:
-            FontError: the font has no glyph of that name.
-            GlyphsplineError: the glyph's data is broken, or its components are nested in a loop.
-        """
-        gid = self._gid(name)
-        with self._drawing(name):
-            pen, advance = self._fast.draw(gid) or self._careful.draw(name)
-        return Outline(
-            name=name,
-            gid=gid,
-            unicodes=self._unicodes.get(name, ()),
-            advance=advance,
-            contours=tuple(pen.contours),
-            metrics=self.metrics,
-            notes=pen.notes,
-        )
+        return BulkReader(self.path, self.face_index, self.location, self._plain, self._careful)
 
 
 def open_font(path: str | Path, face_index: int = 0, location: Mapping[str, float] | str | None = None) -> Font:
@@ -120,7 +112,7 @@ def open_font(path: str | Path, face_index: int = 0, location: Mapping[str, floa
         FontError: the file cannot be read, is no font or a broken one, or has no such face, axis or instance.
     """
     path = Path(path)
-    try:
+    with opening(path):
         data = path.read_bytes()
         if data[:4] not in FORMATS:
             raise FontError("not a TTF, OTF, TTC, WOFF or WOFF2 file")
@@ -128,10 +120,3 @@ def open_font(path: str | Path, face_index: int = 0, location: Mapping[str, floa
         if not 0 <= face_index < num_faces:
             raise FontError(f"no face {face_index}: the file has {num_faces}, counted from 0")
         return Font(path, data, face_index, num_faces, location)
-    except FontError as error:
-        error.locate(font=str(path))
-        raise
-    except OSError as error:
-        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
-    except Exception as error:  # as in outline
-        raise FontError(f"a broken font: {reason(error)}", font=str(path)) from error
