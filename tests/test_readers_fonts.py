@@ -242,7 +242,7 @@ def test_repeated_points_leave_no_trace() -> None:
 def test_an_empty_glyph_has_an_advance_and_no_contours() -> None:
     font = open_font(FONTS / "edge-cases.ttf")
     assert font.outline("space").advance == 250
-    assert font.outline("space").contours == font.outline("hollow").contours == ()
+    assert [len(font.outline(name).contours) for name in ("space", "hollow")] == [0, 0]
 
 
 def test_an_outline_knows_its_place_in_the_font() -> None:

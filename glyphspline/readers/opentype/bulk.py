@@ -59,8 +59,8 @@ UNUSUAL, UNCOUNTED = -1, -2
 
 def _callback(points: int) -> Any:
     """The signature of a drawing operation: functions, buffer, state, coordinates, user data."""
-    coordinates = (types.float32,) * (2 * points)
-    return types.void(types.intp, types.CPointer(types.double), types.intp, *coordinates, types.intp)
+    buffer = types.CPointer(types.double)  # type: ignore[no-untyped-call]
+    return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
 
 
 # The callbacks write nothing beyond the capacity. A buffer that is full stays full.
