@@ -59,7 +59,7 @@ UNUSUAL, UNCOUNTED = -1, -2
 
 def _callback(points: int) -> Any:
     """The signature of a drawing operation: functions, buffer, state, coordinates, user data."""
-    buffer = types.CPointer(types.double)  # type: ignore[no-untyped-call]
+    buffer = types.CPointer(types.double)
     return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
 
 
