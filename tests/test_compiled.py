@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import interpolate_ragged
+from glyphspline.interpolation.batched import interpolate_batch
+from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import interpolate_vertex_reference
 
 from .agreement import TOLERANCE, compare
@@ -126,22 +127,22 @@ def test_bad_polygons_are_refused_in_words(points: object, words: str) -> None:
     with pytest.raises(gs.PolygonError, match=words) as caught:
         gs.interpolate_many([good, points])  # type: ignore[list-item]
     assert caught.value.contour == 1
-    found = gs.interpolate_many([points, good], errors="return")  # type: ignore[list-item]
+    found = gs.interpolate_many([points, good], errors="return")  # type: ignore[call-overload]
     assert isinstance(found[0], gs.PolygonError)
     assert found[1].converged
 
 
-def test_ragged_open_arcs_are_those_one_by_one() -> None:
+def test_a_batch_of_open_arcs_is_those_one_by_one() -> None:
     rng = np.random.default_rng(8)
     arcs = [uniform(rng, n) for n in (2, 3, 4, 9, 130)]
     tangents = rng.standard_normal((5, 2, 2))
     tangents[3, 1] = np.nan
     offsets = np.cumsum([0, *map(len, arcs)])
-    found = interpolate_ragged(np.concatenate(arcs), offsets, closed=False, end_tangents=tangents)
+    found = interpolate_batch(np.concatenate(arcs), offsets, Method(closed=False), end_tangents=tangents)
     for k, arc in enumerate(arcs):
         pair: Any = tuple(None if np.isnan(t[0]) else t for t in tangents[k])
         one = gs.interpolate(arc, closed=False, end_tangents=pair)
-        assert_allclose(found.result(k).spline.control_points, one.spline.control_points, atol=0)
+        assert_allclose(found[k].spline.control_points, one.spline.control_points, atol=0)
         ends = one.spline(one.spline.knots[[0, -1]], derivative=1)
         assert_allclose(ends[0], tangents[k, 0], atol=1e-12)
 

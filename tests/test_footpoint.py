@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from glyphspline.curves.bspline import Spline
-from glyphspline.interpolation.batched import interpolate_ragged
+from glyphspline.interpolation.batched import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
+from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, prepare
 
 from .polygons import smooth, uniform
@@ -72,7 +73,7 @@ def test_one_pass_finds_what_the_reference_finds(variant: int) -> None:
     rng = np.random.default_rng(11)
     for n in (5, 12, 60):
         p = uniform(rng, n)
-        result = interpolate_ragged(p, np.array([0, n]), variant, max_iterations=0)
+        result = interpolate_batch(p, np.array([0, n]), Method(variant, max_iterations=0))
         problem = prepare(p, variant)
         spline = problem.spline(p)
         for i in range(n):

@@ -94,6 +94,12 @@ def test_a_file_imports_only_what_its_room_may(module: str) -> None:
     assert not beyond
 
 
+def test_nothing_imports_the_oracle() -> None:
+    """``interpolation.reference`` is what the compiled code has to agree with: none of it is used."""
+    assert "interpolation.reference" in MODULES
+    assert [module for module in MODULES if "interpolation.reference" in modules_imported(module)] == []
+
+
 def test_no_files_import_each_other_in_a_circle() -> None:
     graph = {module: modules_imported(module) for module in MODULES}
     try:

@@ -8,11 +8,12 @@ import pytest
 import glyphspline as gs
 from glyphspline.curves.crossings import overshoot, self_crossings
 from glyphspline.curves.integrals import shape
-from glyphspline.fitting.policy import interpolated, turned
+from glyphspline.fitting.policy import interpolated
 from glyphspline.fitting.smooth import steps as rounds
 from glyphspline.fitting.smooth.canonical_contours import chains_of
 from glyphspline.fitting.smooth.forms import forms
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
+from glyphspline.interpolation.result import turned
 from glyphspline.outlines.outline import Contours
 
 from .polygons import circle_contour, random_polygon, square_contour
@@ -37,7 +38,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     offsets = np.array([0, len(places)])
     found = interpolated(rounds.polygons(chains, which, places, offsets), offsets, gs.Options())
     pieces, written = rounds.beziers(found.controls, found.knots, offsets, 100.0)
-    np.testing.assert_allclose(pieces, found.result(0).spline.to_bezier(), atol=1e-9)
+    np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
     bounds, gaps, _, ends = rounds.examined(chains, which, places, offsets, written, near)
     bound, gap = rounds.certificate(chains, 0, written, bounds, gaps, ends, 0.01)

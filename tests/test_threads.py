@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import _parts, interpolate_ragged, over_threads
+from glyphspline.interpolation.batched import _parts, interpolate_batch, over_threads
+from glyphspline.interpolation.method import Method
 
 from .polygons import polygon, uniform
 
@@ -47,21 +48,21 @@ def test_any_number_of_threads_gives_the_same_bits(options: dict[str, Any]) -> N
         {"knots": "uniform"},
     ],
 )
-def test_short_polygons_side_by_side_are_as_each_alone(options: dict[str, Any]) -> None:
+def test_results_do_not_depend_on_batching(options: dict[str, Any]) -> None:
     rng = np.random.default_rng(9)
-    for sizes in ([3, 13, 14, 30, 31], list(range(3, 34)), [7] * 9, [12, 12, 29, 29, 29]):
+    for sizes in ([3, 13, 14, 30, 31], list(range(3, 34)), [7] * 9, [12, 12, 29, 29, 29], [127, 128, 129, 5, 260]):
         contours = [polygon(int(rng.integers(500)))[1] for _ in range(5)] + [uniform(rng, n) for n in sizes]
         contours[2] = np.repeat(contours[2], 2, axis=0)  # duplicates are merged
         contours.insert(4, np.zeros((6, 2)))  # refused
         offsets = np.cumsum([0, *map(len, contours)])
-        settings: dict[str, Any] = {"residual_tolerance": 1e-7, "max_iterations": 60, "threads": 1, **options}
-        together = interpolate_ragged(np.concatenate(contours), offsets, **settings)
+        settings: dict[str, Any] = {"residual_tolerance": 1e-7, "max_iterations": 60, **options}
+        together = interpolate_batch(np.concatenate(contours), offsets, Method(**settings), threads=1)
         for k, contour in enumerate(contours):
-            alone = interpolate_ragged(contour, np.array([0, len(contour)]), **settings)
+            alone = interpolate_batch(contour, np.array([0, len(contour)]), Method(**settings), threads=1)
             assert together.whole[k].tolist() == alone.whole[0].tolist(), k
             if alone.whole[0, 0]:
                 continue
-            a, b = together.result(k), alone.result(0)
+            a, b = together[k], alone[0]
             assert a.rate_bound == b.rate_bound
             for x, y in (
                 (a.spline.control_points, b.spline.control_points),

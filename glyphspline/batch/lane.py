@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..fitting.options import Options
-from ..fitting.policy import CERTAIN_RATIO
+from ..fitting.policy import CERTAIN_RATIO, method_for
 from ..fitting.smooth.insertion import graded_polygons
-from ..interpolation.batched import Ragged, interpolate_ragged
+from ..interpolation.batched import BatchedInterpolation, interpolate_batch
 from ..outlines.outline import Outline
 from ..outlines.places import sampled
 from ..readers.opentype.bulk_contours import BulkReader, cubics_of
@@ -162,7 +162,8 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
     points, _, offsets, unsampled = sampled(
         source_cubics, segments, options.step, 0, options.max_ratio, np.radians(options.corner_angle), MOST_VERTICES
     )
-    ragged = interpolated(points, offsets, options)
+    even = graded_polygons(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
+    ragged = interpolate_batch(points, offsets, method_for(options), by_knot=even, threads=1)
     refused = (ragged.whole[:, 0] != 0) | unsampled
     counts = np.where(refused, 0, ragged.whole[:, 1])
     left = np.array([refused[a:b].any() for a, b in pairwise(before.tolist())], dtype=np.bool_)
@@ -178,38 +179,7 @@ def draw_chunk(reader: BulkReader, gids: Sequence[int], options: Options) -> lis
     return [None if alone else Drawn(chunk, i, contours) for i, (alone, contours) in enumerate(each)]
 
 
-def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Ragged:
-    """The curves of all polygons: those of well graded chords by Lemma 2's own rule, the rest by the options'."""
-    ragged = interpolate_ragged(points, offsets, options.variant, **_how(options, "knot"))
-    even = graded_polygons(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
-    ungraded = np.flatnonzero(~even)
-    if options.fallback == "knot" or len(ungraded) == 0:
-        return ragged
-    parts = [points[offsets[k] : offsets[k + 1]] for k in ungraded]
-    where = np.concatenate([[0], np.cumsum([len(part) for part in parts])]).astype(np.int64)
-    again = interpolate_ragged(np.concatenate(parts), where, options.variant, **_how(options, options.fallback))
-    for j, k in enumerate(ungraded.tolist()):
-        here, there, n = int(offsets[k]), int(where[j]), int(where[j + 1] - where[j])
-        ragged.controls[here : here + n] = again.controls[there : there + n]
-        ragged.knots[here + k : here + k + n + 1] = again.knots[there + j : there + j + n + 1]
-    ragged.whole[ungraded], ragged.rates[ungraded] = again.whole, again.rates
-    last = last_residuals(ragged)
-    last[ungraded] = last_residuals(again)
-    ends = np.arange(len(last) + 1)
-    return replace(ragged, residuals=last, residual_offsets=ends)
-
-
-def _how(options: Options, fallback: str) -> dict[str, Any]:
-    return {
-        "margin": options.margin,
-        "fallback": fallback,
-        "residual_tolerance": options.solver_tolerance,
-        "max_iterations": options.max_iterations,
-        "threads": 1,
-    }
-
-
-def last_residuals(ragged: Ragged) -> FloatArray:
+def last_residuals(ragged: BatchedInterpolation) -> FloatArray:
     """(K,) the residual of each result; undefined where a polygon was refused."""
     if len(ragged.residuals) == 0:
         return np.zeros(len(ragged))
@@ -246,7 +216,7 @@ def drawn_source(outline: Outline, drawn: Drawn, texts: SourceTexts, precision: 
     return source_document(outline, texts, (left, bottom, right, top), drawn.polygons.points, precision)
 
 
-def solved(ragged: Ragged) -> Solved:
+def solved(ragged: BatchedInterpolation) -> Solved:
     """What the interpolation itself has found out, for each contour."""
     last = last_residuals(ragged)
     counts, iterations, fallbacks = ragged.whole[:, 1:4].T

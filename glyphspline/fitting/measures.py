@@ -11,7 +11,7 @@ from ..compiled import compiled
 from ..curves.crossings import crossings_and_overshoot
 from ..curves.integrals import integrals
 from ..errors import GlyphsplineError
-from ..interpolation.batched import Ragged
+from ..interpolation.batched import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines
@@ -41,7 +41,7 @@ def check_coordinates(contours: ContourArrays) -> None:
                 raise error.locate(contour=k) from None
 
 
-def solved_columns(found: Ragged) -> Columns:
+def solved_columns(found: BatchedInterpolation) -> Columns:
     """What the interpolation itself knows of closed curves, one a contour: the measures of ``results.SOLVED``."""
     counts, iterations, fallbacks = found.whole[:, 1:4].T
     residuals = found.residuals[found.residual_offsets[1:] - 1]

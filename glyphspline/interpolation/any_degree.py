@@ -1,75 +1,65 @@
-"""Any degree and variant, one polygon at a time, every step open to inspection: the shell of ``core.general``."""
+"""Any degree and variant, one polygon at a time, every pass open to inspection: Algorithms 1, 2 and 3.
+
+The passes are compiled, see :mod:`.kernels.any_degree_pass`; the loop over them is that of :mod:`.driver`.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..curves.bspline import Spline, full_knots
-from ..curves.parameters import Parametrisation, closed_knots, vertex_centres, vertex_parameters
+from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
-from ..types import FloatArray
-from .intervals import PEAK_SHARE, Fallback, Intervals
+from ..types import FloatArray, IntArray
+from .diagnostics import diagnose
+from .driver import iterate
+from .intervals import Intervals
+from .method import SETTLED, Method, Tangents
 from .polygon import clean_polygon
-from .reference import SETTLED, TIE_DISTANCE, Tangents, diagnose, prepare
 from .result import Interpolation
 
-PASSES = 1000
-"""Passes in one compiled call, after which Ctrl-C is heard; with diagnostics each is a call of its own."""
 
-History = list[tuple[FloatArray, FloatArray]]
-
-
-def interpolate_stepwise(
-    points: ArrayLike,
-    variant: int = 2,
-    *,
-    degree: int = 3,
-    margin: float = 0.0,
-    knots: Parametrisation | ArrayLike = "chord",
-    fallback: Fallback = "knot",
-    residual_tolerance: float = 1e-6,
-    max_iterations: int = 1000,
-    closed: bool = True,
-    end_tangents: Tangents | None = None,
-    finish: Literal["iterate", "solve"] = "iterate",
-    diagnostics: bool = False,
+def interpolate_any_degree(
+    points: ArrayLike, method: Method, knots: ArrayLike | None = None, end_tangents: Tangents | None = None
 ) -> Interpolation:
-    """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`."""
+    """Interpolate one polygon; ``knots`` are its own parameters where the method has no rule."""
+    degree, closed = method.degree, method.closed
     p, merged = clean_polygon(points, closed)
-    if len(merged) and not isinstance(knots, str):
-        knots = np.delete(np.asarray(knots, dtype=np.float64), merged)
-    s = vertex_parameters(p, knots, closed)
+    rule: Any = method.knots
+    s = vertex_parameters(p, rule or np.delete(np.asarray(knots, dtype=np.float64), merged), closed)
     u = closed_knots(s, degree) if closed else s
     centres = vertex_centres(s, degree) if closed else s
     free = np.arange(len(p)) if closed else np.arange(1, len(p) - 1)
     first = free - ((degree + 1) // 2 if closed else 2)
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
-    intervals = _intervals(windows, centres[free], variant, margin, fallback)
-    run = _Run(p, u, centres, free, intervals, degree, closed, end_tangents or (None, None))
-    settled = SETTLED * float(np.diff(centres).mean()) if finish == "solve" else 0.0
-    residuals, history = run.iterate(variant, max(residual_tolerance, settled), max_iterations, diagnostics)
-    if finish == "solve" and len(free):
-        residuals = np.append(residuals, run.solve())
+    intervals = _intervals(windows, centres[free], method)
+    problem = Scaled(p, u, centres, free, intervals, method, end_tangents or (None, None))
+    tolerance = method.tolerance_for(float(np.ptp(p, axis=0).max()))
+    settled = SETTLED * float(np.diff(centres).mean()) if method.finish == "solve" else 0.0
+    at_once = method.variant == 4
+    limit = max(tolerance, settled) * problem.unit
+    run = iterate(problem.one_pass, problem.P, limit, method.max_iterations, at_once, method.diagnostics)
+    controls, t, residuals = run.controls, run.footpoints, np.array(run.residuals) / problem.unit
+    if method.finish == "solve" and len(free):
+        controls, left = problem.solve(controls, t)
+        residuals = np.append(residuals, left)
     parameters, bounds = centres.copy(), np.stack([centres, centres], axis=1)
-    parameters[free] = run.parameters
+    parameters[free] = t / problem.knot_unit
     bounds[free] = intervals.bounds
     observed: dict[str, Any] = {}
-    if history is not None:
-        problem = prepare(
-            points, variant, degree=degree, margin=margin, knots=knots if not len(merged) else "chord",
-            fallback=fallback, closed=closed, end_tangents=end_tangents,
-        )  # fmt: skip
-        observed = diagnose(problem, history, variant)
+    if method.diagnostics:
+        observed = diagnose(problem.matrix, run.history, at_once)
+        observed["history"] = tuple((problem.points_of(P), t / problem.knot_unit) for P, t in run.history)
     return Interpolation(
-        spline=Spline(run.controls, u, degree, closed),
+        spline=Spline(problem.points_of(controls), u, degree, closed),
         parameters=parameters,
         intervals=bounds,
         iterations=len(residuals) - 1,
         residuals=residuals,
-        converged=bool(residuals[-1] < residual_tolerance),
+        converged=bool(residuals[-1] < tolerance),
         fallbacks=intervals.fallbacks,
         rate_bound=intervals.rate_bound,
         merged=merged,
@@ -77,28 +67,59 @@ def interpolate_stepwise(
     )
 
 
-def _intervals(windows: FloatArray, centres: FloatArray, variant: int, margin: float, fallback: Fallback) -> Intervals:
-    """What ``search_intervals`` gives, compiled."""
-    from .kernels.windows import search_bounds
+def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curve: bool) -> Interpolation:
+    """Algorithm 1; see :func:`glyphspline.interpolate_vertex`."""
+    p, merged = clean_polygon(points)
+    if not 0 <= k < len(p):
+        raise PolygonError(f"there is no vertex {k} among {len(p)}")
+    u = vertex_parameters(p)
+    windows = full_knots(u, 5, True)[5 + k - 2 + np.arange(5)][None]
+    intervals = _intervals(windows, u[k : k + 1], method)
+    rate_bound = intervals.rate_bound / 2
+    if whole_curve:
+        intervals, rate_bound = Intervals(u[k] + np.array([[-0.5, 0.5]]) * u[-1], 0, 1.0), 1.0
+    problem = Scaled(p, u, u[:-1], np.array([k]), intervals, method, (None, None))
+    tolerance = method.tolerance_for(float(np.ptp(p, axis=0).max()))
+    run = iterate(problem.one_pass, problem.P, tolerance * problem.unit, method.max_iterations)
+    controls, residuals = p.copy(), np.array(run.residuals) / problem.unit
+    controls[k] = problem.points_of(run.controls[k])
+    return Interpolation(
+        spline=Spline(controls, u),
+        parameters=run.footpoints / problem.knot_unit,
+        intervals=intervals.bounds,
+        iterations=len(residuals) - 1,
+        residuals=residuals,
+        converged=bool(residuals[-1] < tolerance),
+        fallbacks=0,
+        rate_bound=rate_bound,
+        merged=merged,
+    )
+
+
+def _intervals(windows: FloatArray, centres: FloatArray, method: Method) -> Intervals:
+    """What :func:`.intervals.search_intervals` gives, compiled."""
+    from .kernels.any_degree_pass import search_bounds
 
     bounds = np.empty((len(centres), 2))
-    share = PEAK_SHARE if fallback == "peak" else 0.0
-    fallbacks, least = search_bounds(windows, centres, variant, float(margin), share, bounds)
+    fallbacks, least = search_bounds(windows, centres, method.variant, float(method.margin), method.peak_share, bounds)
     return Intervals(bounds, fallbacks, 2 * (1 - least))
 
 
-class _Run:
-    """The iteration of one polygon, in the core's units: origin at p_0, extent and mean knot interval near 1."""
+class Scaled:
+    """A polygon in the units of the compiled passes: origin at p_0, extent and mean knot interval near 1.
+
+    Attributes:
+        P: the first control points. unit, knot_unit: factors of lengths and of parameters, powers of two.
+    """
 
     def __init__(
         self,
         p: FloatArray,
         u: FloatArray,
         centres: FloatArray,
-        free: Any,
+        free: IntArray,
         intervals: Intervals,
-        degree: int,
-        closed: bool,
+        method: Method,
         tangents: Tangents,
     ) -> None:
         from .kernels.any_degree_pass import make_layout
@@ -106,110 +127,57 @@ class _Run:
         self.origin = p[0].copy()
         self.unit = 0.5 ** np.floor(np.log2(np.ptp(p, axis=0).max()))
         self.knot_unit = 0.5 ** np.floor(np.log2(u[-1] / len(p)))
-        self.knots, self.degree, self.closed = u, degree, closed
+        self.knots, self.degree, self.closed, self.at_once = u, method.degree, method.closed, method.variant == 4
         q = (p - self.origin) * self.unit
         natural, base = np.zeros(2), np.zeros((2, 2))
-        if closed:
+        if self.closed:
             self.P = q.copy()
         else:
             slopes = [None if t is None else np.asarray(t) * (self.unit / self.knot_unit) for t in tangents]
             natural, base = _ends(q, np.diff(u) * self.knot_unit, slopes)
             beside = base + natural[:, None] * q[[1, -2]]
             self.P = np.concatenate([q[:1], beside[:1], q[1:-1], beside[1:], q[-1:]])
-        alone = len(free) == 1 and closed  # Algorithm 1
-        vertices, first = (q[free], int(free[0])) if alone else (q if closed else q[1:-1], 0 if closed else 2)
+        one = len(free) == 1 and self.closed  # Algorithm 1
+        vertices, first = (q[free], int(free[0])) if one else (q if self.closed else q[1:-1], 0 if self.closed else 2)
         scaled = self.knot_unit * intervals.bounds, self.knot_unit * centres[free]
-        self.layout = make_layout(vertices, first, *scaled, self.knot_unit * u, degree, closed, natural, base)
+        self.layout = make_layout(vertices, first, *scaled, self.knot_unit * u, self.degree, self.closed, natural, base)
         self.t = self.layout.centres.copy()
 
-    @property
-    def controls(self) -> FloatArray:
-        return self.P / self.unit + self.origin
+    def points_of(self, controls: FloatArray) -> FloatArray:
+        """Control points in the caller's units."""
+        return controls / self.unit + self.origin
 
-    @property
-    def parameters(self) -> FloatArray:
-        return self.t / self.knot_unit
+    def one_pass(self, controls: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Footpoints on the curve of the control points, these after the update, and the largest error before it."""
+        from .kernels.any_degree_pass import one_pass
 
-    def _arguments(self, variant: int) -> tuple[Any, ...]:
+        updated = controls.copy()
+        largest = one_pass(updated, self.t, self.layout, self.at_once)
+        return self.t.copy(), updated, largest
+
+    def matrix(self, t: FloatArray) -> FloatArray:
+        """(f, f) how the curve at the footpoints (f,) depends on the free control points."""
         v = self.layout
-        return (
-            v.points, v.bounds, v.centres, v.spans, v.starts, v.period, v.matrices, v.indices, v.first, v.natural,
-            v.base, variant == 4, TIE_DISTANCE**2,
-        )  # fmt: skip
-
-    def iterate(
-        self, variant: int, tolerance: float, max_iterations: int, record: bool
-    ) -> tuple[FloatArray, History | None]:
-        """Residuals, and the history if it is wanted: control points before, footpoints in each pass."""
-        from .kernels.any_degree_pass import move, passes
-
-        v = self.layout
-        errors = np.zeros(v.points.shape)
-        found: list[FloatArray] = []
-        history: History | None = [] if record else None
-        left = max_iterations + 1
-        while True:
-            before = self.P.copy()
-            room = np.empty(1 if record else min(left, PASSES))
-            arguments = (*self._arguments(variant), tolerance * self.unit, room)
-            made = passes(self.P, self.t, errors, *arguments)
-            found.append(room[:made])
-            left -= made
-            if history is not None:
-                history.append((before / self.unit + self.origin, self.parameters))
-            if room[made - 1] < tolerance * self.unit or left == 0 or not np.isfinite(room[made - 1]):
-                return np.concatenate(found) / self.unit, history
-            move(self.P, errors, v.first, v.period, v.natural, v.base)
-
-    def solve(self) -> float:
-        """Control points for which the curve passes through every vertex at its footpoint; what error is left."""
-        v = self.layout
-        u = self.knots * self.knot_unit
-        count = len(self.t)
-        B = Spline(self.P, u, self.degree, self.closed).basis(self.t)
-        free = slice(v.first, v.first + count)
-        A = B[:, free].copy()
+        B = Spline(self.P, self.knots * self.knot_unit, self.degree, self.closed).basis(t)
+        A = B[:, v.first : v.first + len(t)].copy()
         if not self.closed:
             A[:, 0] += v.natural[0] * B[:, 1]
             A[:, -1] += v.natural[1] * B[:, -2]
-        if np.linalg.matrix_rank(A) < count:  # variants 0 and 1 may bring two footpoints together
-            return float(np.hypot(*(v.points - B @ self.P).T).max() / self.unit)
-        for _ in range(2):
-            self.P[free] += np.linalg.solve(A, v.points - B @ self.P)
+        return A
+
+    def solve(self, controls: FloatArray, t: FloatArray) -> tuple[FloatArray, float]:
+        """Control points for which the curve passes through every vertex at its footpoint, and the error left."""
+        v = self.layout
+        P = controls.copy()
+        B = Spline(P, self.knots * self.knot_unit, self.degree, self.closed).basis(t)
+        A, free = self.matrix(t), slice(v.first, v.first + len(t))
+        solvable = np.linalg.matrix_rank(A) == len(t)  # variants 0 and 1 may bring two footpoints together
+        for _ in range(2 if solvable else 0):
+            P[free] += np.linalg.solve(A, v.points - B @ P)
             if not self.closed:
-                self.P[[1, -2]] = v.base + v.natural[:, None] * self.P[[2, -3]]
-        e = v.points - B @ self.P
-        return float(np.hypot(*e.T).max() / self.unit)
-
-
-def interpolate_vertex_compiled(
-    points: ArrayLike, k: int, *, whole_curve: bool, residual_tolerance: float, max_iterations: int
-) -> Interpolation:
-    """Algorithm 1; the arguments and the result are those of :func:`glyphspline.interpolate_vertex`."""
-    p, merged = clean_polygon(points)
-    if not 0 <= k < len(p):
-        raise PolygonError(f"there is no vertex {k} among {len(p)}")
-    u = vertex_parameters(p)
-    windows = full_knots(u, 5, True)[5 + k - 2 + np.arange(5)][None]
-    interval = _intervals(windows, u[k : k + 1], 1, 0.0, "knot")
-    rate_bound = interval.rate_bound / 2
-    if whole_curve:
-        interval, rate_bound = Intervals(u[k] + np.array([[-0.5, 0.5]]) * u[-1], 0, 1.0), 1.0
-    run = _Run(p, u, u[:-1], np.array([k]), interval, 3, True, (None, None))
-    residuals, _ = run.iterate(1, residual_tolerance, max_iterations, False)
-    controls = p.copy()
-    controls[k] = run.controls[k]
-    return Interpolation(
-        spline=Spline(controls, u),
-        parameters=run.parameters,
-        intervals=interval.bounds,
-        iterations=len(residuals) - 1,
-        residuals=residuals,
-        converged=bool(residuals[-1] < residual_tolerance),
-        fallbacks=0,
-        rate_bound=rate_bound,
-        merged=merged,
-    )
+                P[[1, -2]] = v.base + v.natural[:, None] * P[[2, -3]]
+        e = v.points - B @ P
+        return P, float(np.hypot(*e.T).max() / self.unit)
 
 
 def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tuple[FloatArray, FloatArray]:

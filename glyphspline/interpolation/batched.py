@@ -1,11 +1,11 @@
-"""From arrays to the compiled core and back: many polygons in one call, over threads."""
+"""Many cubic polygons in one compiled call, over threads: arrays laid end to end go in and come out."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 from ..curves.bspline import Spline
 from ..curves.parameters import CHORD_EXPONENT, vertex_parameters
 from ..errors import PolygonError
-from ..types import FloatArray, IntArray
-from .intervals import PEAK_SHARE, Fallback
+from ..types import BoolArray, FloatArray, IntArray
+from .any_degree import interpolate_any_degree
+from .method import Method
 from .polygon import clean_polygon
 from .result import Interpolation
 
@@ -25,24 +26,21 @@ GIVEN = -1.0
 """In place of a chord exponent: the knots are the caller's."""
 
 LEAST_VERTICES = 1024
-"""The least work handed to a thread at a time, some 0.3 ms: enough to hide the hand-over."""
+"""The least work for a thread at a time, some 0.3 ms: enough to hide the hand-over."""
 
 LARGE = 30_000
-"""Polygons of so many vertices get their room from NumPy, which asks for large pages: the processor can remember
-where few pages are, but not where many small ones are, and all of the room is gone through in every pass.
+"""From this many vertices on NumPy allocates the blocks (huge pages): fewer TLB misses, as every pass goes through
+all of them.
 """
-
-WHOLE = 5
-"""Where among the arrays of :func:`_results` the whole numbers are."""
 
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
-NO_ROOM = np.empty((0, 0))
+NO_BLOCKS = np.empty(0)
 NOTHING_MERGED = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
-class Ragged:
+class BatchedInterpolation:
     """Results for K polygons as arrays laid end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
 
     Where duplicates were merged, or a polygon was refused, the rest of its part is undefined.
@@ -55,7 +53,7 @@ class Ragged:
         whole: (K, 5) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, and the
             footpoints that took a full search.
         rates: (K,) rate bounds.
-        residuals, residual_offsets: ragged, (iterations + 1) numbers a polygon.
+        residuals, residual_offsets: (iterations + 1) numbers a polygon, end to end.
         tolerances: (K,) what the last residual has to be below.
         closed: of all of them.
     """
@@ -76,106 +74,137 @@ class Ragged:
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
-    def result(self, k: int) -> Interpolation:
-        """Polygon k's share, as an object of its own."""
-        return Interpolation.shared(self, k)
+    def __getitem__(self, k: int) -> Interpolation:
+        """Polygon k's result; its arrays are views."""
+        k = range(len(self))[k]
+        start, stop = self.offsets[k : k + 2].tolist()
+        first, last = self.residual_offsets[k : k + 2].tolist()
+        return self._result(
+            k, start, stop, self.whole[k].tolist(), first, last, float(self.tolerances[k]), float(self.rates[k])
+        )
 
     def results(self) -> list[Interpolation]:
-        """All polygons' shares."""
-        return Interpolation.all_shared(self, len(self))
+        """All polygons' results. Those of polygons that were refused are undefined."""
+        starts, ends = self.offsets.tolist(), self.residual_offsets.tolist()
+        rows = zip(
+            range(len(self)), starts, starts[1:], self.whole.tolist(), ends, ends[1:], self.tolerances.tolist(),
+            self.rates.tolist(), strict=False,
+        )  # fmt: skip
+        return [self._result(*row) for row in rows]
 
-    def read(self, k: int) -> dict[str, Any]:
-        """The attributes of that object (views of the arrays)."""
-        start, stop = int(self.offsets[k]), int(self.offsets[k + 1])
-        n, _, fallbacks = self.whole[k, 1:4].tolist()
+    def _result(
+        self, k: int, start: int, stop: int, whole: list[int], first: int, last: int, tolerance: float, rate: float
+    ) -> Interpolation:
+        _, n, iterations, fallbacks, _ = whole
         if self.closed:
             knots, controls = self.knots[start + k : start + k + n + 1], self.controls[start : start + n]
         else:
             knots, controls = self.knots[start : start + n], self.controls[start + 2 * k : start + 2 * k + n + 2]
-        residuals = self.residuals[self.residual_offsets[k] : self.residual_offsets[k + 1]]
         merged = NOTHING_MERGED
         if n < stop - start:
             merged = np.setdiff1d(np.arange(stop - start), self.kept[start : start + n])
-        return _attributes(
-            controls, knots, self.closed, self.parameters[start : start + n], self.bounds[start : start + n], residuals,
-            float(self.tolerances[k]), fallbacks, float(self.rates[k]), merged,
-        )  # fmt: skip
+        residuals = self.residuals[first:last]
+        return Interpolation(
+            Spline.trusted(controls, knots, 3, self.closed),
+            self.parameters[start : start + n],
+            self.bounds[start : start + n],
+            iterations,
+            residuals,
+            last > first and float(residuals[-1]) < tolerance,
+            fallbacks,
+            rate,
+            merged,
+        )
 
 
-def _attributes(
-    controls: FloatArray,
-    knots: FloatArray,
-    closed: bool,
-    parameters: FloatArray,
-    intervals: FloatArray,
-    residuals: FloatArray,
-    tolerance: float,
-    fallbacks: int,
-    rate_bound: float,
-    merged: IntArray,
-) -> dict[str, Any]:
-    return {
-        "spline": Spline.trusted(controls, knots, 3, closed),
-        "parameters": parameters,
-        "intervals": intervals,
-        "iterations": len(residuals) - 1,
-        "residuals": residuals,
-        "converged": bool(residuals[-1] < tolerance),
-        "fallbacks": fallbacks,
-        "rate_bound": rate_bound,
-        "merged": merged,
-    }
-
-
-def interpolate_ragged(
+def interpolate_batch(
     points: FloatArray,
     offsets: IntArray,
-    variant: int = 2,
+    method: Method,
     *,
-    margin: float = 0.0,
-    knots: str | FloatArray = "chord",
-    fallback: Fallback = "knot",
-    residual_tolerance: float | FloatArray = 1e-6,
-    max_iterations: int = 1000,
-    closed: bool = True,
+    knots: FloatArray | None = None,
     end_tangents: FloatArray | None = None,
-    finish: str = "iterate",
+    by_knot: BoolArray | None = None,
+    residual_tolerances: FloatArray | None = None,
     threads: int | None = None,
-) -> Ragged:
-    """Cubic interpolation of many polygons laid end to end, variants 1 to 3. No exception for a bad polygon.
+) -> BatchedInterpolation:
+    """Cubic interpolation of many polygons laid end to end. A bad polygon is no exception but a status.
 
     Args:
         points: (N, 2) float64, contiguous; offsets: (K + 1,) int64, where each polygon begins, and N.
-        knots: a rule, or all polygons' own parameters end to end (n + 1 each if closed, n if open).
-        residual_tolerance: one, or (K,).
+        method: of degree 3, without diagnostics.
+        knots: all polygons' own parameters end to end (n + 1 each if closed, n if open); None where the method has a
+            rule.
         end_tangents: (K, 2, 2) of open arcs, NaN where the end is natural; None: all are.
+        by_knot: (K,) polygons that have ``fallback="knot"`` whatever the method has.
+        residual_tolerances: (K,) in place of the method's.
         threads: as many at once; None for one a core. The results have the same bits whatever the number.
     """
-    run = _compiled()
     count, total = len(offsets) - 1, len(points)
+    peak_shares = np.full(count, method.peak_share)
+    if by_knot is not None:
+        peak_shares[by_knot] = 0.0
+    if method.stepwise:
+        return _gathered(points, offsets, method, peak_shares, threads)
+    run = _compiled()
+    closed = method.closed
     tangents = NO_TANGENTS
     if not closed:
         tangents = np.full((count, 2, 2), np.nan) if end_tangents is None else end_tangents
     tolerances: FloatArray = np.empty(count)
-    tolerances[:] = residual_tolerance
-    given, exponent = (NO_KNOTS, CHORD_EXPONENT[knots]) if isinstance(knots, str) else (knots, GIVEN)
+    default = np.nan if method.residual_tolerance is None else method.residual_tolerance
+    tolerances[:] = default if residual_tolerances is None else residual_tolerances
+    exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
     out = _results(total, count, closed)
-    peak_share = PEAK_SHARE if fallback == "peak" else 0.0
 
     def work(part: tuple[int, int]) -> Any:
-        most = int(np.diff(offsets[part[0] : part[1] + 1]).max(initial=0))
         return run(
-            part[0], part[1], points, offsets, given, tangents, closed, variant, float(margin), exponent, peak_share,
-            tolerances, max_iterations, finish == "solve", _room(most), *out,
+            part[0], part[1], points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
+            float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, method.finish == "solve",
+            _blocks(offsets, *part), *out,
         )  # fmt: skip
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     u, P, parameters, bounds, kept, whole, rates = out
-    lengths = np.where(whole[:, 2] < 0, 0, whole[:, 2] + 1)
     residual_offsets = np.zeros(count + 1, dtype=np.int64)
-    np.cumsum(lengths, out=residual_offsets[1:])
+    np.cumsum(whole[:, 2] + 1, out=residual_offsets[1:])
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return Ragged(offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, closed)
+    return BatchedInterpolation(
+        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, closed
+    )
+
+
+def _gathered(
+    points: FloatArray, offsets: IntArray, method: Method, peak_shares: FloatArray, threads: int | None
+) -> BatchedInterpolation:
+    """The same by the passes of any variant, a polygon at a time; closed polygons with a rule for the knots."""
+    total, count = int(offsets[-1]), len(offsets) - 1
+    by_knot = replace(method, fallback="knot")
+    out = _results(total, count, True)
+    u, P, parameters, bounds, kept, whole, rates = out
+    whole[:] = np.array([1, 0, -1, 0, 0])
+    tolerances, residuals = np.zeros(count), [np.empty(0)] * count
+
+    def one(k: int) -> None:
+        a, b = offsets[k : k + 2].tolist()
+        try:
+            r = interpolate_any_degree(points[a:b], method if peak_shares[k] > 0.0 else by_knot)
+        except PolygonError:
+            return
+        n = len(r.parameters)
+        u[a + k : a + k + n + 1], P[a : a + n] = r.spline.knots, r.spline.control_points
+        parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
+        kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
+        whole[k, :4], rates[k], residuals[k] = (0, n, r.iterations, r.fallbacks), r.rate_bound, r.residuals
+        tolerances[k] = method.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
+
+    over_threads(one, range(count), threads)
+    residual_offsets = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(whole[:, 2] + 1, out=residual_offsets[1:])
+    joined = np.concatenate([*residuals, np.empty(0)])
+    return BatchedInterpolation(
+        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, True
+    )
 
 
 def _threads(threads: int | None) -> int:
@@ -199,17 +228,18 @@ def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in pairwise(ends)]
 
 
-def _room(most: int) -> FloatArray:
-    """Room for a large polygon, or none: the compiled code finds small ones their own."""
+def _blocks(offsets: IntArray, first: int, stop: int) -> FloatArray:
+    """Blocks for the largest polygon if it is large; else none, and the compiled code allocates them."""
+    most = int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max(initial=0))
     if most < LARGE:
-        return NO_ROOM
+        return NO_BLOCKS
     from .kernels.blocks import BLOCK, LANES
 
-    return np.empty((-(-most // LANES), BLOCK))
+    return np.empty(-(-most // LANES) * BLOCK)
 
 
 def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
-    """Room for knots, control points, parameters, intervals, vertices kept, whole numbers and rates."""
+    """Knots, control points, parameters, intervals, vertices kept, whole numbers and rates, to be filled."""
     return (
         np.empty(total + count if closed else total),
         np.empty((total if closed else total + 2 * count, 2)),
@@ -221,57 +251,9 @@ def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
     )
 
 
-class Single:
-    """What the compiled core left of one polygon, made into the result's attributes when one is first asked for."""
-
-    __slots__ = ("closed", "out", "residuals", "tolerance")
-
-    def __init__(self, out: tuple[Any, ...], residuals: FloatArray, tolerance: float, closed: bool) -> None:
-        self.out, self.residuals, self.tolerance, self.closed = out, residuals, tolerance, closed
-
-    def read(self, k: int) -> dict[str, Any]:
-        """The attributes (``k`` is 0, there being one polygon)."""
-        u, P, parameters, bounds, kept, whole, rates = self.out
-        _, n, _, fallbacks, _ = whole[k].tolist()
-        merged = NOTHING_MERGED
-        if n < len(parameters):
-            merged = np.setdiff1d(np.arange(len(parameters)), kept[:n])
-            u, parameters, bounds = u[: n + self.closed], parameters[:n], bounds[:n]
-            P = P[: n if self.closed else n + 2]
-        return _attributes(
-            P, u, self.closed, parameters, bounds, self.residuals, self.tolerance, fallbacks, float(rates[k]), merged
-        )
-
-
-def interpolate_one(
-    points: FloatArray,
-    variant: int,
-    margin: float,
-    knots: str | FloatArray,
-    fallback: str,
-    tolerance: float,
-    max_iterations: int,
-    closed: bool,
-    tangents: FloatArray,
-    finish: str,
-) -> Interpolation | None:
-    """:func:`interpolate_ragged` of a single polygon with as little around it as can be; None if it was refused."""
-    n = len(points)
-    out = _results(n, 1, closed)
-    given, exponent = (NO_KNOTS, CHORD_EXPONENT[knots]) if isinstance(knots, str) else (knots, GIVEN)
-    residuals = _compiled()(
-        0, 1, points, np.array((0, n)), given, tangents, closed, variant, margin, exponent,
-        PEAK_SHARE if fallback == "peak" else 0.0, np.array((tolerance,)), max_iterations, finish == "solve", _room(n),
-        *out,
-    )  # fmt: skip
-    if out[WHOLE][0, 0]:
-        return None
-    return Interpolation.shared(Single(out, residuals, tolerance, closed), 0)
-
-
 @cache
 def _compiled() -> Any:
-    """The compiled core, imported when it is first wanted."""
+    """The compiled kernels, imported when they are first called: the import brings the compiler."""
     from .kernels.run import run
 
     return run
@@ -310,7 +292,7 @@ def _pool(threads: int) -> ThreadPoolExecutor:
 
 
 def explain(points: ArrayLike, knots: Any, closed: bool) -> PolygonError:
-    """The error that a polygon refused by the compiled core deserves, in words."""
+    """The error that says why the compiled kernels refused a polygon."""
     try:
         p, merged = clean_polygon(points, closed)
         if not isinstance(knots, str):

@@ -7,20 +7,11 @@ lives on, so that closed, open and odd- or even-degree splines look alike.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 
 import numpy as np
 
 from ..types import FloatArray
-
-Fallback: TypeAlias = Literal["knot", "peak"]
-
-PEAK_SHARE = 0.9
-"""``fallback="peak"`` asks for B_i ≥ min(1/2 + c, this share of its peak).
-
-Nearer to 1 the interval shrinks to the peak, which freezes the parameters; the lower, the less is left of
-the bound of Theorem 2 where peaks are low.
-"""
+from .method import PEAK_SHARE, Fallback
 
 BISECTIONS = 64
 """Enough halvings to leave neighbouring floats."""

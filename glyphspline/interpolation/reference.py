@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,31 +19,18 @@ from ..curves.bspline import Spline, full_knots
 from ..curves.parameters import Parametrisation, closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
-from .intervals import Fallback, Intervals, search_intervals
+from .diagnostics import diagnose
+from .driver import iterate
+from .intervals import Intervals, search_intervals
+from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Tangents
 from .polygon import clean_polygon
 from .result import Interpolation
-
-TIE = 1e-12
-"""Two squared distances are a tie if they differ by less than this share of them."""
-
-TIE_DISTANCE = 1e-14
-"""Distances below this share of the extent are all 0, and a tie: their last bits say nothing."""
-
-SETTLED = 3e-3
-"""``finish="solve"`` freezes the footpoints once the largest error is below this share of the mean chord.
-
-The curve then lies beside the limit of the iteration: measured on contours of glyphs, by 5e-4 of the mean chord
-(median; at most 1.5e-3), on random polygons by 3e-4. At 1e-3 that is a third of it, for a quarter more passes; at 1e-2
-three times as much, for a quarter less.
-"""
 
 NEARLY_REAL = 0.05
 """A zero whose imaginary part (in spans) is below this is polished, as is one that is so little outside the span.
 
 Rounding moves a zero of multiplicity m by some 1e-16 to the power 1/m: a fivefold one, the most there is, by 1e-3.
 """
-
-Tangents = tuple[ArrayLike | None, ArrayLike | None]
 
 
 def footpoint(spline: Spline, point: FloatArray, interval: FloatArray, centre: float) -> float:
@@ -223,52 +210,53 @@ def interpolate_reference(
     points: ArrayLike,
     variant: int = 2,
     *,
-    degree: int = 3,
-    margin: float = 0.0,
     knots: Parametrisation | ArrayLike = "chord",
-    fallback: Fallback = "knot",
-    residual_tolerance: float = 1e-6,
-    max_iterations: int = 1000,
-    closed: bool = True,
     end_tangents: Tangents | None = None,
-    finish: Literal["iterate", "solve"] = "iterate",
-    diagnostics: bool = False,
     disturb: Callable[[FloatArray], FloatArray] | None = None,
+    **options: Any,
 ) -> Interpolation:
     """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`.
 
-    ``disturb`` may change the free control points before each pass, to see what rounding errors come to.
+    ``disturb`` may change the free control points before each pass, to see how far rounding errors carry.
     """
+    rule: Any = knots if isinstance(knots, str) else None
+    method = Method(variant, knots=rule, **options)
     problem = prepare(
-        points,
-        variant,
-        degree=degree,
-        margin=margin,
-        knots=knots,
-        fallback=fallback,
-        closed=closed,
-        end_tangents=end_tangents,
-    )
+        points, variant, degree=method.degree, margin=method.margin, knots=knots, fallback=method.fallback,
+        closed=method.closed, end_tangents=end_tangents,
+    )  # fmt: skip
+    tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
     chords = np.diff(problem.centres) if len(problem.centres) > 1 else np.ones(1)
-    settled = SETTLED * float(chords.mean()) if finish == "solve" else 0.0
-    free = problem.points[problem.vertices].copy()
-    residuals: list[float] = []
-    history: list[tuple[FloatArray, FloatArray]] = []
-    while True:
-        free = disturb(free) if disturb else free
-        t, updated, error = (_sweep if variant == 4 else _step)(problem, free)
-        residuals.append(error)
-        history.append((problem.spread @ free + problem.fixed, t))
-        if error < max(residual_tolerance, settled):
-            free = updated if variant == 4 else free
-            break
-        if len(residuals) > max_iterations or not np.isfinite(updated).all():
-            break
-        free = updated
-    if finish == "solve" and len(free):
+    settled = SETTLED * float(chords.mean()) if method.finish == "solve" else 0.0
+    at_once = variant == 4
+
+    def one_pass(free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        return (_sweep if at_once else _step)(problem, disturb(free) if disturb else free)
+
+    first = problem.points[problem.vertices].copy()
+    run = iterate(one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics)
+    free, t, residuals = run.controls, run.footpoints, run.residuals
+    if method.finish == "solve" and len(free):
         free = _solve(problem, t)
         residuals.append(_error_at(problem, free, t))
-    return _result(problem, free, t, residuals, residual_tolerance, history if diagnostics else None, variant)
+    parameters, bounds = problem.centres.copy(), np.stack([problem.centres, problem.centres], axis=1)
+    parameters[problem.vertices], bounds[problem.vertices] = t, problem.intervals.bounds
+    observed: dict[str, Any] = {}
+    if method.diagnostics:
+        observed = diagnose(problem.matrix, run.history, at_once)
+        observed["history"] = tuple((problem.spread @ free + problem.fixed, t) for free, t in run.history)
+    return Interpolation(
+        spline=problem.spline(free),
+        parameters=parameters,
+        intervals=bounds,
+        iterations=len(residuals) - 1,
+        residuals=np.array(residuals),
+        converged=bool(residuals[-1] < tolerance),
+        fallbacks=problem.intervals.fallbacks,
+        rate_bound=problem.intervals.rate_bound,
+        merged=problem.merged,
+        **observed,
+    )
 
 
 def _step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
@@ -311,68 +299,16 @@ def _error_at(problem: Problem, free: FloatArray, t: FloatArray) -> float:
     return float(np.hypot(*e.T).max())
 
 
-def _result(
-    problem: Problem,
-    free: FloatArray,
-    t: FloatArray,
-    residuals: list[float],
-    residual_tolerance: float,
-    history: list[tuple[FloatArray, FloatArray]] | None,
-    variant: int,
-) -> Interpolation:
-    v = problem.vertices
-    parameters = problem.centres.copy()
-    parameters[v] = t
-    bounds = np.stack([problem.centres, problem.centres], axis=1)
-    bounds[v] = problem.intervals.bounds
-    observed: dict[str, Any] = diagnose(problem, history, variant) if history is not None else {}
-    return Interpolation(
-        spline=problem.spline(free),
-        parameters=parameters,
-        intervals=bounds,
-        iterations=len(residuals) - 1,
-        residuals=np.array(residuals),
-        converged=bool(residuals[-1] < residual_tolerance),
-        fallbacks=problem.intervals.fallbacks,
-        rate_bound=problem.intervals.rate_bound,
-        merged=problem.merged,
-        **observed,
-    )
-
-
-def diagnose(problem: Problem, history: list[tuple[FloatArray, FloatArray]], variant: int) -> dict[str, Any]:
-    """Error iteration matrices of a run: the largest row-sum norm, and the spectral radius of their product so far.
-
-    In Algorithm 2 the factor of a step is I - Bᵐ (the paper's equation 3). In Algorithm 3, with L the part of B
-    below the diagonal, the corrections of a sweep are (I + L)⁻¹ times the errors before it, so that the factor
-    from one sweep's corrections to the next one's is I - (I + L)⁻¹ B.
-    """
-    size = len(problem.vertices)
-    identity = np.eye(size)
-    product = identity
-    norms, radii = [], []
-    for _, t in history[:-1]:
-        B = problem.matrix(t)
-        factor = identity - (np.linalg.solve(identity + np.tril(B, -1), B) if variant == 4 else B)
-        product = factor @ product
-        norms.append(float(np.abs(factor).sum(axis=1).max(initial=0.0)))
-        radii.append(float(np.abs(np.linalg.eigvals(product)).max(initial=0.0)))
-    return {
-        "history": tuple(history),
-        "rate_observed": max(norms, default=0.0),
-        "spectral_radii": np.array(radii),
-    }
-
-
 def interpolate_vertex_reference(
     points: ArrayLike,
     k: int,
     *,
     whole_curve: bool = False,
-    residual_tolerance: float = 1e-6,
+    residual_tolerance: float | None = None,
     max_iterations: int = 1000,
 ) -> Interpolation:
     """Algorithm 1: only control point k moves, until the curve passes through p_k (arguments as in the public one)."""
+    method = Method(1, residual_tolerance=residual_tolerance, max_iterations=max_iterations)
     problem = prepare(points, 1)
     n = len(problem.points)
     if not 0 <= k < n:
@@ -380,24 +316,24 @@ def interpolate_vertex_reference(
     T = problem.knots[-1]
     centre = float(problem.centres[k])
     interval = np.array([centre - T / 2, centre + T / 2]) if whole_curve else problem.intervals.bounds[k]
-    P = problem.points.copy()
-    residuals: list[float] = []
-    while True:
-        spline = problem.spline(P)
+
+    def one_pass(P: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        spline, updated = problem.spline(P), P.copy()
         t = footpoint(spline, problem.points[k], interval, centre)
         e = problem.points[k] - spline(t)
-        residuals.append(float(np.hypot(*e)))
-        if residuals[-1] < residual_tolerance or len(residuals) > max_iterations:
-            break
-        P[k] += e
+        updated[k] += e
+        return np.array([t]), updated, float(np.hypot(*e))
+
+    tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
+    run = iterate(one_pass, problem.points.copy(), tolerance, max_iterations)
     least = _least_basis_value(problem, k) if not whole_curve else 0.0
     return Interpolation(
-        spline=spline,
-        parameters=np.array([t]),
+        spline=problem.spline(run.controls),
+        parameters=run.footpoints,
         intervals=interval[None],
-        iterations=len(residuals) - 1,
-        residuals=np.array(residuals),
-        converged=residuals[-1] < residual_tolerance,
+        iterations=len(run.residuals) - 1,
+        residuals=np.array(run.residuals),
+        converged=run.residuals[-1] < tolerance,
         fallbacks=0,
         rate_bound=1 - least,
         merged=problem.merged,

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from ..curves.bspline import Spline
 from ..types import FloatArray, IntArray
 
 
-class Shared(Protocol):
-    """Results of many polygons in common arrays."""
-
-    def read(self, k: int) -> dict[str, Any]:
-        """The attributes of polygon k's :class:`Interpolation`."""
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Interpolation:
-    """What an interpolation came to; not converging is a result, not an error.
+    """The result of an interpolation; not converging is a result, not an error.
 
     Attributes:
         spline: the curve.
@@ -47,45 +41,22 @@ class Interpolation:
     rate_observed: float | None = None
     spectral_radii: FloatArray | None = None
 
-    @classmethod
-    def trusted(cls, attributes: dict[str, Any]) -> Interpolation:
-        """The same, built in a third of the time: it matters beside a contour of 20 vertices."""
-        result = cls.__new__(cls)
-        result.__dict__.update(attributes)
-        return result
-
-    @classmethod
-    def shared(cls, source: Shared, k: int) -> Interpolation:
-        """The result of polygon k, read from ``source`` when an attribute is first asked for: most never are."""
-        result = cls.__new__(cls)
-        object.__setattr__(result, "_source", source)  # without touching __dict__, which would make one
-        object.__setattr__(result, "_row", k)
-        return result
-
-    @classmethod
-    def all_shared(cls, source: Shared, count: int) -> list[Interpolation]:
-        """The results of polygons 0 to ``count - 1``, as :meth:`shared` makes them one by one."""
-        results, place = [cls.__new__(cls) for _ in range(count)], object.__setattr__
-        for k, result in enumerate(results):
-            place(result, "_source", source)
-            place(result, "_row", k)
-        return results
-
-    def __getstate__(self) -> dict[str, Any]:
-        source = self.__dict__.get("_source")
-        if source is not None:
-            self.__dict__.update(source.read(self.__dict__["_row"]), _source=None)
-        return {name: value for name, value in self.__dict__.items() if name not in ("_source", "_row")}
-
-    if not TYPE_CHECKING:  # a checker should go by the attributes listed above
-
-        def __getattr__(self, name: str) -> Any:
-            try:
-                return self.__getstate__()[name]
-            except KeyError:
-                raise AttributeError(f"'Interpolation' object has no attribute {name!r}") from None
-
     @property
     def max_error(self) -> float:
         """The largest distance of a vertex from its footpoint on the result."""
         return float(self.residuals[-1])
+
+
+def reversed_interpolation(result: Interpolation) -> Interpolation:
+    """The same closed curve with the polygon traversed the other way, from the same first vertex."""
+    spline, t, ends = result.spline, result.parameters, result.intervals
+    period = spline.knots[-1]
+    parameters, intervals = turned(period - t), turned(period - ends[:, ::-1])
+    parameters[0], intervals[0] = -t[0], -ends[0, ::-1]
+    controls, knots = turned(spline.control_points), period - spline.knots[::-1]
+    return replace(result, spline=Spline.trusted(controls, knots, 3, True), parameters=parameters, intervals=intervals)
+
+
+def turned(rows: FloatArray) -> FloatArray:
+    """The rows of a ring of vertices in the opposite direction, from the same first one."""
+    return np.concatenate([rows[:1], rows[:0:-1]])

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import Ragged, interpolate_ragged
+from glyphspline.interpolation.batched import BatchedInterpolation, interpolate_batch
+from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
 from glyphspline.types import FloatArray, IntArray
 
@@ -37,14 +38,14 @@ class Polygons:
         tolerances = np.array([SHARE * np.ptp(p, axis=0).max() for p in polygons])
         return cls(np.concatenate(polygons), np.cumsum([0, *map(len, polygons)]), tolerances)
 
-    def run(self, threads: int = 1, **options: Any) -> Ragged:
+    def run(self, threads: int = 1, **options: Any) -> BatchedInterpolation:
         """Interpolate all by variant 2."""
-        return interpolate_ragged(
-            self.points, self.offsets, residual_tolerance=self.tolerances, threads=threads, **options
+        return interpolate_batch(
+            self.points, self.offsets, Method(**options), residual_tolerances=self.tolerances, threads=threads
         )
 
 
-def _footpoints(result: Ragged) -> int:
+def _footpoints(result: BatchedInterpolation) -> int:
     return int(((result.whole[:, 2] + 1) * result.whole[:, 1]).sum())
 
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ...curves.bspline import Spline
 from ...errors import PolygonError
-from ...interpolation.api import check_options, interpolate_many
+from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays
 from ...types import FloatArray, IntArray
@@ -68,35 +67,28 @@ class SharpFit:
         """The arcs of contour c."""
         first, last = self.offsets[c : c + 2].tolist()
         spans = self.pieces.where[first:last, 3].tolist()
-        single = _SingleSpans(self.pieces)
         return tuple(
-            self.splines[q] if k > 1 else Interpolation.shared(single, q) for q, k in enumerate(spans, first) if k
+            self.splines[q] if k > 1 else _single_span(self.pieces, q) for q, k in enumerate(spans, first) if k
         )
 
 
-class _SingleSpans:
-    """Arcs of one span, made into interpolations when one is first asked for: nothing is left to iterate there."""
-
-    def __init__(self, pieces: Pieces) -> None:
-        self.pieces = pieces
-
-    def read(self, k: int) -> dict[str, Any]:
-        """The attributes of piece k."""
-        (p0, p1), (tangent0, tangent1) = self.pieces.vertices[self.pieces.starts[k] :][:2], self.pieces.tangents[k]
-        chord = np.hypot(*(p1 - p0))
-        knots = np.array([0.0, chord])
-        controls = np.array([p0, p0 + chord / 3 * tangent0, p1 - chord / 3 * tangent1, p1])
-        return {
-            "spline": Spline.trusted(controls, knots, 3, False),
-            "parameters": knots,
-            "intervals": np.stack([knots, knots], axis=1),
-            "iterations": 0,
-            "residuals": np.zeros(1),
-            "converged": True,
-            "fallbacks": 0,
-            "rate_bound": 0.0,
-            "merged": np.empty(0, dtype=np.int64),
-        }
+def _single_span(pieces: Pieces, q: int) -> Interpolation:
+    """Piece q, an arc of one span, as an interpolation: nothing is left to iterate there."""
+    (p0, p1), (tangent0, tangent1) = pieces.vertices[pieces.starts[q] :][:2], pieces.tangents[q]
+    chord = np.hypot(*(p1 - p0))
+    knots = np.array([0.0, chord])
+    controls = np.array([p0, p0 + chord / 3 * tangent0, p1 - chord / 3 * tangent1, p1])
+    return Interpolation(
+        spline=Spline.trusted(controls, knots, 3, False),
+        parameters=knots,
+        intervals=np.stack([knots, knots], axis=1),
+        iterations=0,
+        residuals=np.zeros(1),
+        converged=True,
+        fallbacks=0,
+        rate_bound=0.0,
+        merged=np.empty(0, dtype=np.int64),
+    )
 
 
 def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:
@@ -105,10 +97,6 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
     Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end
     become the source's own segments, of which each is an arc of one span.
     """
-    check_options(
-        options.variant, 3, options.margin, options.fallback, options.solver_tolerance, options.max_iterations,
-        False, None, "iterate",
-    )  # fmt: skip
     settings = Settings(
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
         angle=np.radians(options.corner_angle), line=LONG_LINE * em, margin=float(options.margin),

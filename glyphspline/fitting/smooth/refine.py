@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import GlyphsplineError
-from ...interpolation.batched import Ragged
+from ...interpolation.batched import BatchedInterpolation
 from ...types import FloatArray, IntArray
 from ..options import Options
 from ..policy import interpolated
@@ -53,7 +53,7 @@ class Round:
     places: FloatArray
     offsets: IntArray
     points: FloatArray
-    found: Ragged
+    found: BatchedInterpolation
     pieces: FloatArray
     written: FloatArray
     bounds: FloatArray

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...interpolation.result import Interpolation
+from ...interpolation.result import reversed_interpolation, turned
 from ...outlines.outline import Contour, Contours
 from ...types import FloatArray, IntArray
 from ..certified_distance import certified_distance
 from ..measures import check_coordinates
 from ..options import Options
-from ..policy import Backwards, turned
 from ..results import ContourResult, Measures
 from . import steps as rounds
 from .canonical_contours import Chains, chains_of
@@ -74,7 +73,7 @@ def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Mea
     if flipped:
         points, pieces = turned(points), pieces[::-1, ::-1]
     curve = Contour(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3))
-    result = Interpolation.shared(Backwards(found.found) if flipped else found.found, i)
+    result = reversed_interpolation(found.found[i]) if flipped else found.found[i]
     return ContourResult(contour, points, (result,), curve, measures)
 
 

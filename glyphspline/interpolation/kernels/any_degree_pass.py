@@ -1,23 +1,29 @@
-"""Algorithms 2 and 3 for every degree, variant and kind of curve, a vertex at a time.
+"""One pass of Algorithm 2 or 3 for every degree, variant and kind of curve, a vertex at a time.
 
-Cubic curves in variants 1 to 3 take the faster way of ``lanes``; this one does all the rest, and records histories.
+Cubic curves in variants 1 to 3 have the faster passes of :mod:`.newton_simd`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import comb
+from typing import NamedTuple
 
 import numpy as np
 
 from ...compiled import compiled
 from ...curves.bspline import bezier_pieces, full_knots, span_controls
 from ...types import FloatArray, IntArray
-from .footpoint import WORK, search_piece
+from ..intervals import BISECTIONS
+from ..method import TIE_DISTANCE
+from .footpoint import MAX_DEGREE, WORK, search_piece
+
+KNOTS = MAX_DEGREE + 2
+"""The most knots a basis function lives on."""
+
+TIED = TIE_DISTANCE**2
 
 
-@dataclass(frozen=True, eq=False)
-class Layout:
+class Layout(NamedTuple):
     """A polygon made ready for the compiled passes: origin at its first vertex, extent and mean knot interval near 1.
 
     Attributes:
@@ -74,10 +80,10 @@ def make_layout(
     within = np.clip(np.searchsorted(u, bounds - lap * T, side="right") - 1, 0, n_spans - 1)
     return Layout(
         points=np.ascontiguousarray(points),
-        bounds=bounds,
-        centres=centres,
+        bounds=np.ascontiguousarray(bounds),
+        centres=np.ascontiguousarray(centres),
         spans=(lap * n_spans).astype(np.int64) + within,
-        starts=u[:-1],
+        starts=np.ascontiguousarray(u[:-1]),
         period=T if closed else 0.0,
         matrices=power_matrices(u, degree, closed),
         indices=span_controls(n_spans, degree, closed).astype(np.int64),
@@ -87,67 +93,65 @@ def make_layout(
     )
 
 
-@compiled
-def _coefficients(span, P, px, py, matrices, indices, c):
+@compiled(internal=True)
+def _coefficients(span: int, P: FloatArray, px: float, py: float, v: Layout, c: FloatArray) -> None:
     """Coefficients of the piece about p: c[axis, k] of (t - start)^k."""
-    order = matrices.shape[1]
+    order = v.matrices.shape[1]
     for k in range(order):
         x, y = 0.0, 0.0
         for j in range(order):
-            weight = matrices[span, k, j]
-            x += weight * (P[indices[span, j], 0] - px)
-            y += weight * (P[indices[span, j], 1] - py)
+            weight = v.matrices[span, k, j]
+            x += weight * (P[v.indices[span, j], 0] - px)
+            y += weight * (P[v.indices[span, j], 1] - py)
         c[0, k] = x
         c[1, k] = y
 
 
-@compiled
-def follow_ends(P, count, natural, base):
+@compiled(internal=True)
+def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
     """The fixed control points beside natural ends, which follow the first and last free ones."""
-    if count > 0:
+    if count > 0 and v.period == 0.0:
         for axis in range(2):
-            P[1, axis] = base[0, axis] + natural[0] * P[2, axis]
-            P[count + 2, axis] = base[1, axis] + natural[1] * P[count + 1, axis]
+            P[1, axis] = v.base[0, axis] + v.natural[0] * P[2, axis]
+            P[count + 2, axis] = v.base[1, axis] + v.natural[1] * P[count + 1, axis]
 
 
 @compiled
-def one_pass(
-    P, t, e, points, bounds, centres, spans, starts, period, matrices, indices, first, natural, base, at_once, tie
-):
-    """Footpoints of all vertices, into t, and the errors p - C(t), into e; the largest distance is returned.
+def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
+    """Footpoints of all vertices, into t, and the update P_i += p_i - C(t_i); the largest error before it is returned.
 
-    With ``at_once`` (Algorithm 3) each control point is moved before the next vertex is looked at; otherwise P stays.
+    With ``at_once`` (Algorithm 3) each control point is moved before the next vertex is looked at.
     """
-    n, d = starts.shape[0], matrices.shape[1] - 1
-    c = np.empty((2, d + 1))
-    work = np.empty(WORK)
+    n, d, count = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape[0]
+    c, work, e = np.empty((2, d + 1)), np.empty(WORK), np.empty((count, 2))
     largest = 0.0
-    for i in range(points.shape[0]):
-        px, py = points[i, 0], points[i, 1]
-        low, high = bounds[i, 0], bounds[i, 1]
+    for i in range(count):
+        px, py = v.points[i, 0], v.points[i, 1]
+        low, high = v.bounds[i, 0], v.bounds[i, 1]
         before, D = min(max(t[i], low), high), np.inf
         x = before
-        here = spans[i, 0]
-        for k in range(spans[i, 0], spans[i, 1] + 1):
-            if starts[k % n] + (k // n) * period <= before:
+        first, last = v.spans[i, 0], v.spans[i, 1]
+        here = first
+        for k in range(first, last + 1):
+            if v.starts[k % n] + (k // n) * v.period <= before:
                 here = k
-        for turn in range(spans[i, 1] - spans[i, 0] + 1):
-            k = spans[i, 0] + (here - spans[i, 0] + turn) % (spans[i, 1] - spans[i, 0] + 1)
+        for turn in range(last - first + 1):
+            k = first + (here - first + turn) % (last - first + 1)
             lap, span = k // n, k % n
-            origin = starts[span] + lap * period
-            end = (starts[span + 1] if span + 1 < n else np.inf) + lap * period
-            if span + 1 == n and period > 0.0:
-                end = (lap + 1) * period
+            origin = v.starts[span] + lap * v.period
+            end = (v.starts[span + 1] if span + 1 < n else np.inf) + lap * v.period
+            if span + 1 == n and v.period > 0.0:
+                end = (lap + 1) * v.period
             a, b = max(low, origin) - origin, min(high, end) - origin
             if b < a:
                 continue
-            _coefficients(span, P, px, py, matrices, indices, c)
-            x, D = search_piece(c, d, origin, a, b, centres[i], x, D, tie, work)
-        for k in range(spans[i, 0], spans[i, 1] + 1):
-            if starts[k % n] + (k // n) * period <= x or k == spans[i, 0]:
+            _coefficients(span, P, px, py, v, c)
+            x, D = search_piece(c, d, origin, a, b, v.centres[i], x, D, TIED, work)
+        for k in range(first, last + 1):
+            if v.starts[k % n] + (k // n) * v.period <= x or k == first:
                 here = k
-        _coefficients(here % n, P, px, py, matrices, indices, c)
-        y = x - (starts[here % n] + (here // n) * period)
+        _coefficients(here % n, P, px, py, v, c)
+        y = x - (v.starts[here % n] + (here // n) * v.period)
         qx, qy = c[0, d], c[1, d]
         for k in range(d - 1, -1, -1):
             qx, qy = qx * y + c[0, k], qy * y + c[1, k]
@@ -157,48 +161,104 @@ def one_pass(
             return np.inf
         largest = max(largest, distance)
         if at_once:
-            P[first + i, 0] -= qx
-            P[first + i, 1] -= qy
-            if period == 0.0:
-                follow_ends(P, points.shape[0], natural, base)
+            P[v.first + i, 0] -= qx
+            P[v.first + i, 1] -= qy
+            _follow_ends(P, count, v)
+    if not at_once:
+        for i in range(count):
+            P[v.first + i, 0] += e[i, 0]
+            P[v.first + i, 1] += e[i, 1]
+        _follow_ends(P, count, v)
     return largest
 
 
-@compiled
-def passes(
-    P, t, e, points, bounds, centres, spans, starts, period, matrices, indices, first, natural, base, at_once, tie,
-    limit, residuals,
-):  # fmt: skip
-    """Passes of Algorithm 2, or 3 with ``at_once``, until the error is below ``limit``; how many were made.
+@compiled(internal=True)
+def _basis_value(w: FloatArray, spans: int, t: float, N: FloatArray) -> float:
+    """B(t) on its knots w[0] … w[spans], by Cox and de Boor; each span is closed at its left end.
 
-    At most ``len(residuals)`` passes are made, whose errors go there. What the last of them changed stays only if it
-    passes.
+    The last span of positive length is closed at both. N is room for KNOTS numbers.
     """
-    before = P.copy()
-    for made in range(residuals.shape[0]):
-        if at_once:
-            before[:] = P
-        largest = one_pass(
-            P, t, e, points, bounds, centres, spans, starts, period, matrices, indices, first, natural, base, at_once,
-            tie,
-        )  # fmt: skip
-        residuals[made] = largest
-        if largest < limit:
-            return made + 1
-        if made + 1 == residuals.shape[0] or not largest < np.inf:
+    end = w[spans]
+    for k in range(spans):
+        u, v = w[k], w[k + 1]
+        N[k] = 1.0 if (u <= t < v) or (v > u and v == end and t == end) else 0.0
+    for width in range(1, spans):
+        for k in range(spans - width):
+            rising = w[k + width] - w[k]
+            falling = w[k + width + 1] - w[k + 1]
+            value = 0.0
+            if rising > 0.0:
+                value = (t - w[k]) / rising * N[k]
+            if falling > 0.0:
+                value += (1.0 - (t - w[k + 1]) / falling) * N[k + 1]
+            N[k] = value
+    return N[0]
+
+
+@compiled(internal=True)
+def _bisected(w: FloatArray, spans: int, inside: float, outside: float, level: float, N: FloatArray) -> float:
+    """The last parameter between ``inside`` and ``outside`` at which B ≥ level; with level < 0 that at which B' > 0.
+
+    B' is the difference of the two basis functions of one degree less.
+    """
+    for _ in range(BISECTIONS):
+        middle = (inside + outside) / 2
+        if middle in (inside, outside):
             break
-        if not at_once:
-            move(P, e, first, period, natural, base)
-    if at_once:
-        P[:] = before
-    return made + 1
+        if level >= 0.0:
+            enough = _basis_value(w, spans, middle, N) >= level
+        else:
+            slope = 0.0
+            if w[spans - 1] > w[0]:
+                slope = _basis_value(w, spans - 1, middle, N) / (w[spans - 1] - w[0])
+            if w[spans] > w[1]:
+                slope -= _basis_value(w[1:], spans - 1, middle, N) / (w[spans] - w[1])
+            enough = slope > 0.0
+        if enough:
+            inside = middle
+        else:
+            outside = middle
+    return inside if level >= 0.0 else (inside + outside) / 2
 
 
 @compiled
-def move(P, e, first, period, natural, base):
-    """P_i += p_i - C(t_i), all at once."""
-    for i in range(e.shape[0]):
-        P[first + i, 0] += e[i, 0]
-        P[first + i, 1] += e[i, 1]
-    if period == 0.0:
-        follow_ends(P, e.shape[0], natural, base)
+def search_bounds(
+    windows: FloatArray, centres: FloatArray, variant: int, margin: float, peak_share: float, bounds: FloatArray
+) -> tuple[int, float]:
+    """Where each footpoint is sought, into ``bounds``; the fallbacks, and the least value of a B_i on its interval.
+
+    The rules, and the halvings, of ``intervals.py``, which explains them.
+
+    Args:
+        windows: (n, degree + 2) the knots of each basis function.
+        centres: (n,) the parameter of each vertex.
+        peak_share: of ``fallback="peak"``, else 0.
+    """
+    N = np.empty(KNOTS)
+    spans = windows.shape[1] - 1
+    fallbacks, least = 0, 1.0
+    for i in range(windows.shape[0]):
+        w = windows[i]
+        if variant == 0:
+            low, high = w[0], w[spans]
+        elif variant == 1:
+            low, high = w[1], w[spans - 1]
+        elif variant == 3:
+            low = high = centres[i]
+        else:
+            peak = _bisected(w, spans, w[0], w[spans], -1.0, N)
+            highest = _basis_value(w, spans, peak, N)
+            fallbacks += highest <= 0.5
+            level = min(0.5 + margin, peak_share * highest if peak_share > 0.0 else highest)
+            low = high = peak
+            if peak_share == 0.0 and highest <= 0.5:
+                low = high = centres[i]
+            elif highest > level:
+                low = _bisected(w, spans, peak, w[0], level, N)
+                high = _bisected(w, spans, peak, w[spans], level, N)
+            if peak_share > 0.0 or highest > 0.5:
+                low = min(max(low, w[1]), w[spans - 1])
+                high = min(max(high, w[1]), w[spans - 1])
+        bounds[i, 0], bounds[i, 1] = low, high
+        least = min(least, _basis_value(w, spans, low, N), _basis_value(w, spans, high, N))
+    return fallbacks, least

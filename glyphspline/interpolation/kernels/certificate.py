@@ -1,7 +1,7 @@
-"""The vertices whose certificate ``lanes`` did not establish at once: a closer look, then a search in full.
+"""Vertices that ``newton_simd`` flags: the certificate in parts, then a full search.
 
-Of the main side the certificate may hold in smaller parts. All of the other side may be farther away than y*, by the
-Bernstein coefficients of the squared distance. It is one vertex at a time here; one in a hundred comes this far.
+On the main side the certificate may hold in smaller parts. All of the other side may be farther away than y*, by the
+Bernstein coefficients of the squared distance. One vertex in a hundred is flagged, so this is done one by one.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled, select
+from ...types import FloatArray
+from ..method import TIE_DISTANCE
+from .blocks import DD, EX, EY, TWO, X
 from .footpoint import GUARD, WORK, search_piece
 from .newton_simd import (
     BAD,
-    DD,
     DONE,
-    EX,
-    EY,
     OTHER,
     OZX,
     OZY,
@@ -31,19 +31,21 @@ from .newton_simd import (
     SY,
     SZX,
     SZY,
-    X,
     bernstein,
     expanded,
     quartic,
-)
+)  # fmt: skip
 
 BEYOND = 1 + 1e-9
 CUT = 0.125
 SEARCHED = 9.0
+"""Mark of a vertex that took a full search, in the field ``BAD``."""
 
 
-@compiled
-def _least_distance(ex, ey, vx, vy, wx, wy, zx, zy, L):
+@compiled(internal=True)
+def _least_distance(
+    ex: float, ey: float, vx: float, vy: float, wx: float, wy: float, zx: float, zy: float, L: float
+) -> float:
     """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L."""
     ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
     bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
@@ -63,8 +65,8 @@ def _least_distance(ex, ey, vx, vy, wx, wy, zx, zy, L):
     return select(d < least, d, least)
 
 
-@compiled
-def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
+@compiled(internal=True)
+def _proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
     """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
 
     Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
@@ -83,8 +85,8 @@ def _proven_in_parts(c0, c1, c2, c3, c4, L, guard):
     return False
 
 
-@compiled
-def _second_look(S, j):
+@compiled(internal=True)
+def _second_look(S: FloatArray, j: int) -> bool:
     """Whether the certificate holds on the main side after all, in parts."""
     y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
     qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
@@ -96,8 +98,8 @@ def _second_look(S, j):
     )
 
 
-@compiled
-def _search(B, S, j, main_side, other_side, D, tie):
+@compiled(internal=True)
+def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float) -> None:
     """Search the main side, the other one, or both in full. D: the best so far, inf if that does not count."""
     c = np.empty((2, 4))
     work = np.empty(WORK)
@@ -113,7 +115,7 @@ def _search(B, S, j, main_side, other_side, D, tie):
         c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
         c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
         c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
-        y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, tie, work)
+        y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
         if D_new < D or y != sign * x:
             x, D = sign * y, D_new
             B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
@@ -122,14 +124,14 @@ def _search(B, S, j, main_side, other_side, D, tie):
     B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
 
 
-@compiled
-def flagged(B, S, first, m, tie):
+@compiled(internal=True)
+def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
     These are marked ``SEARCHED`` in the field BAD.
     """
     searched = 0
-    for j in range(first, np.uint64(m) + first):
+    for j in range(TWO, np.uint64(m) + TWO):
         flag = S[BAD + j]
         if flag == 0.0:
             continue
@@ -144,5 +146,5 @@ def flagged(B, S, first, m, tie):
             continue
         searched += 1
         S[BAD + j] = SEARCHED
-        _search(B, S, j, main_side, other_side, np.inf if main_side else D, tie)
+        _search(B, S, j, main_side, other_side, np.inf if main_side else D)
     return searched

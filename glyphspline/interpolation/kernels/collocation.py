@@ -13,40 +13,54 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled, select
-from . import blocks as fields
-from .blocks import HALO, LANES
-from .layout import PAD
+from ...types import FloatArray
+from .blocks import (
+    BLOCK,
+    COUNT,
+    EX,
+    EY,
+    HALF,
+    HALO,
+    INTERVALS,
+    LANE,
+    LANES,
+    NATURAL,
+    ONE,
+    PAD,
+    RATE,
+    THIRD,
+    TWO,
+    Group,
+    X,
+)  # fmt: skip
 
 BAND, RIGHT, ROW = 5, 5, 9
-X, EX, EY, RATE, HALF, THIRD = (
-    np.uint64(k) for k in (fields.X, fields.EX, fields.EY, fields.RATE, fields.HALF, fields.THIRD)
-)
-ONE, TWO = np.uint64(1), np.uint64(2)
 SMALLEST_PIVOT = 1e-14
 
 
-@compiled
-def collocation(blocks, n, h, rows):
+@compiled(internal=True)
+def _collocation(group: Group, q: int) -> None:
     """B_{i-2} … B_{i+2} at u_i + x and the errors of every vertex, into rows: Cox and de Boor on the span of u_i + x.
 
     The reciprocals are those that a block keeps: of one, two and three knot intervals.
     """
+    n, h = group.table[q, COUNT], group.h[group.table[q, INTERVALS] :]
     for b in range((n + LANES - 1) // LANES):
-        block = blocks[b]
-        for lane in range(min(LANES, n - b * LANES)):
-            row = rows[b * LANES + lane]
-            j = np.uint64(lane + HALO)
-            x = block[X + j]
+        block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
+        for i in range(min(LANES, n - b * LANES)):
+            row = group.rows[b * LANES + i]
+            lane = np.uint64(group.table[q, LANE] + i + HALO)
+            x = block[X + lane]
             right = x >= 0.0
-            k = b * LANES + lane + PAD - (0 if right else 1)
-            j -= select(right, np.uint64(0), ONE)
+            k = b * LANES + i + PAD - (0 if right else 1)
+            j = lane - select(right, np.uint64(0), ONE)
             before, here, after = h[k - 1], h[k], h[k + 1]
             a = x if right else x + here  # from the span's left end; b to its right end
             b_ = here - a
             third, third1, third2 = block[RATE + j] / 3.0, block[RATE + j + ONE] / 3.0, block[RATE + j + TWO] / 3.0
             inverse = 3.0 * block[THIRD + j]
-            p, q = b_ * inverse * block[HALF + j], a * inverse * block[HALF + j + ONE]
-            m0, m1, m2 = b_ * p * third, ((a + before) * p + (b_ + after) * q) * third1, a * q * third2
+            p0, p1 = b_ * inverse * block[HALF + j], a * inverse * block[HALF + j + ONE]
+            m0, m1, m2 = b_ * p0 * third, ((a + before) * p0 + (b_ + after) * p1) * third1, a * p1 * third2
             n0, n3 = b_ * m0, a * m2
             n1 = (a + h[k - 2] + before) * m0 + (b_ + after) * m1
             n2 = (a + before) * m1 + (b_ + after + h[k + 2]) * m2
@@ -55,12 +69,11 @@ def collocation(blocks, n, h, rows):
             row[2] = select(right, n1, n2)
             row[3] = select(right, n2, n3)
             row[4] = select(right, n3, 0.0)
-            j = np.uint64(lane + HALO)
-            row[5], row[6], row[7], row[8] = block[EX + j], block[EY + j], 0.0, 0.0
+            row[5], row[6], row[7], row[8] = block[EX + lane], block[EY + lane], 0.0, 0.0
 
 
-@compiled
-def eliminate(rows):
+@compiled(internal=True)
+def _eliminate(rows: FloatArray) -> bool:
     """Solve the band for all four right-hand sides, in place. False if a pivot vanishes.
 
     The two rows before travel along as numbers: inverse pivot, two entries above the diagonal, right-hand sides.
@@ -94,8 +107,8 @@ def eliminate(rows):
     return True
 
 
-@compiled
-def eliminate_cyclic(rows, n):
+@compiled(internal=True)
+def _eliminate_cyclic(rows: FloatArray, n: int) -> bool:
     """The same with rows that wrap around, n ≥ 5. The solution is at numbers 5 and 6 of each row."""
     m = n - 2
     for i in (0, 1, m - 2, m - 1):
@@ -104,9 +117,11 @@ def eliminate_cyclic(rows, n):
             if (j < 0 or j >= m) and rows[i, k] != 0.0:
                 rows[i, RIGHT + 2 + (j + n if j < 0 else j) - m] += rows[i, k]
                 rows[i, k] = 0.0
-    if not eliminate(rows[:m]):
+    if not _eliminate(rows[:m]):
         return False
-    s = np.zeros((2, 4))  # the last two rows, with the others' solution put in
+    s = rows[n + 4 : n + 6]  # the last two rows, with the others' solution put in
+    for k in range(ROW):
+        s[0, k] = s[1, k] = 0.0
     for r in range(2):
         i = m + r
         s[r, 2], s[r, 3] = rows[i, RIGHT], rows[i, RIGHT + 1]
@@ -132,11 +147,13 @@ def eliminate_cyclic(rows, n):
     return True
 
 
-@compiled
-def eliminate_dense(rows, n):
+@compiled(internal=True)
+def _eliminate_dense(rows: FloatArray, n: int) -> bool:
     """The same for n < 5, where a row meets an unknown twice: Gauss with exchange of rows."""
-    A = np.zeros((n, n + 2))
+    A = rows[n : 2 * n]
     for i in range(n):
+        for k in range(ROW):
+            A[i, k] = 0.0
         for k in range(BAND):
             A[i, (i + k - 2) % n] += rows[i, k]
         A[i, n], A[i, n + 1] = rows[i, RIGHT], rows[i, RIGHT + 1]
@@ -159,38 +176,31 @@ def eliminate_dense(rows, n):
     return True
 
 
-@compiled
-def _fold_ends(rows, n, natural):
-    """Take the fixed control points out of an open arc's system; beside natural ends they follow their neighbours."""
-    for r in (1, 2, n - 3, n - 2):
-        if r < 1 or r > n - 2:
-            continue
-        for k in range(BAND):
-            j = r + k - 2
-            if 1 <= j <= n - 2:
-                continue
-            weight = rows[r, k]
-            rows[r, k] = 0.0
-            if j == 0:
-                rows[r, 3 - r] += natural[0] * weight
-            elif j == n - 1:
-                rows[r, n - r] += natural[1] * weight
+@compiled(internal=True)
+def solve(group: Group, q: int, closed: bool) -> bool:
+    """Corrections that take the curve of polygon q through every vertex at its present parameter, into EX and EY.
 
-
-@compiled
-def solve(blocks, n, h, closed, natural, rows):
-    """Corrections that take the curve through every vertex at its present parameter, into EX and EY.
-
-    False, and nothing done, if the system is singular.
+    False if the system is singular; the corrections are 0 then.
     """
-    collocation(blocks, n, h, rows)
+    n, rows = group.table[q, COUNT], group.rows
+    _collocation(group, q)
     if closed:
-        good = eliminate_cyclic(rows, n) if n > 4 else eliminate_dense(rows, n)
+        good = _eliminate_cyclic(rows, n) if n > 4 else _eliminate_dense(rows, n)
     else:
-        _fold_ends(rows, n, natural)
-        good = eliminate(rows[1 : n - 1])
-    if good:
-        for i in range(0 if closed else 1, n if closed else n - 1):
-            block, lane = blocks[i // LANES], np.uint64(i % LANES + HALO)
-            block[EX + lane], block[EY + lane] = rows[i, RIGHT], rows[i, RIGHT + 1]
+        # Take the fixed control points out; beside natural ends they follow their neighbours.
+        for r in (1, 2, n - 3, n - 2):
+            for k in range(BAND if 1 <= r <= n - 2 else 0):
+                j = r + k - 2
+                if 1 <= j <= n - 2:
+                    continue
+                weight = rows[r, k]
+                rows[r, k] = 0.0
+                if j == 0:
+                    rows[r, 3 - r] += group.numbers[q, NATURAL] * weight
+                elif j == n - 1:
+                    rows[r, n - r] += group.numbers[q, NATURAL + 1] * weight
+        good = _eliminate(rows[1 : n - 1])
+    for i in range(0 if closed else 1, n if closed else n - 1):
+        block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(group.table[q, LANE] + i % LANES + HALO)
+        block[EX + lane], block[EY + lane] = rows[i, RIGHT] if good else 0.0, rows[i, RIGHT + 1] if good else 0.0
     return good

@@ -34,7 +34,8 @@ from math import comb
 import numpy as np
 
 from ...compiled import compiled
-from ..reference import TIE
+from ...types import FloatArray
+from ..method import TIE
 
 GUARD = 1e-12
 SHORTEST = 1e-12
@@ -53,8 +54,8 @@ WORK = (5, 64)
 """Shape of the scratch array: shifted x and y, squared distance, and the two ends of the parts to do."""
 
 
-@compiled
-def expand(c, d, y, work):
+@compiled(internal=True)
+def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y into work[0], work[1], and those of |q|² into work[2]."""
     for axis in range(2):
         s = work[axis]
@@ -70,8 +71,8 @@ def expand(c, d, y, work):
         work[2, k] = total
 
 
-@compiled
-def bernstein_range(e, first, m, L):
+@compiled(internal=True)
+def bernstein_range(e: FloatArray, first: int, m: int, L: float) -> tuple[float, float]:
     """Least and largest (absolute) Bernstein coefficient of Σ e[first + k] x^k, degree m, between 0 and L."""
     least, most = np.inf, 0.0
     for j in range(m + 1):
@@ -84,8 +85,8 @@ def bernstein_range(e, first, m, L):
     return least, most
 
 
-@compiled
-def proven(e, d, L, slope):
+@compiled(internal=True)
+def proven(e: FloatArray, d: int, L: float, slope: float) -> bool:
     """Whether D ≥ e[0] between 0 and L (either sign), where D = e[0] + slope x + x² Q(x)."""
     if L == 0.0:
         return True
@@ -105,8 +106,8 @@ def proven(e, d, L, slope):
     return least > GUARD * most
 
 
-@compiled
-def local_minimum(c, d, low, high, y):
+@compiled(internal=True)
+def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> float:
     """Newton's method for q·q' = 0, kept inside [low, high]; Gauss and Newton's step where D is not convex."""
     for _ in range(NEWTON_STEPS):
         x0, x1, x2, y0, y1, y2 = c[0, d], 0.0, 0.0, c[1, d], 0.0, 0.0
@@ -128,8 +129,8 @@ def local_minimum(c, d, low, high, y):
     return y
 
 
-@compiled
-def better(x, D, new_x, new_D, centre, tie):
+@compiled(internal=True)
+def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: float) -> tuple[float, float]:
     """The nearer of two candidates (parameter, squared distance); in a tie the one nearer ``centre``."""
     if new_D < D * (1 - TIE) - tie:
         return new_x, new_D
@@ -139,7 +140,10 @@ def better(x, D, new_x, new_D, centre, tie):
 
 
 @compiled
-def search_piece(c, d, origin, low, high, centre, x, D, tie, work):
+def search_piece(
+    c: FloatArray, d: int, origin: float, low: float, high: float, centre: float, x: float, D: float, tie: float,
+    work: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
     """Improve the candidate (x, D) by all that the piece has on [low, high].
 
     Args:

@@ -1,7 +1,8 @@
-"""The iteration of one polygon in its blocks: Algorithm 2 on a cubic, and the frozen solve.
+"""The iteration of a group of polygons: Algorithm 2 on cubics, and the frozen solve.
 
 A pass first carries out the moves that the one before it found, a block ahead of the block whose footpoints are
-sought, so that each block comes through the cache once a pass.
+sought, so that each block comes through the cache once a pass. Results do not depend on the other polygons of a group.
+A polygon that is done is stored, and the lanes of the others close ranks.
 """
 
 from __future__ import annotations
@@ -9,164 +10,210 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled, select
-from . import blocks as fields
-from .blocks import HALO, LANES
+from ...types import FloatArray
+from .blocks import (
+    BLOCK,
+    COUNT,
+    DD,
+    FALLBACKS,
+    FOUR,
+    HALO,
+    HIGH,
+    KNOT_UNIT,
+    LANE,
+    LANES,
+    LARGEST,
+    LEAST,
+    LIMIT,
+    LOW,
+    ONE,
+    ORDER,
+    PASSES,
+    POLYGON,
+    PX,
+    PY,
+    SEARCHED,
+    STATE,
+    THREE,
+    TOTAL,
+    TWO,
+    UNIT,
+    Found,
+    Given,
+    Group,
+    X,
+    close_ranks,
+    fill_halos,
+    lanes_used,
+    move,
+    whole_vectors,
+)  # fmt: skip
+from .certificate import SEARCHED as MARK
 from .certificate import flagged
 from .collocation import solve
-from .newton_simd import errors_at, seek, whole_vectors
+from .newton_simd import BAD, seek
+from .vertices import FALLEN_BACK, ITERATIONS, OK, STATUS, knots_of
+from .vertices import SEARCHED as SEARCHES
 
-PX, PY, EX, EY, DD = (np.uint64(k) for k in (fields.PX, fields.PY, fields.EX, fields.EY, fields.DD))
-TWO, FOUR = np.uint64(2), np.uint64(4)
+RUNNING, SOLVED_ONCE, SOLVED, DONE = range(4)
+"""States of a polygon."""
+
 POLISHED = 1e-14
 """A frozen solve whose error is not below this share of the extent is done a second time, for its rounding errors."""
 
-
-@compiled
-def halos(blocks, n, b, closed):
-    """Copy control points beyond either end of block b, in a ring if closed."""
-    block = blocks[b]
-    if closed and n <= LANES:
-        for field in (fields.PX, fields.PY):
-            block[field], block[field + 1] = block[field + n], block[field + n + 1]
-            block[field + n + 2], block[field + n + 3] = block[field + 2], block[field + 3]
-        return
-    inside = min(LANES, n - b * LANES)
-    for k in range(4):
-        lane = k if k < 2 else inside + k
-        i = b * LANES + lane - HALO
-        if closed:
-            i %= n
-        elif i < 0 or i > n:
-            continue
-        # an open arc has one control point more, kept beyond the last vertex in its block
-        owner = i if i < n else n - 1
-        source, at = blocks[owner // LANES], owner % LANES + HALO + i - owner
-        block[fields.PX + lane] = source[fields.PX + at]
-        block[fields.PY + lane] = source[fields.PY + at]
+SPARSE = 0.75
+"""Share of the lanes in use from which on polygons close ranks. Copying all fields takes a quarter of a pass."""
 
 
-@compiled
-def _natural_end(blocks, n, end, natural, base):
-    """The fixed control point beside a natural end, which follows the first (last) free one."""
-    if n < 3:
-        return
-    fixed, free = (0, 1) if end == 0 else (n - 1, n - 2)
-    B, F = blocks[fixed // LANES], blocks[free // LANES]
-    at, by = fixed % LANES + HALO, free % LANES + HALO
-    B[fields.PX + at] = base[end, 0] + natural[end] * F[fields.PX + by]
-    B[fields.PY + at] = base[end, 1] + natural[end] * F[fields.PY + by]
-
-
-@compiled
-def _move(blocks, n, first, last, b):
-    """P_i += p_i - C(t_i) for the free control points of block b."""
-    block = blocks[b]
-    inside = min(LANES, n - b * LANES)
-    for lane in range(
-        np.uint64(max(first - b * LANES, 0) + HALO), np.uint64(max(min(last - b * LANES, inside), 0) + HALO)
-    ):
-        block[PX + lane] += block[EX + lane]
-        block[PY + lane] += block[EY + lane]
-
-
-@compiled
-def _largest(block, low, high):
+@compiled(internal=True)
+def _largest(block: FloatArray, low: int, high: int) -> float:
     """The largest squared distance in lanes low to high - 1, by four, as each comparison waits for the one before."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     start, stop = DD + np.uint64(low), DD + np.uint64(high)
     quads = start + (stop - start) // FOUR * FOUR
     for j in range(start, quads, FOUR):
-        w, x, y, z = block[j], block[j + np.uint64(1)], block[j + np.uint64(2)], block[j + np.uint64(3)]
+        w, x, y, z = block[j], block[j + ONE], block[j + TWO], block[j + THREE]
         a, b, c, d = select(w > a, w, a), select(x > b, x, b), select(y > c, y, c), select(z > d, z, d)
     for j in range(quads, stop):
-        a = max(a, block[j])
-    return max(max(a, b), max(c, d))
+        a = select(block[j] > a, block[j], a)
+    a, c = select(b > a, b, a), select(d > c, d, c)
+    return select(c > a, c, a)
 
 
-@compiled
-def _one_pass(blocks, scratch, n, closed, natural, base, moves, search, tie):
-    """Moves, if there are any, then footpoints of all vertices.
-
-    Returns:
-        The largest squared distance, inf if one is not finite, and the number of full searches.
-    """
-    first, last = (0, n) if closed else (1, n - 1)
-    count = (n + LANES - 1) // LANES
-    ahead = count - 1 if closed else count  # a closed polygon's last block is moved before its first, which needs it
-    if moves and closed:
-        _move(blocks, n, first, last, count - 1)
-    if moves and ahead > 0:
-        _move(blocks, n, first, last, 0)
-    if moves and not closed:
-        _natural_end(blocks, n, 0, natural, base)
-    largest, searched = 0.0, 0
+@compiled(internal=True)
+def _one_pass(given: Given, group: Group, slots: int) -> None:
+    """Moves, then footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
+    S, table, numbers = group.scratch, group.table, group.numbers
+    count = (table[0, COUNT] + LANES - 1) // LANES
+    for q in range(slots):
+        numbers[q, LARGEST] = 0.0
+    moved = 0  # the first block of a closed polygon needs the last one moved
     for b in range(count):
-        if moves and b + 1 < ahead:
-            _move(blocks, n, first, last, b + 1)
-        if moves and not closed and (b + 2 == count or count == 1):
-            _natural_end(blocks, n, 1, natural, base)
-        halos(blocks, n, b, closed)
-        block = blocks[b]
-        inside = min(LANES, n - b * LANES)
-        m, bad = whole_vectors(inside), 0
-        if search:
-            bad, wild = seek(block, scratch, TWO, m)
-        else:
-            wild = errors_at(block, scratch, TWO, m)
-        if wild > 0:
-            return np.inf, searched
-        if bad > 0:
-            searched += flagged(block, scratch, TWO, m, tie)
-        start, stop = max(first - b * LANES, 0), min(last - b * LANES, inside)
-        if stop > start:
-            largest = max(largest, _largest(block, start + HALO, stop + HALO))
-    return largest, searched
+        while moved < min(b + (3 if given.closed else 2), count):
+            move(given, group, slots, (moved + count - 1) % count if given.closed else moved)
+            moved += 1
+        fill_halos(given, group, slots, b)
+        block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
+        m = whole_vectors(lanes_used(group, slots, b))
+        bad, wild = seek(block, S, m)
+        for q in range(slots if wild > 0 else 0):
+            for i in range(min(LANES, table[q, COUNT] - b * LANES)):
+                if not np.inf > block[DD + np.uint64(table[q, LANE] + HALO + i)]:
+                    numbers[q, LARGEST] = np.inf
+            if numbers[q, LARGEST] == np.inf:  # not searched
+                for i in range(min(LANES, table[q, COUNT] - b * LANES)):
+                    S[BAD + np.uint64(table[q, LANE] + HALO + i)] = 0.0
+        searched = flagged(block, S, m) if bad > 0 else 0
+        for q in range(slots):
+            first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
+            for i in range(n if searched > 0 else 0):
+                table[q, SEARCHED] += S[BAD + np.uint64(first + i)] == MARK
+            open_end = 0 if given.closed else 1
+            low = open_end if b == 0 else 0
+            high = n - open_end if b + 1 == count else n
+            D = _largest(block, first + low, first + high) if high > low else 0.0
+            numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+        if count > 1 and numbers[0, LARGEST] == np.inf:
+            return
 
 
-@compiled
-def grown(array, size):
-    """The array, or one twice as large as need be that begins with it."""
+@compiled(internal=True)
+def _store(given: Given, found: Found, group: Group, q: int) -> None:
+    """Results of polygon q in the caller's units; its parameters are held from here on.
+
+    Units are powers of two: multiplying rounds no more than dividing.
+    """
+    k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
+    start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
+    at, u = start + found.kept[start], knots_of(given, found, k, n)
+    size, length, x0, y0 = 1.0 / row[UNIT], 1.0 / row[KNOT_UNIT], given.points[at, 0], given.points[at, 1]
+    running = group.table[q, STATE] == RUNNING
+    for i in range(n):
+        block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(group.table[q, LANE] + i % LANES + HALO)
+        found.controls[first + i, 0] = block[PX + lane] * size + x0
+        found.controls[first + i, 1] = block[PY + lane] * size + y0
+        if running:
+            found.parameters[start + i] = u[i] + block[X + lane] * length
+            found.bounds[start + i, 0] = u[i] + block[LOW + lane] * length
+            found.bounds[start + i, 1] = u[i] + block[HIGH + lane] * length
+            block[LOW + lane] = block[HIGH + lane] = block[X + lane]
+    if not given.closed:
+        for axis in range(2):
+            found.controls[first - 1, axis] = given.points[at, axis]
+            found.controls[first + n, axis] = given.points[start + found.kept[start + n - 1], axis]
+    out = found.whole[k]
+    out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, group.table[q, PASSES] - 1, group.table[q, FALLBACKS]
+    out[SEARCHES], found.rates[k] = group.table[q, SEARCHED], 2.0 * (1.0 - row[LEAST])
+
+
+@compiled(internal=True)
+def grown(array: FloatArray, size: int) -> FloatArray:
+    """The array, or a larger one of at least ``size`` that begins with it."""
     if array.shape[0] >= size:
         return array
     larger = np.empty(2 * size)
-    larger[: array.shape[0]] = array
+    for i in range(array.shape[0]):
+        larger[i] = array[i]
     return larger
 
 
-@compiled
+@compiled(internal=True)
+def _after_pass(given: Given, found: Found, group: Group, q: int, history: FloatArray, every: int) -> bool:
+    """Record the error of polygon q, prepare its next pass, or store it; whether it is done."""
+    table, n = group.table, group.table[q, COUNT]
+    state, error, again = table[q, STATE], np.sqrt(group.numbers[q, LARGEST]), False
+    if state == SOLVED_ONCE and not error < POLISHED:
+        again = True
+    else:
+        history[table[q, PASSES] * every + table[q, ORDER]] = error / group.numbers[q, UNIT]
+        table[q, PASSES] += 1
+    if state == RUNNING:
+        finite = np.inf > error
+        if finite and not error < group.numbers[q, LIMIT] and table[q, PASSES] <= given.max_iterations:
+            return False
+        again = given.solve and finite and n > (0 if given.closed else 2)
+    if not again or state == RUNNING:
+        _store(given, found, group, q)
+    if again:
+        good = solve(group, q, given.closed)
+        table[q, STATE] = SOLVED_ONCE if good and state == RUNNING else SOLVED
+        return False
+    table[q, STATE], table[table[q, ORDER], TOTAL] = DONE, table[q, PASSES]
+    return True
+
+
+@compiled(internal=True)
 def iterate(
-    blocks, scratch, n, closed, natural, base, search, limit, tie, max_iterations, residuals, used, passes
-):  # fmt: skip
-    """Algorithm 2, of which ``passes`` passes have been made; all errors go to ``residuals`` from ``used`` on.
+    given: Given, found: Found, group: Group, slots: int, history: FloatArray, residuals: FloatArray, used: int
+) -> tuple[FloatArray, FloatArray, int]:
+    """Iterate a group until all of its polygons are done, and store them.
 
     Args:
-        limit: distance to stop below.
+        history: room for errors; may be replaced by a larger array.
+        residuals: the errors of every pass go there, polygon after polygon, from ``used`` on.
 
     Returns:
-        The residuals, which may have moved to a larger array, the passes in all and the full searches.
+        History, residuals, and how many of these are used now.
     """
-    searched = 0
-    while True:
-        D, more = _one_pass(blocks, scratch, n, closed, natural, base, passes > 0, search, tie)
-        residuals = grown(residuals, used + passes + 2)
-        residuals[used + passes] = np.sqrt(D)
-        passes += 1
-        searched += more
-        if np.sqrt(D) < limit or passes > max_iterations or not np.inf > D:
-            return residuals, passes, searched
-
-
-@compiled
-def freeze(blocks, scratch, n, closed, h, natural, base, tie, rows):
-    """The control points whose curve passes through every vertex at the footpoints found last, and the error left.
-
-    Args:
-        rows: (n, …) room for the solve.
-    """
-    D = 0.0
-    for _ in range(2):
-        found = solve(blocks, n, h, closed, natural, rows)
-        D, _more = _one_pass(blocks, scratch, n, closed, natural, base, found, False, tie)
-        if np.sqrt(D) < POLISHED or not found:
-            break
-    return np.sqrt(D)
+    table, every, left = group.table, slots, slots
+    for q in range(slots):
+        table[q, STATE], table[q, PASSES], table[q, SEARCHED], table[q, ORDER] = RUNNING, 0, 0, q
+    while left > 0:
+        _one_pass(given, group, slots)
+        lanes = 0
+        for q in range(slots):
+            if table[q, STATE] == DONE:
+                continue
+            history = grown(history, (table[q, PASSES] + 1) * every)
+            if _after_pass(given, found, group, q, history, every):
+                left -= 1
+            else:
+                lanes += table[q, COUNT] + 2 * HALO
+        if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
+            slots = close_ranks(group, slots, DONE)
+    for q in range(every):
+        residuals = grown(residuals, used + table[q, TOTAL])
+        for i in range(table[q, TOTAL]):
+            residuals[used + i] = history[i * every + q]
+        used += table[q, TOTAL]
+    return history, residuals, used

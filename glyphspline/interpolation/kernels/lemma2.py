@@ -1,4 +1,4 @@
-"""Where the footpoints of a block are sought: Lemma 2's interval of every cubic B_i, for SIMD as in ``lanes``.
+"""Where the footpoints of a group are sought: Lemma 2's interval of every cubic B_i, for SIMD as in ``newton_simd``.
 
 On the spans a, b | c, d around its knot B_i is given by Bernstein coefficients, ``top`` at the knot and three more to
 either side. Its peak is on the side where it rises from the knot; the interval has one end beyond the peak, and the
@@ -10,14 +10,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, fma, inlined, select, wide_vectors
-from . import blocks as fields
-from .blocks import HALO, LANES, STRIDE
-from .layout import PAD
+from ...compiled import compiled, fma, select, wide_vectors
+from ...types import FloatArray
+from .blocks import (
+    BLOCK,
+    COUNT,
+    FALLBACKS,
+    HALO,
+    HIGH,
+    INTERVALS,
+    LANE,
+    LANES,
+    LEAST,
+    LOW,
+    ONE,
+    PAD,
+    POLYGON,
+    STRIDE,
+    THREE,
+    TWO,
+    WIDTH,
+    Given,
+    Group,
+    X,
+    lanes_used,
+    whole_vectors,
+)  # fmt: skip
 from .newton_simd import cubic
 
-ONE, TWO, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 4, 8))
-LOW, HIGH, X = np.uint64(fields.LOW), np.uint64(fields.HIGH), np.uint64(fields.X)
 # Fields of the scratch block: top, right, left side; the two problems: coefficients, bracket and estimate of each.
 TOP, R1, R2, R3, L1, L2, L3, PEAK, HIGHEST, LEVEL, RISING = (np.uint64(k * STRIDE) for k in range(11))
 PROBLEM_A, PROBLEM_B = np.uint64(11 * STRIDE), np.uint64(16 * STRIDE)
@@ -27,11 +47,15 @@ CLOSE = 1e-9
 """A Newton step of this share of the span is the last: its square is what is left."""
 
 
-@inlined
-def _prepare(h, S, m, margin, peak_share, step):
-    """Coefficients, peak and level of every basis function; h[0] is the interval two before the first vertex's knot."""
-    for j in range(TWO * step, np.uint64(m) + TWO * step):
-        a, b, c, d = h[j - TWO * step], h[j - step], h[j], h[j + step]
+@compiled(internal=True)
+def _prepare(h: FloatArray, S: FloatArray, first: np.uint64, count: int, margin: float, peak_share: float) -> None:
+    """Coefficients, peak and level of the basis functions of ``count`` lanes; h[0] is two intervals before the knot of
+    the first.
+    """
+    wide_vectors()
+    for i in range(np.uint64(0), np.uint64(count)):
+        j = first + i
+        a, b, c, d = h[i], h[i + ONE], h[i + TWO], h[i + THREE]
         left, right = 1.0 / (a + b + c), 1.0 / (b + c + d)
         l1, l2 = (a + b) * left, a * left
         r1, r2 = (c + d) * right, d * right
@@ -63,41 +87,12 @@ def _prepare(h, S, m, margin, peak_share, step):
         S[PROBLEM_B + OUTSIDE + j] = select(outside, 0.0, 1.0)
 
 
-@compiled
-def _prepare_1(h, S, m, margin, peak_share):
-    wide_vectors()
-    _prepare(h, S, m, margin, peak_share, ONE)
-
-
-@compiled
-def _prepare_4(h, S, m, margin, peak_share):
-    wide_vectors()
-    _prepare(h, S, m, margin, peak_share, FOUR)
-
-
-@compiled
-def _prepare_8(h, S, m, margin, peak_share):
-    wide_vectors()
-    _prepare(h, S, m, margin, peak_share, EIGHT)
-
-
-@compiled
-def _start(S, problem, first, m):
-    """First estimates, into R1: halfway. R2 says which have arrived: those without a crossing have from the start."""
-    for j in range(first, np.uint64(m) + first):
-        inside, outside = S[problem + INSIDE + j], S[problem + OUTSIDE + j]
-        last, level = S[problem + B3 + j], S[LEVEL + j]
-        without = ((outside > 0.5) & (last >= level)) | (S[HIGHEST + j] <= level)
-        S[R1 + j] = select(without, outside, 0.5 * (inside + outside))
-        S[R2 + j] = select(without, 1.0, 0.0)
-
-
-@compiled
-def _newton(S, problem, first, m):
+@compiled(internal=True)
+def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
     """One step for every crossing; the number of those still under way."""
     wide_vectors()
     pending = 0
-    for j in range(first, np.uint64(m) + first):
+    for j in range(TWO, np.uint64(m) + TWO):
         b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]
         inside, outside, y, done = S[problem + INSIDE + j], S[problem + OUTSIDE + j], S[R1 + j], S[R2 + j]
         d0, d1 = b1 - b0, b2 - b1
@@ -121,94 +116,85 @@ def _newton(S, problem, first, m):
     return pending
 
 
-@compiled
-def _crossings(S, problem, result, first, m):
-    _start(S, problem, first, m)
+@compiled(internal=True)
+def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> None:
+    """Where every basis function crosses its level: from halfway, by at most ``STEPS`` steps, into a field.
+
+    R1 holds the estimates. R2 says which have arrived: those without a crossing have from the start.
+    """
+    for j in range(TWO, np.uint64(m) + TWO):
+        inside, outside = S[problem + INSIDE + j], S[problem + OUTSIDE + j]
+        last, level = S[problem + B3 + j], S[LEVEL + j]
+        without = ((outside > 0.5) & (last >= level)) | (S[HIGHEST + j] <= level)
+        S[R1 + j] = select(without, outside, 0.5 * (inside + outside))
+        S[R2 + j] = select(without, 1.0, 0.0)
     for _ in range(STEPS):
-        if _newton(S, problem, first, m) == 0:
+        if _step(S, problem, m) == 0:
             break
-    for j in range(first, np.uint64(m) + first):
+    for j in range(TWO, np.uint64(m) + TWO):
         S[result + j] = S[R1 + j]
 
 
-@compiled
-def _combine(S, j, b, c, peak_share):
-    """One vertex's interval about its knot, the least value of B_i on it, and whether B_i nowhere exceeds 1/2."""
-    top, highest, level = S[TOP + j], S[HIGHEST + j], S[LEVEL + j]
-    rising, low = S[RISING + j] > 0.0, S[HIGHEST + j] <= 0.5
-    if low and peak_share == 0.0:
-        return 0.0, 0.0, top, True
-    along, back = (c, -b) if rising else (-b, c)
-    if highest <= level:
-        return S[PEAK + j] * along, S[PEAK + j] * along, highest, low
-    far, near = S[L1 + j], S[L2 + j]
-    # B_i is at the level at either end, or above it where the interval is clipped
-    beyond = S[PROBLEM_A + B3 + j] if far == 1.0 else level
-    before = S[PROBLEM_B + B3 + j] if near == 1.0 else level
-    end, other = far * along, near * (along if top < level else back)
-    return min(end, other), max(end, other), min(beyond, before), low
+@compiled(internal=True)
+def _interval(
+    S: FloatArray, lane: np.uint64, a: float, b: float, c: float, d: float, variant: int, peak_share: float
+) -> tuple[float, float, float, bool]:
+    """A vertex's interval about its knot, the least value of B_i on it, and whether Lemma 2 has none.
 
-
-@compiled
-def _prepared(h, S, first, m, margin, peak_share):
-    """Coefficients and crossings of all basis functions of a block."""
-    if first == TWO:
-        _prepare_1(h, S, m, margin, peak_share)
-    elif first == EIGHT:
-        _prepare_4(h, S, m, margin, peak_share)
-    else:
-        _prepare_8(h, S, m, margin, peak_share)
-    _crossings(S, PROBLEM_A, L1, first, m)
-    _crossings(S, PROBLEM_B, L2, first, m)
-
-
-@compiled
-def _interval(S, lane, a, b, c, d, variant, peak_share):
-    """The interval about the knot between b and c, the least value of B_i on it, and whether Lemma 2 has none."""
+    a, b | c, d are the knot intervals around the knot.
+    """
     if variant == 1:
         return -b, c, min(a / (a + b) * (a / (a + b + c)), d / (c + d) * (d / (b + c + d))), False
     if variant == 3:
         share = b / (b + c)
         return 0.0, 0.0, (1.0 - share) * ((a + b) / (a + b + c)) + share * ((c + d) / (b + c + d)), False
-    return _combine(S, lane, b, c, peak_share)
+    top, highest, level = S[TOP + lane], S[HIGHEST + lane], S[LEVEL + lane]
+    rising, low = S[RISING + lane] > 0.0, S[HIGHEST + lane] <= 0.5
+    if low and peak_share == 0.0:
+        return 0.0, 0.0, top, True
+    along, back = (c, -b) if rising else (-b, c)
+    if highest <= level:
+        return S[PEAK + lane] * along, S[PEAK + lane] * along, highest, low
+    far, near = S[L1 + lane], S[L2 + lane]
+    # B_i is at the level at either end, or above it where the interval is clipped
+    beyond = S[PROBLEM_A + B3 + lane] if far == 1.0 else level
+    before = S[PROBLEM_B + B3 + lane] if near == 1.0 else level
+    end, other = far * along, near * (along if top < level else back)
+    return min(end, other), max(end, other), min(beyond, before), low
 
 
-@compiled
-def fill_intervals(blocks, scratch, n, first, last, h, variant, margin, peak_share):
-    """Where every footpoint is sought, relative to its knot. Returns the fallbacks and the least value of any B_i."""
-    fallbacks, least = 0, 1.0
-    for first_of_block in range(0, n, LANES):
-        block, count = blocks[first_of_block // LANES], min(LANES, n - first_of_block)
-        if variant == 2:
-            _prepared(h[PAD + first_of_block - 2 :], scratch, TWO, (count + 7) // 8 * 8, margin, peak_share)
-        for k in range(count):
-            i, lane = first_of_block + k, np.uint64(k + HALO)
-            low = high = 0.0
-            if first <= i < last:
-                a, b, c, d = h[PAD + i - 2], h[PAD + i - 1], h[PAD + i], h[PAD + i + 1]
-                low, high, value, missing = _interval(scratch, lane, a, b, c, d, variant, peak_share)
-                fallbacks += missing
-                least = min(least, value)
-            block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0
-    return fallbacks, least
+@compiled(internal=True)
+def fill_intervals(given: Given, group: Group, slots: int) -> None:
+    """Where every footpoint is sought, relative to its knot, into the blocks; fallbacks and the least value of any B_i.
 
-
-@compiled
-def fill_intervals_side_by_side(block, scratch, step, counts, h, variant, margin, peak_share, fallbacks, least):
-    """The same for closed polygons of ``counts`` vertices in one block, whose intervals h lie as they do.
-
-    Fallbacks and least values of a B_i are left in the arrays of these names, one number for each polygon.
+    The lanes between polygons, and those behind the last one, get no crossing.
     """
-    first = HALO * step
-    if variant == 2:
-        m = (counts.max() * step + 7) // 8 * 8
-        _prepared(h[(PAD - HALO) * step :], scratch, np.uint64(first), m, margin, peak_share)
-    for k in range(counts.shape[0]):
-        fallbacks[k], least[k] = 0, 1.0
-        for i in range(counts[k]):
-            lane, at = np.uint64(first + i * step + k), (PAD + i) * step + k
-            a, b, c, d = h[at - 2 * step], h[at - step], h[at], h[at + step]
-            low, high, value, missing = _interval(scratch, lane, a, b, c, d, variant, peak_share)
-            fallbacks[k] += missing
-            least[k] = min(least[k], value)
-            block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0
+    S = group.scratch
+    for q in range(slots):
+        group.table[q, FALLBACKS], group.numbers[q, LEAST] = 0, 1.0
+    for b in range((group.table[0, COUNT] + LANES - 1) // LANES):
+        block, at = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * LANES
+        if given.variant == 2:
+            for q in range(slots):
+                first, inside = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - at)
+                h = group.h[group.table[q, INTERVALS] + at + PAD - 2 :]
+                share = given.peak_shares[group.table[q, POLYGON]]
+                _prepare(h, S, np.uint64(first), whole_vectors(inside), given.margin, share)
+                beyond = first + inside
+                for j in range(np.uint64(beyond), np.uint64(min(beyond + WIDTH + 2 * HALO, STRIDE))):
+                    S[HIGHEST + j], S[LEVEL + j] = 0.0, 1.0
+            m = whole_vectors(lanes_used(group, slots, b))
+            _crossings(S, PROBLEM_A, L1, m)
+            _crossings(S, PROBLEM_B, L2, m)
+        for q in range(slots):
+            k, n = group.table[q, POLYGON], group.table[q, COUNT]
+            h, inside = group.h[group.table[q, INTERVALS] + at + PAD - 2 :], min(LANES, n - at)
+            for i in range(inside):
+                lane, low, high = np.uint64(group.table[q, LANE] + HALO + i), 0.0, 0.0
+                if given.closed or 0 < at + i < n - 1:
+                    low, high, value, missing = _interval(
+                        S, lane, h[i], h[i + 1], h[i + 2], h[i + 3], given.variant, given.peak_shares[k]
+                    )
+                    group.table[q, FALLBACKS] += missing
+                    group.numbers[q, LEAST] = min(group.numbers[q, LEAST], value)
+                block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0

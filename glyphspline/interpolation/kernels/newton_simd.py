@@ -23,22 +23,38 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled, fma, inlined, select, wide_vectors
-from .blocks import FIELDS, STRIDE
+from ...types import FloatArray
+from .blocks import (
+    DD,
+    EX,
+    EY,
+    FOUR,
+    HALF,
+    HIGH,
+    LAMBDA,
+    LOW,
+    MOVE_A,
+    MOVE_B,
+    ONE,
+    PX,
+    PY,
+    QX,
+    QY,
+    RATE,
+    STRIDE,
+    THIRD,
+    THREE,
+    TWO,
+    X,
+)  # fmt: skip
 from .footpoint import GUARD
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
-PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
-    np.uint64(k * STRIDE) for k in range(FIELDS)
-)
 # Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
 DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
     np.uint64(k * STRIDE) for k in range(19)
 )
 SIXTH = 1 / 6
-ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
-
-WIDTH = 8
-"""Vertices are taken by this many: loops of whole vectors."""
 
 NEWTON_PASSES = 8
 SETTLED_STEP = 1e-6
@@ -53,26 +69,28 @@ leave as much as it is itself.
 
 
 @inlined
-def dot(ax, ay, bx, by):
+def dot(ax: float, ay: float, bx: float, by: float) -> float:
     """a · b"""
     return fma(ax, bx, ay * by)
 
 
 @inlined
-def cubic(e, v, w, z, y):
+def cubic(e: float, v: float, w: float, z: float, y: float) -> float:
     """e + v y + w y² + z y³"""
     return fma(fma(fma(z, y, w), y, v), y, e)
 
 
 @inlined
-def expanded(e, v, w, z, y):
+def expanded(e: float, v: float, w: float, z: float, y: float) -> tuple[float, float, float]:
     """Coefficients of e + v x + w x² + z x³, one coordinate of q, about y but for the last, which stays z."""
     a = fma(3.0 * y, z, w)
     return cubic(e, v, w, z, y), fma(a + w, y, v), a
 
 
 @inlined
-def quartic(qx, qy, px, py, ax, ay, zx, zy):
+def quartic(
+    qx: float, qy: float, px: float, py: float, ax: float, ay: float, zx: float, zy: float
+) -> tuple[float, float, float, float, float, float]:
     """c0 to c4 of |q + p x + a x² + z x³|² = |q|² + 2 q·p x + x² (c0 + c1 x + … + c4 x⁴), and |p|²."""
     speed = dot(px, py, px, py)
     c0 = fma(2.0, dot(qx, qy, ax, ay), speed)
@@ -83,7 +101,7 @@ def quartic(qx, qy, px, py, ax, ay, zx, zy):
 
 
 @inlined
-def bernstein(c0, c1, c2, c3, c4, L):
+def bernstein(c0: float, c1: float, c2: float, c3: float, c4: float, L: float) -> tuple[float, float, float, float]:
     """The Bernstein coefficients of c0 + c1 x + … + c4 x⁴ between 0 and L, but for the first, which is c0."""
     squared = L * L
     k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
@@ -94,7 +112,7 @@ def bernstein(c0, c1, c2, c3, c4, L):
 
 
 @inlined
-def least_quartic(c0, c1, c2, c3, c4, L):
+def least_quartic(c0: float, c1: float, c2: float, c3: float, c4: float, L: float) -> float:
     """Smallest Bernstein coefficient of c0 + c1 x + … + c4 x⁴ between 0 and L."""
     b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
     least = select(c0 < b1, c0, b1)
@@ -104,7 +122,7 @@ def least_quartic(c0, c1, c2, c3, c4, L):
 
 
 @inlined
-def least_rise(slope, c0, c1, c2, c3, c4, L):
+def least_rise(slope: float, c0: float, c1: float, c2: float, c3: float, c4: float, L: float) -> float:
     """Smallest of the last five Bernstein coefficients of slope + x (c0 + … + c4 x⁴) between 0 and L > 0."""
     b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
     r1, r2, r3, r4 = 0.2 * c0, 0.4 * b1, 0.6 * b2, 0.8 * b3
@@ -115,23 +133,24 @@ def least_rise(slope, c0, c1, c2, c3, c4, L):
     return fma(L, least, slope)
 
 
-@inlined
-def _taylor(B, S, m, step):
+@compiled(internal=True)
+def _taylor(B: FloatArray, S: FloatArray, m: int) -> None:
     """Derivatives at the knots from control points (see the module), main side chosen, into the scratch block."""
-    for j in range(step, np.uint64(m) + TWO * step + TWO * step):
+    wide_vectors()
+    for j in range(ONE, np.uint64(m) + FOUR):
         r = B[RATE + j]
-        S[DX + j] = r * (B[PX + j] - B[PX + j - step])
-        S[DY + j] = r * (B[PY + j] - B[PY + j - step])
-    for j in range(step, np.uint64(m) + THREE * step):
+        S[DX + j] = r * (B[PX + j] - B[PX + j - ONE])
+        S[DY + j] = r * (B[PY + j] - B[PY + j - ONE])
+    for j in range(ONE, np.uint64(m) + THREE):
         s = B[HALF + j]
-        S[SWX + j] = s * (S[DX + j + step] - S[DX + j])
-        S[SWY + j] = s * (S[DY + j + step] - S[DY + j])
-    for j in range(TWO * step, np.uint64(m) + TWO * step):
+        S[SWX + j] = s * (S[DX + j + ONE] - S[DX + j])
+        S[SWY + j] = s * (S[DY + j + ONE] - S[DY + j])
+    for j in range(TWO, np.uint64(m) + TWO):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
-        ex = fma(a, S[DX + j + step], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
-        ey = fma(a, S[DY + j + step], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
-        vx = fma(lam, S[DX + j + step] - S[DX + j], S[DX + j])
-        vy = fma(lam, S[DY + j + step] - S[DY + j], S[DY + j])
+        ex = fma(a, S[DX + j + ONE], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
+        ey = fma(a, S[DY + j + ONE], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
+        vx = fma(lam, S[DX + j + ONE] - S[DX + j], S[DX + j])
+        vy = fma(lam, S[DY + j + ONE] - S[DY + j], S[DY + j])
         low, high = B[LOW + j], B[HIGH + j]
         falling = dot(ex, ey, vx, vy) <= 0.0
         forward = (low >= 0.0) | ((high > 0.0) & falling)
@@ -146,11 +165,11 @@ def _taylor(B, S, m, step):
         y = select(y > near0, y, near0)
         S[SY + j] = select(y < far, y, far)
         S[DONE + j] = select(far <= near0, 1.0, 0.0)
-    for j in range(TWO * step, np.uint64(m) + TWO * step):  # one loop with the above would not become SIMD
+    for j in range(TWO, np.uint64(m) + TWO):  # one loop with the above would not become SIMD
         wx, wy = S[SWX + j], S[SWY + j]
-        right, left = B[THIRD + j], B[THIRD + j - step]
-        rx, ry = (S[SWX + j + step] - wx) * right, (S[SWY + j + step] - wy) * right
-        lx, ly = (S[SWX + j - step] - wx) * left, (S[SWY + j - step] - wy) * left
+        right, left = B[THIRD + j], B[THIRD + j - ONE]
+        rx, ry = (S[SWX + j + ONE] - wx) * right, (S[SWY + j + ONE] - wy) * right
+        lx, ly = (S[SWX + j - ONE] - wx) * left, (S[SWY + j - ONE] - wy) * left
         forward = S[SIDE + j] > 0.0
         S[SZX + j] = select(forward, rx, lx)
         S[SZY + j] = select(forward, ry, ly)
@@ -158,41 +177,12 @@ def _taylor(B, S, m, step):
         S[OZY + j] = select(forward, ly, ry)
 
 
-@compiled
-def _taylor_1(B, S, m):
-    wide_vectors()
-    _taylor(B, S, m, ONE)
-
-
-@compiled
-def _taylor_4(B, S, m):
-    wide_vectors()
-    _taylor(B, S, m, FOUR)
-
-
-@compiled
-def _taylor_8(B, S, m):
-    wide_vectors()
-    _taylor(B, S, m, EIGHT)
-
-
-@compiled
-def taylor(B, S, first, m):
-    """Derivatives at the knots. The step is a constant in each case: with a variable one loops do not become SIMD."""
-    if first == TWO:
-        _taylor_1(B, S, m)
-    elif first == EIGHT:
-        _taylor_4(B, S, m)
-    else:
-        _taylor_8(B, S, m)
-
-
-@compiled
-def newton(S, first, m):
+@compiled(internal=True)
+def _newton(S: FloatArray, m: int) -> int:
     """One step for every vertex that has not settled; the number of those that still have not."""
     wide_vectors()
     pending = 0
-    for j in range(first, np.uint64(m) + first):
+    for j in range(TWO, np.uint64(m) + TWO):
         y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
         qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
@@ -224,12 +214,12 @@ def newton(S, first, m):
     return pending
 
 
-@compiled
-def certify(B, S, first, m):
+@compiled(internal=True)
+def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
     """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
     wide_vectors()
     bad, wild = 0, 0
-    for j in range(first, np.uint64(m) + first):
+    for j in range(TWO, np.uint64(m) + TWO):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
         ex, ey, vx, vy, wx, wy = S[SEX + j], S[SEY + j], S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j]
         zx, zy = S[SZX + j], S[SZY + j]
@@ -258,36 +248,14 @@ def certify(B, S, first, m):
     return bad, wild
 
 
-@compiled
-def whole_vectors(count):
-    """``count``, or so many more that loops consist of whole vectors."""
-    return (count + WIDTH - 1) // WIDTH * WIDTH
+@compiled(internal=True)
+def seek(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
+    """Footpoints in m lanes of a block, and their errors, into it; how many are flagged, and how many not finite.
 
-
-@compiled
-def seek(B, S, first, m):
-    """Footpoints of a block's vertices, into it; how many are flagged, and how many not finite."""
-    taylor(B, S, first, m)
+    Where both ends of an interval are the same, the footpoint is that parameter.
+    """
+    _taylor(B, S, m)
     for _ in range(NEWTON_PASSES):
-        if newton(S, first, m) == 0:
+        if _newton(S, m) == 0:
             break
-    return certify(B, S, first, m)
-
-
-@compiled
-def errors_at(B, S, first, m):
-    """Errors p - C(t) at the parameters that the block holds, nothing searched; how many are not finite."""
-    taylor(B, S, first, m)
-    wild = 0
-    for j in range(first, np.uint64(m) + first):
-        y = S[SIDE + j] * B[X + j]
-        main = y >= 0.0
-        sign = select(main, 1.0, -1.0)
-        zx, zy = select(main, S[SZX + j], S[OZX + j]), select(main, S[SZY + j], S[OZY + j])
-        z = sign * y
-        qx = cubic(S[SEX + j], sign * S[SVX + j], S[SWX + j], zx, z)
-        qy = cubic(S[SEY + j], sign * S[SVY + j], S[SWY + j], zy, z)
-        D = dot(qx, qy, qx, qy)
-        wild += select(np.inf > D, 0, 1)
-        B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
-    return wild
+    return _certify(B, S, m)

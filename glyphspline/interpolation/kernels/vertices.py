@@ -1,0 +1,155 @@
+"""A polygon before its iteration starts: duplicates merged, knots found.
+
+The same rules, to rounding, as ``polygon.py`` and ``parameters.py`` have for NumPy, which explain them.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...compiled import compiled, inlined
+from ...types import FloatArray, IntArray
+from ..method import RELATIVE_TOLERANCE
+from ..polygon import LARGEST, SAME_VERTEX, SMALLEST
+from .blocks import PAD, Found, Given
+
+OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
+"""Status codes. A refused polygon is checked again in Python to build the error message."""
+
+STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHED = range(5)
+"""Columns of ``Found.whole``."""
+
+
+@inlined
+def distance(p: FloatArray, i: int, j: int) -> float:
+    """Between two vertices. Extents are such that squares do not overflow; ``hypot`` takes as long as all the rest."""
+    return np.sqrt((p[i, 0] - p[j, 0]) * (p[i, 0] - p[j, 0]) + (p[i, 1] - p[j, 1]) * (p[i, 1] - p[j, 1]))
+
+
+@compiled(internal=True)
+def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
+    """Indices of the vertices that are kept, into ``kept``; how many, -1 if they admit no curve, and the extent."""
+    n = points.shape[0]
+    if n == 0:
+        return -1, 0.0
+    x0 = x1 = points[0, 0]
+    y0 = y1 = points[0, 1]
+    for i in range(n):
+        x, y = points[i, 0], points[i, 1]
+        if not (np.isfinite(x) and np.isfinite(y)):
+            return -1, 0.0
+        x0, x1, y0, y1 = min(x0, x), max(x1, x), min(y0, y), max(y1, y)
+    extent = max(x1 - x0, y1 - y0)
+    if not SMALLEST <= extent <= LARGEST:
+        return -1, extent
+    apart = SAME_VERTEX * extent
+    count, last = 1, 0
+    kept[0] = 0
+    for i in range(1, n):
+        if distance(points, i, last) > apart:
+            kept[count] = last = i
+            count += 1
+    while closed and count > 1:
+        last = kept[count - 1]
+        if distance(points, last, 0) > apart:
+            break
+        count -= 1
+    if count < 2 or not closed:
+        return (count if count >= (3 if closed else 2) else -1), extent
+    a, b = kept[0], kept[1]
+    for i in range(2, count):
+        c = kept[i]
+        at_a = points[c, 0] == points[a, 0] and points[c, 1] == points[a, 1]
+        if not at_a and (points[c, 0] != points[b, 0] or points[c, 1] != points[b, 1]):
+            return count, extent
+    return -1, extent
+
+
+@compiled(internal=True)
+def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, u: FloatArray) -> bool:
+    """Knots from 0 by sums of chord lengths to a power, into u. False if two of them are the same."""
+    total = 0.0
+    u[0] = 0.0
+    for i in range(n if closed else n - 1):
+        chord = distance(p, kept[i], kept[i + 1 if i + 1 < n else 0])
+        if exponent == 0.0:
+            chord = 1.0
+        elif exponent == 0.5:
+            chord = np.sqrt(chord)
+        before = total
+        total += chord
+        if not total > before:
+            return False
+        u[i + 1] = total
+    return True
+
+
+@compiled(internal=True)
+def _given_knots(given: FloatArray, kept: IntArray, count: int, closed: bool, u: FloatArray) -> bool:
+    """The caller's parameters, those of merged vertices left out, into u. False if not finite and increasing."""
+    for i in range(count):
+        u[i] = given[kept[i]]
+    if closed:
+        u[count] = given[given.shape[0] - 1]
+    last = count if closed else count - 1
+    first = u[0]
+    for i in range(last + 1):
+        u[i] -= first
+        if not np.isfinite(u[i]) or (i > 0 and not u[i] > u[i - 1]):
+            return False
+    return True
+
+
+@inlined
+def _power_of_two(x: float) -> float:
+    """The power of two that brings x > 0 between 1 and 2."""
+    return math.ldexp(1.0, 1 - math.frexp(x)[1])
+
+
+@compiled(internal=True)
+def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
+    """The knots of polygon k."""
+    first = given.offsets[k] + (k if given.closed else 0)
+    return found.knots[first : first + n + (1 if given.closed else 0)]
+
+
+@compiled(internal=True)
+def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
+    """Merge vertices of polygon k and find its knots; how many are left, 0 if it is refused, and two scales.
+
+    The scales, of lengths and of parameters, bring extent and mean knot interval near 1.
+    """
+    start, stop, closed = given.offsets[k], given.offsets[k + 1], given.closed
+    points, kept = given.points[start:stop], found.kept[start:stop]
+    row = found.whole[k]
+    row[STATUS], row[ITERATIONS], row[FALLEN_BACK], row[SEARCHED] = BAD_POLYGON, -1, 0, 0
+    n, extent = _merge(points, closed, kept)
+    row[KEPT] = n
+    if n < 0:
+        return 0, 1.0, 1.0
+    if np.isnan(given.tolerances[k]):
+        given.tolerances[k] = RELATIVE_TOLERANCE * extent
+    u = knots_of(given, found, k, n)
+    if given.exponent < 0.0:
+        own = given.knots[start + (k if closed else 0) : stop + (k + 1 if closed else 0)]
+        good = _given_knots(own, kept, n, closed, u)
+    else:
+        good = _chord_knots(points, kept, n, closed, given.exponent, u)
+    if not good:
+        row[STATUS] = BAD_KNOTS
+        return 0, 1.0, 1.0
+    return n, _power_of_two(extent), _power_of_two(u[-1] / n)
+
+
+@compiled(internal=True)
+def pad_intervals(u: FloatArray, closed: bool, unit: float, h: FloatArray) -> None:
+    """Knot intervals times ``unit``: h[PAD + i] is that from u_i on, continued periodically, or by zeros."""
+    spans = u.shape[0] - 1
+    for i in range(spans):
+        h[PAD + i] = (u[i + 1] - u[i]) * unit
+    for k in range(PAD):  # one after another: fewer spans than PAD repeat more than once
+        h[PAD - 1 - k] = h[PAD + spans - 1 - k] if closed else 0.0
+    for k in range(PAD + 2):
+        h[PAD + spans + k] = h[PAD + k] if closed else 0.0
