@@ -62,19 +62,22 @@ def _cells(measures: Measures) -> str:
 def outline_svg(outline: Outline) -> str:
     """The outline, filled, in its em box."""
     from .writers.svg.document import shown_box, title
-    from .writers.svg.markup import data_attributes, ink_bounds, path_data, view_box_value
+    from .writers.svg.markup import data_attributes, view_box_value
+    from .writers.svg.path_data import curves_data
 
-    box = view_box_value(shown_box(outline, ink_bounds(outline.contours), "em"), 1)
+    path = curves_data(outline.arrays, 2)[0]
+    box = view_box_value(shown_box(outline, path.box, "em"), 1)
     return _sized(
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" role="img" {data_attributes(outline, 2)}>'
         f"<title>{title(outline)}</title>"
-        f'<path fill="currentColor" d="{path_data(outline.contours, 2)}"/></svg>'
+        f'<path fill="currentColor" d="{bytes(path.text).decode()}"/></svg>'
     )
 
 
 def spline_svg(spline: Spline) -> str:
     """The curve, its control polygon, and its knots on the curve."""
-    from .writers.svg.markup import number, polyline_data, segments_data, view_box_value
+    from .writers.svg.markup import number, view_box_value
+    from .writers.svg.path_data import dots_data, polyline_data
 
     control, knots = spline.control_points, spline(spline.knots)
     every = np.concatenate([control, knots])
@@ -90,7 +93,7 @@ def spline_svg(spline: Spline) -> str:
         f" {spline.degree}, {len(control)} control points</title>"
         f'<path stroke="#75c" stroke-opacity=".7" d="{polyline_data(control, digits, closed=spline.closed)}"/>'
         f'<path d="{curve}"/><path stroke="#0a7" stroke-width="{number(0.016 * extent, 9)}"'
-        f' d="{segments_data(knots, knots, digits)}"/></svg>'
+        f' d="{bytes(dots_data(knots, digits)).decode()}"/></svg>'
     )
 
 

@@ -45,7 +45,7 @@ def main(
     precision: opt.Precision = 2,
     remove_overlaps: opt.RemoveOverlaps = False,
     measure: opt.Measure = False,
-    formats: opt.Formats = "svg,curvature",
+    formats: opt.Formats = "svg,curvature,gallery",
     jobs: opt.Jobs = None,
     scheduler: opt.Scheduler = None,
     resume: opt.Resume = True,

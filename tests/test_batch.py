@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -12,13 +13,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from glyphspline.batch import OutputError, RunSpec, convert_font, entries_of, find_fonts, folders_for
+from glyphspline.batch import (
+    Limits,
+    OutputError,
+    RunSpec,
+    convert_font,
+    entries_of,
+    find_fonts,
+    folders_for,
+    worker,
+    write_gallery,
+)
+from glyphspline.batch.entry import contour_texts
 from glyphspline.batch.files import LONGEST_NAME, file_names, write_whole
+from glyphspline.batch.job import Task
 from glyphspline.batch.manifest import JOURNAL
+from glyphspline.batch.summary import facts_of
 from glyphspline.errors import GlyphsplineError
+from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
+from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
@@ -48,7 +65,7 @@ def test_every_glyph_is_in_the_manifest_once_in_gid_order_with_its_files(finishe
     assert all(list(entry) == MANIFEST_KEYS for entry in entries)
     assert [entry["status"] for entry in entries] == ["empty", "ok", "ok", "ok"]
     written = {path for entry in entries for path in entry["files"].values()}
-    data = {f"gallery/{name}.js" for name in ("run", "table-00000", "glyphs-00000")}
+    data = {f"gallery/{name}.js" for name in ("run", "table-00000")}
     pages = {"index.html", "manifest.jsonl", "run.json", ".sizes.txt"} | data
     assert written | pages == content(finished).keys()
     assert entries[2]["unicodes"] == ["U+0042"]
@@ -106,7 +123,7 @@ def test_a_file_lost_or_cut_after_its_journal_line_is_written_again(finished: Pa
 
 
 @pytest.mark.parametrize(
-    "lost", ["svg/*", "gallery/glyphs-00000.js", "gallery/table-00000.js", "gallery/run.js", "index.html"]
+    "lost", ["svg/*", "gallery/*.glyph.js", "gallery/table-00000.js", "gallery/run.js", "index.html"]
 )
 def test_what_a_finished_folder_lost_to_a_power_cut_is_made_again(
     lost: str, finished: Path, font: Font, tmp_path: Path
@@ -150,10 +167,10 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
     class Damaged(Font):
         """A font one of whose glyphs cannot be drawn."""
 
-        def outline(self, name: str) -> Any:
-            if name == "B":
-                raise GlyphsplineError("broken", font=str(self.path), glyph=name, contour=3)
-            return super().outline(name)
+        def outlines(self, glyphs: Any, *, errors: Any = "raise") -> Any:
+            error = GlyphsplineError("broken", font=str(self.path), glyph="B", contour=3)
+            found = super().outlines(glyphs, errors=errors)
+            return [error if getattr(outline, "name", "") == "B" else outline for outline in found]
 
     font = open_font(FONTS / "kouzan-gyosho.otf")
     font.__class__ = Damaged
@@ -177,6 +194,94 @@ def opened_as(font: Font) -> Any:
             patch.undo()
 
     return Undo()
+
+
+def test_a_fault_of_ours_costs_only_its_glyph(font: Font, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def faulty(outlines: Any, options: Any, errors: str) -> Any:
+        if any(outline.name == "B" for outline in outlines):
+            raise ZeroDivisionError("a fault")
+        return convert_many(outlines, options, errors="return")
+
+    monkeypatch.setattr(worker, "convert_many", faulty)
+    monkeypatch.setattr("glyphspline.batch.schedule.slices", lambda tasks, size: [tasks])
+    summary = convert_font(font, font.select(text="OB8 "), tmp_path / "out", SPEC, jobs=0)
+    assert summary.failures == [("B", "ZeroDivisionError: a fault")]
+    assert summary.statuses == {"ok": 2, "empty": 1, "failed": 1}
+
+
+@pytest.mark.parametrize(
+    "formats", [("svg",), ("curvature",), ("gallery",), ("svg", "curvature", "gallery", "parquet")]
+)
+def test_a_glyph_has_the_same_bytes_whichever_formats_are_asked_for(
+    formats: tuple[str, ...], finished: Path, font: Font, tmp_path: Path
+) -> None:
+    convert_font(font, font.select(text="O8 B"), tmp_path, replace(SPEC, formats=formats), jobs=0)
+    kept = content(finished)
+    same = [name for name in content(tmp_path) if name.partition("/")[0] in {*formats} - {"gallery", "parquet"}]
+    assert len(same) == 3 * len({"svg", "curvature"} & {*formats})
+    for name in same:
+        assert (tmp_path / name).read_bytes() == kept[name]
+    for path in tmp_path.glob("gallery/*.glyph.js"):
+        mine, whole = (
+            re.sub('"files":{[^}]*}', "", text) for text in (path.read_text(), kept[f"gallery/{path.name}"].decode())
+        )
+        assert mine == whole
+
+
+def test_drawings_alone_are_written_without_a_gallery(font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.select(text="O "), tmp_path, replace(SPEC, formats=("svg",)), jobs=0)
+    alone = {"svg/O_.svg", "manifest.jsonl", "run.json", ".sizes.txt"}
+    assert content(tmp_path).keys() == alone
+    convert_font(font, font.select(text="O "), tmp_path, SPEC, jobs=0, restart=True)
+    convert_font(font, font.select(text="O "), tmp_path, replace(SPEC, formats=("svg",)), jobs=0, restart=True)
+    assert content(tmp_path).keys() == alone
+
+
+def test_batches_are_bounded_and_of_one_em(font: Font) -> None:
+    def read(cost: float, em: float = 1000.0) -> worker.Read:
+        return worker.Read(Task(1, "a", "a", ()), Outline("a", metrics=FontMetrics(em)), cost)
+
+    glyphs = [read(worker.BATCH / 2), read(worker.BATCH / 2), read(1.0), read(1.0, 2048.0), read(9 * worker.BATCH)]
+    assert [len(batch) for batch in worker.batches(glyphs)] == [2, 1, 1, 1]
+    assert list(worker.batches([])) == []
+
+
+@pytest.mark.parametrize("step", [20.0, 90.0])
+def test_the_estimate_of_vertices_is_near(font: Font, step: float) -> None:
+    outlines = font.outlines(font.select(text="O8 B龍"))
+    found = worker.vertices_of(outlines, Options(step=step))
+    for outline, vertices in zip(outlines, found, strict=True):
+        sides = [np.hypot(*np.diff(contour.points, axis=0).T).sum() for contour in outline.contours]
+        assert vertices == pytest.approx(sum(sides) / step)
+    assert worker.vertices_of(outlines, Options(count=7)) == [7.0 * len(outline.contours) for outline in outlines]
+
+
+def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
+    columns: dict[str, list[Any]] = {
+        "vertices": [3, 4], "iterations": [9, None], "residual": [0.001, np.inf], "converged": [True, False],
+        "rate_bound": [1.5, np.nan], "deviation": [0.123456789, 2.0],
+    }  # fmt: skip
+    good, bad = (json.loads(text) for text in contour_texts(columns, np.array([0, 1, 1, 2])) if text)
+    assert (good["vertices"], good["residual"], good["converged"], good["rate_bound"]) == (3, 0.001, True, 1.5)
+    assert (bad["iterations"], bad["residual"], bad["converged"], bad["rate_bound"]) == (None, None, False, None)
+    assert (good["deviation"], good["length"], bad["length"]) == (0.1234568, None, None)
+    assert facts_of(columns) == (True, False, 2.0)
+    assert facts_of(columns, 0, 1) == (False, False, 0.123456789)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"view_box": "bbox"}, {"options": None}],
+)
+def test_a_run_that_makes_no_sense_is_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(GlyphsplineError, match=r"formats|no format|view_box|Options"):
+        RunSpec(**wrong)
+
+
+@pytest.mark.parametrize("limit", ["seconds", "segments", "vertices"])
+def test_limits_are_positive(limit: str) -> None:
+    with pytest.raises(GlyphsplineError, match=limit):
+        Limits(**{limit: 0})
 
 
 def test_file_names_differ_without_regard_to_case_and_stay_in_their_folder() -> None:
@@ -261,3 +366,26 @@ def test_a_killed_run_goes_on_and_ends_the_same(moment: int, finished: Path, fon
 def test_fonts_of_one_name_get_folders_of_their_own() -> None:
     fonts = [Path("a/Fine.ttf"), Path("b/fine.ttf"), Path("c/CON"), Path("d/...."), Path("Fine.otf")]
     assert folders_for(fonts) == ["Fine-ttf", "fine-ttf-2", "CON-2", "font", "Fine-otf"]
+
+
+def test_a_gallery_afterwards_shows_results_and_sources(finished: Path, font: Font, tmp_path: Path) -> None:
+    def drawings(folder: Path) -> list[dict[str, Any]]:
+        return [json.loads(path.read_text()[16:-3]) for path in sorted(folder.glob("gallery/*.glyph.js"))]
+
+    for kind in ("svg", "curvature"):
+        out = tmp_path / kind / "run"
+        convert_font(font, font.select(text="O8 B"), out, replace(SPEC, formats=(kind,)), jobs=0)
+        write_gallery(out, font.path)
+        for made, whole in zip(drawings(out), drawings(finished), strict=True):
+            assert (made["result"], made["source"]) == (whole["result"], whole["source"])
+            assert made["contours"] == whole["contours"]
+            assert made["files"].keys() == {kind}
+        shutil.copy(font.path, tmp_path / kind)
+        (out / "gallery" / "O_.glyph.js").unlink()
+        write_gallery(out)
+        assert [drawing["source"] != "" for drawing in drawings(out)] == [True] * 3
+        (tmp_path / kind / font.path.name).write_bytes(b"another font")
+        write_gallery(out)
+        assert [drawing["source"] for drawing in drawings(out)] == [""] * 3
+    with pytest.raises(OutputError, match="another font"):
+        write_gallery(out, FONTS / "kouzan-gyosho.ttf")

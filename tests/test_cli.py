@@ -43,7 +43,7 @@ def test_quiet_says_nothing(tmp_path: Path) -> None:
         ([FONT], "no glyphs asked for"),
         ([FONT, "--text", "龘"], "none of the glyphs"),
         ([FONT, "--unicodes", "zz"], "no code point"),
-        ([FONT, "--all", "--step", "9", "--count", "9"], "one of --tolerance"),
+        ([FONT, "--all", "--step", "9", "--count", "9"], "one of tolerance, step and count"),
         ([FONT, "--all", "--format", "bmp"], "no format bmp"),
         ([FONT, "--all", "--face-index", "1"], "no face 1"),
         ([FONT, "--all", "--location", "wght=700"], "not a variable font"),
@@ -83,6 +83,17 @@ def test_report_writes_the_index_anew(tmp_path: Path) -> None:
     assert '"runs":["out"]' in (tmp_path / "index.html").read_text()
     (tmp_path / "empty").mkdir()
     assert runner.invoke(app, ["report", str(tmp_path / "empty")]).exit_code == 2
+
+
+def test_report_makes_a_gallery_afterwards(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    options = ["--text", "O", "--step", "90", "--out", str(out), "--jobs", "0", "--format", "svg"]
+    assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
+    assert not (out / "index.html").exists()
+    assert runner.invoke(app, ["report", str(out), "--font", FONT]).exit_code == 0
+    assert '"source":"M' in (out / "gallery" / "O_.glyph.js").read_text()
+    other = runner.invoke(app, ["report", str(out), "--font", str(FONTS / "kouzan-gyosho.otf")])
+    assert (other.exit_code, "another font" in other.stderr) == (2, True)
 
 
 def call(*arguments: str) -> subprocess.CompletedProcess[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -63,8 +64,8 @@ def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> 
 def test_a_spline_shows_its_knots_where_the_curve_passes(glyph: gs.GlyphResult) -> None:
     spline = glyph.contours[0].interpolations[0].spline
     dots = list(ElementTree.fromstring(svg_of(spline)).iter(f"{SVG}path"))[-1].attrib["d"]
-    starts = [[float(v) for v in part.split("l")[0].split()] for part in dots.split("M")[1:]]
-    np.testing.assert_allclose(np.array(starts) * (1, -1), spline(spline.knots), atol=0.01)
+    moves = np.array(re.findall(r"[Mm](-?[\d.]+) ?(-?[\d.]+)h0", dots), dtype=float)
+    np.testing.assert_allclose(np.cumsum(moves, axis=0) * (1, -1), spline(spline.knots), atol=0.01)
 
 
 def test_plot_draws_onto_the_axes_given(axes: Any, glyph: gs.GlyphResult) -> None:

@@ -16,12 +16,11 @@ import pytest
 from svgpathtools import parse_path
 
 import glyphspline as gs
+from glyphspline.batch.galleries import result_path
 from glyphspline.report import write_index, write_report
-from glyphspline.report.drawings import read_drawing
+from glyphspline.report.data import glyph_text, inside
 from glyphspline.report.glyph_measures import glyph_measures
-from glyphspline.writers.svg.curvature_map import to_curvature_svg
-from glyphspline.writers.svg.document import to_svg
-from glyphspline.writers.svg.source_drawing import to_source_svg
+from glyphspline.writers.svg.source_drawing import source_data
 
 from .drawings import METRICS, circle
 
@@ -47,29 +46,22 @@ def tables(folder: Path) -> list[Any]:
     return [data(path) for path in sorted((folder / "gallery").glob("table-*.js"))]
 
 
-def glyphs(folder: Path) -> list[Any]:
-    return [glyph for path in sorted((folder / "gallery").glob("glyphs-*.js")) for glyph in data(path)]
-
-
-def test_drawings_are_those_of_the_files(tmp_path: Path) -> None:
+def test_a_glyphs_file_has_its_drawing(tmp_path: Path) -> None:
     outline = gs.Outline("odd #%?name", 3, (65,), 600.0, (gs.Contour.from_segments(circle(200.0, 8)),), METRICS)
     result = gs.convert(outline, gs.Options(count=12))
-    drawn = {"source": to_source_svg(result), "svg": to_svg(result), "curvature": to_curvature_svg(result)}
-    files = {}
-    for kind, svg in drawn.items():
-        (tmp_path / kind).mkdir()
-        files[kind] = f"{kind}/odd #%?name.svg"
-        (tmp_path / files[kind]).write_text(svg, encoding="utf-8")
-    write_report(tmp_path, [entry(3, files=files)], RUN)
-    (glyph,) = glyphs(tmp_path)
+    source, polygon, control = (part.text for part in source_data([result])[0])
+    drawing: dict[str, Any] = {"source": source, "result": "M0 0Z", "polygon": polygon, "control": control}
+    files = {"svg": "svg/odd #%?name.svg", "gallery": "gallery/odd.glyph.js"}
+    (tmp_path / "a.js").write_bytes(glyph_text(drawing, files, '{"vertices":12,"deviation":null}'))
+    glyph = data(tmp_path / "a.js")
     assert len(parse_path(glyph["source"])) == 8
-    assert len(parse_path(glyph["result"])) == 12
+    assert glyph["result"] == "M0 0Z"
     for kind, points in [("polygon", result.contours[0].polygon),
                          ("control", result.contours[0].interpolations[0].spline.control_points)]:  # fmt: skip
         numbers = np.array(re.findall(r"-?[\d.]+", glyph[kind]), dtype=float).reshape(-1, 2)
         np.testing.assert_allclose(np.cumsum(numbers, axis=0) * (1, -1), points, atol=0.051)
-    without_svg = read_drawing(tmp_path, {"curvature": files["curvature"]})
-    assert without_svg["result"] == glyph["result"]
+    assert glyph["files"] == {"svg": files["svg"]}
+    assert glyph["contours"] == [{"vertices": 12}]
 
 
 def test_measures_of_contours_are_taken_together() -> None:
@@ -101,7 +93,7 @@ class Scripts(HTMLParser):
 
 
 def test_hostile_text_stays_text(tmp_path: Path) -> None:
-    files = {"svg": "../../etc/passwd", "curvature": "/etc/passwd", "source": HOSTILE, HOSTILE: "a"}
+    files = {"gallery": "../../etc/passwd"}
     bad = entry(1, HOSTILE, unicodes=[HOSTILE], status="failed", error=HOSTILE + "\x00", files=files)
     write_report(tmp_path, [bad], RUN | {"font": RUN["font"] | {"family": HOSTILE}})  # type: ignore[operator]
     page = Scripts((tmp_path / "index.html").read_text(encoding="utf-8"))
@@ -110,14 +102,25 @@ def test_hostile_text_stays_text(tmp_path: Path) -> None:
     for path in (tmp_path / "gallery").iterdir():
         assert "<" not in path.read_text(encoding="ascii")
     assert data(tmp_path / "gallery" / "run.js")["family"] == HOSTILE
-    assert set(glyphs(tmp_path)[0]["files"]) == {"source", HOSTILE}
+    (row,) = (row for table in tables(tmp_path) for row in table["rows"])
+    assert (row[0], row[2], row[5], row[6]) == (HOSTILE, HOSTILE, None, HOSTILE + "\x00")
 
 
-def test_a_file_that_is_no_drawing_of_ours_gives_nothing(tmp_path: Path) -> None:
-    (tmp_path / "a.svg").write_text(
-        '<path id="g1-a-outline" d="M0 0Z&quot;onload"/><g id="g1-a-source"><path d="url(x)"/></g>'
-    )
-    assert set(read_drawing(tmp_path, {"svg": "a.svg", "source": "a.svg"}).values()) == {""}
+@pytest.mark.parametrize("path", ["../a", "/a", "a/../../b", "a\\b", None, 3])
+def test_a_link_out_of_the_folder_is_none(path: object) -> None:
+    assert not inside(path)
+    assert inside("svg/a.svg")
+
+
+@pytest.mark.parametrize(
+    "drawing",
+    ['<path id="g1-a-outline" d="M0 0Z&quot;onload"/>', "<path", '<!DOCTYPE a [<!ENTITY b "c">]><svg>&b;</svg>', ""],
+)
+def test_a_file_that_is_no_drawing_of_ours_gives_nothing(drawing: str, tmp_path: Path) -> None:
+    text = f'<svg xmlns="http://www.w3.org/2000/svg">{drawing}</svg>' if drawing.endswith("/>") else drawing
+    (tmp_path / "a.svg").write_text(text)
+    assert result_path(tmp_path, {"svg": "a.svg"}) == ""
+    assert result_path(tmp_path, {"svg": "missing.svg"}) == ""
 
 
 def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:
@@ -137,7 +140,6 @@ def test_every_glyph_is_there_once_in_order(tmp_path: Path, count: int) -> None:
     write_report(tmp_path, (entry(gid) for gid in range(count)), RUN)
     gids = [row[table["columns"].index("gid")] for table in tables(tmp_path) for row in table["rows"]]
     assert gids == list(range(count))
-    assert len(glyphs(tmp_path)) == count
     assert data(tmp_path / "gallery" / "run.js")["glyphs"] == count
 
 

@@ -18,9 +18,12 @@ from matplotlib.path import Path as MatplotlibPath
 from svgpathtools import Line, parse_path
 
 import glyphspline as gs
+from glyphspline.fitting.results import end_to_end
+from glyphspline.outlines.outline import Contours
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.document import VIEW_BOXES, ViewBox, to_svg
-from glyphspline.writers.svg.markup import ink_bounds, number
+from glyphspline.writers.svg.markup import number
+from glyphspline.writers.svg.path_data import curves_data, polyline_data
 from glyphspline.writers.svg.source_drawing import to_source_svg
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
@@ -98,6 +101,34 @@ def test_numbers_are_minimal(value: float, precision: int, expected: str) -> Non
     point = gs.Contour(np.array([[value, 1], [2, 3], [4, 5]]), np.ones(3, dtype=np.int64))
     if precision == 2:
         assert path_of(to_svg(result(point))).startswith(f"M{expected.removeprefix('0') or '0'}-1l")
+
+
+@pytest.mark.parametrize(
+    ("value", "precision", "text"),
+    [(0, 2, "0"), (5, 2, ".05"), (-5, 2, "-.05"), (120, 2, "1.2"), (-100, 2, "-1"), (12345, 0, "12345"),
+     (999_999_999_999_999, 3, "999999999999.999"), (1_000_000, 2, "10000"), (7, 9, ".000000007")],
+)  # fmt: skip
+def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
+    points = np.array([[value, -value]]) / 10.0**precision
+    assert polyline_data(points, precision) == f"M{text}{text if value < 0 else f' {text}'}"
+
+
+def test_numbers_of_any_size_are_written() -> None:
+    huge = gs.Contour(np.array([[0, 0], [1e20, 0], [1e20, 1e20], [0, 1e20], [-1e20, 5]]), np.array([1, 3, 1]))
+    small = polygon_contour(L_SHAPE)
+    arrays = Contours([small, huge, small]).arrays
+    first, second, third = curves_data(arrays, 2, np.array([0, 1, 2, 3]))
+    assert bytes(first.text) == bytes(third.text)
+    assert bytes(second.text) == b"M0 0L1e+20 0C1e+20 -1e+20 0 -1e+20 -1e+20 -5Z"
+    assert first.box == (50, 0, 450, 700)
+
+
+def test_path_data_does_not_depend_on_the_batch() -> None:
+    glyphs = [result(wavy(seed), polygon_contour(L_SHAPE)) for seed in range(4)] + [result(), result(wavy(9))]
+    arrays, offsets = end_to_end(glyphs)
+    for glyph, found in zip(glyphs, curves_data(arrays.curves, 2, offsets), strict=True):
+        alone = curves_data(glyph.arrays.curves, 2)[0]
+        assert (bytes(found.text), found.box) == (bytes(alone.text), alone.box)
 
 
 def test_no_negative_zero_is_written() -> None:
@@ -187,7 +218,7 @@ def test_ink_bounds_are_tight(seed: int) -> None:
         ]
     )
     dense = (*samples.min(axis=0), *samples.max(axis=0))
-    assert ink_bounds([curve]) == pytest.approx(dense, abs=1e-3)
+    assert curves_data(Contours([curve]).arrays, 3)[0].box == pytest.approx(dense, abs=2e-3)
 
 
 def test_hostile_names_stay_text() -> None:

@@ -103,7 +103,7 @@ def test_a_stored_result_is_read_back_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"kind":"Path"}', '{"array":"object","shape":[1],"data":""}'])
 def test_nothing_else_is_made_of_a_stored_result(text: str) -> None:
-    with pytest.raises(ValueError, match=r"."):
+    with pytest.raises(ValueError, match=r"not a stored result|Expecting value"):
         from_text(text)
 
 

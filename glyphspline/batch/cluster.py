@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError
-from ..report.data import FOLDER
 from .files import write_whole
 from .job import Job, Task
 from .pool import WorkerLostError
@@ -73,7 +72,7 @@ def call_there(fn: Callable[..., Any], font: bytes, job: Job, tasks: Sequence[Ta
     path = local_font(font, job.path.suffix)
     with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
         out = Path(folder)
-        for name in (*job.spec.folders, FOLDER):
+        for name in job.spec.folders:
             (out / name).mkdir()
         result = fn(replace(job, path=path, out=out), tasks)
         files = {f"{file.parent.name}/{file.name}": file.read_bytes() for file in sorted(out.glob("*/*"))}

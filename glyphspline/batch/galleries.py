@@ -1,27 +1,108 @@
-"""The gallery of folders that are there already: one run, or several side by side."""
+"""The gallery of folders that runs have written: one run, or several side by side."""
 
 from __future__ import annotations
 
-from pathlib import Path
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+from xml.etree.ElementTree import ParseError
 
-from ..errors import OutputError
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import fromstring
+
+from ..errors import GlyphsplineError, OutputError
+from ..readers import Source, open_source
 from ..report import write_index, write_report
+from ..report.data import FOLDER, SUFFIX, as_json, glyph_text, inside
+from ..writers.svg.path_data import path_data
+from .files import make_folder, write_whole
 from .manifest import MANIFEST, entries_of
 from .spec import read_run
 
+_PATH = re.compile(r"[MLQCZlqc0-9 .e+-]*")
 
-def write_gallery(folder: Path) -> None:
-    """Write ``index.html`` anew from what runs have left in a folder, or in the folders below it.
+
+def write_gallery(folder: Path, font: Path | None = None) -> None:
+    """Write ``index.html`` from what runs have left in a folder, or in the folders below it.
+
+    Of a run without the format "gallery" the results are read from its drawings, and the source outlines from its
+    font; polygons and control polygons are not in any of its files.
+
+    Args:
+        folder: of one run, or of several.
+        font: the font of a run; None: the file of its name in the current folder, in the run's or in the one above, if
+            it is the same to the byte. Without it such a gallery shows the results alone.
 
     Raises:
-        OutputError: there is no finished run, or one that cannot be read.
+        OutputError: there is no finished run, or one that cannot be read; or ``font`` is not the run's.
     """
     if (folder / MANIFEST).is_file():
-        write_report(folder, entries_of(folder), read_run(folder) or {})
+        _write_one(folder, font)
         return
     below = sorted(path.parent for path in folder.glob(f"**/{MANIFEST}"))
     if not below:
         raise OutputError("holds no finished run, nor do the folders in it", font=str(folder))
     for path in below:
-        write_report(path, entries_of(path), read_run(path) or {})
+        _write_one(path, font)
     write_index(folder, [path.relative_to(folder).as_posix() for path in below], f"{len(below)} fonts")
+
+
+def _write_one(folder: Path, font: Path | None) -> None:
+    run = read_run(folder) or {}
+    write_report(folder, _with_drawings(folder, run, font), run)
+
+
+def _with_drawings(folder: Path, run: Mapping[str, Any], font: Path | None) -> Iterator[dict[str, Any]]:
+    """The entries of a run's manifest. Data files of glyphs that have none are written."""
+    source: Source | None = None
+    searched = False
+    for entry in entries_of(folder):
+        files = {str(kind): path for kind, path in (entry.get("files") or {}).items() if inside(path)}
+        if files and FOLDER not in files:
+            if not searched:
+                make_folder(folder / FOLDER)
+                source, searched = _font_of(folder, run, font), True
+            drawing = {"source": "", "result": result_path(folder, files), "polygon": "", "control": ""}
+            if source is not None:
+                precision = int(run.get("options", {}).get("precision", 2))
+                drawing["source"] = path_data(source.outline(entry["glyph"]).contours, precision)
+            files[FOLDER] = f"{FOLDER}/{PurePosixPath(next(iter(files.values()))).stem}{SUFFIX}"
+            measures = as_json(entry.get("contours") or [])[1:-1]
+            write_whole(f"{folder}/{files[FOLDER]}", glyph_text(drawing, files, measures))
+            entry = entry | {"files": files}
+        yield entry
+
+
+def _font_of(folder: Path, run: Mapping[str, Any], given: Path | None) -> Source | None:
+    """The font of a run, known by the checksum of its bytes; None if it cannot be found."""
+    facts = run.get("font", {})
+    name = Path(str(facts.get("file", ""))).name
+    for path in [given] if given else [place / name for place in (Path(), folder, folder.parent)]:
+        try:
+            source = open_source(path, int(facts.get("face_index", 0)), facts.get("location") or None)
+        except GlyphsplineError:
+            if given:
+                raise
+            continue
+        if source.sha256 == facts.get("sha256"):
+            return source
+    if given:
+        raise OutputError("was made of another font", font=str(folder))
+    return None
+
+
+def result_path(folder: Path, files: Mapping[str, str]) -> str:
+    """Path data of a result, from its drawing or its map; "" if neither can be read or holds any."""
+    for kind in ("svg", "curvature"):
+        if kind not in files:
+            continue
+        try:
+            root = fromstring((folder / files[kind]).read_bytes())
+        except (OSError, ParseError, DefusedXmlException):
+            continue
+        for path in root.iter("{http://www.w3.org/2000/svg}path"):
+            data = path.get("d", "")
+            if path.get("class") == "outline" or path.get("id", "").endswith("-outline"):
+                return data if _PATH.fullmatch(data) else ""
+    return ""

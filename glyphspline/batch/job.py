@@ -1,25 +1,23 @@
-"""What the process that hands out a run's glyphs and the workers tell each other."""
+"""What the process that hands out a run's glyphs and the workers exchange."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from ..outlines.outline import FontMetrics
-from ..report.data import CHUNK
-from .entry import Told, journal_line, manifest_line, told_of
+from .entry import journal_line, manifest_line
 from .spec import RunSpec
-from .summary import Facts
+from .summary import NO_FACTS, Facts
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker has to know of a run: the source by how it is opened, and what to do with its glyphs.
+    """What a worker needs to know of a run: how to open the source, and what to do with its glyphs.
 
-    ``static`` says that it is a font file, and does not vary.
+    ``is_font`` says that the source is a font file, whose outlines are read in bulk.
     """
 
     path: Path
@@ -28,24 +26,25 @@ class Job:
     out: Path
     spec: RunSpec
     metrics: FontMetrics
-    static: bool
+    is_font: bool
     curvature_scale: float | None = None
 
 
 class Task(NamedTuple):
-    """One glyph: its name, index and code points, its file name without suffix, and its place in the manifest."""
+    """One glyph: its index, name, file name without suffix, and code points."""
 
     gid: int
     name: str
     stem: str
     unicodes: tuple[int, ...]
-    place: int
 
 
 class Done(NamedTuple):
-    """One glyph, finished: its line of the journal, as :mod:`.manifest` has them, and how long it took.
+    """One glyph, finished.
 
-    What the line says is there a second time, short: ``row`` of the gallery's table as JSON, ``facts`` to be counted.
+    Attributes:
+        line: its line of the journal. seconds: its share of the time that its batch took.
+        facts: of its measures, for the summary. row: of the gallery's table; "" where it is still to be made.
     """
 
     gid: int
@@ -53,34 +52,18 @@ class Done(NamedTuple):
     status: str
     line: bytes
     seconds: float
-    row: str
     facts: Facts
-
-
-def page_of(tasks: Sequence[Task]) -> int | None:
-    """The number of the gallery's page that shows just these glyphs, if one does."""
-    first = tasks[0].place
-    whole = len(tasks) == CHUNK and tasks[-1].place == first + CHUNK - 1 and first % CHUNK == 0
-    return first // CHUNK if whole else None
+    row: str
 
 
 def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
-    """A glyph that could not be converted, or that no worker lived to tell of."""
-    return finished(task, "failed", None, "", (), "", error, seconds)
+    """A glyph that could not be converted, or whose worker was lost."""
+    line = manifest_line(task.name, task.gid, task.unicodes, None, "failed", "", "", error)
+    return Done(task.gid, task.name, "failed", journal_line((), line), seconds, NO_FACTS, "")
 
 
 def finished(
-    task: Task,
-    status: str,
-    advance: float | None,
-    files: str,
-    sizes: tuple[int, ...],
-    contours: str,
-    error: str | None,
-    seconds: float,
-    told: Told | None = None,
-) -> Done:
-    """What is told of a glyph; ``files`` and ``contours`` are JSON as its line has it, ``told`` what else is known."""
-    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files, contours, error)
-    row, facts = told or told_of(json.loads(line))
-    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, row, facts)
+    task: Task, status: str, line: str, sizes: Sequence[int], seconds: float, facts: Facts, row: str
+) -> Done:  # fmt: skip
+    """A glyph that was converted: ``line`` of the manifest, and the sizes of its files."""
+    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, facts, row)

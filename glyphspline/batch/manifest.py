@@ -33,7 +33,7 @@ SIZES = ".sizes.txt"
 _SIZES_LINE = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
 
 Note = tuple[str, str, str, Facts]
-"""Of a glyph done now: its name and status, its row of the table, and its facts."""
+"""Of a glyph done now: its name, its status, its row of the gallery's table, and its facts."""
 
 
 @dataclass
@@ -43,7 +43,6 @@ class Record:
     Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found. Of glyphs
     done now there is ``notes``: what is in their lines for table and summary, so that those need not be read again.
     ``sizes`` are those of the files of glyphs that the manifest has, as the journal writes them.
-    ``pages`` are numbers of pages of the gallery that were written now.
     """
 
     where: dict[int, tuple[str, int]] = field(default_factory=dict)
@@ -51,7 +50,6 @@ class Record:
     counts: Summary = field(default_factory=Summary)
     notes: dict[int, Note] = field(default_factory=dict)
     sizes: dict[int, bytes] = field(default_factory=dict)
-    pages: set[int] = field(default_factory=set)
 
     def finished(self) -> set[int]:
         """Glyphs that need not be done again. Those that failed are tried again: the cause may be gone."""

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Container, Iterable, Sequence
+from collections.abc import Callable, Container, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
-from functools import partial
 from operator import itemgetter
 from pathlib import Path
 
 from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
-from ..report.data import FOLDER
-from ..report.gallery import Gallery, is_whole, shown
+from ..report.data import FOLDER as GALLERY
+from ..report.data import line_row
+from ..report.gallery import Gallery, is_whole, remove_gallery
 from .calls import survey, work
-from .entry import told_of
+from .entry import columns_of
 from .files import file_names, make_folder, remove_partials
-from .job import Job, Task, failed, page_of
+from .job import Job, Task, failed
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
 from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
-from .summary import Summary
+from .summary import Summary, facts_of
 from .whole import check_possible, missing, write_fonts
 
 SCALE_SAMPLE = 200
@@ -71,12 +71,12 @@ def convert_font(
     record = prepare(source, out, spec, restart)
     job = Job(
         source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
-        source.metrics, type(source) is Font and not source.axes,
+        source.metrics, type(source) is Font,
     )  # fmt: skip
     finished = record.finished()
     summary = Summary()
     with nullcontext(executor) if executor else workers_for(source, glyphs, finished, spec, jobs) as pool:
-        tasks = tasks_of(source, glyphs, record.where)
+        tasks = tasks_of(source, glyphs)
         left = [task for task in tasks if task.gid not in finished]
         job = with_scale(job, source, tasks, pool)
         if left:
@@ -85,11 +85,12 @@ def convert_font(
                 convert_tasks(job, left, pool, journal, summary, observer)
             finally:
                 journal.close()
-        for name in (*spec.folders, FOLDER) if left else ():
+        for name in spec.folders if left else ():
             remove_partials(out / name)
-    whole = (out / MANIFEST).exists() and not (out / JOURNAL).exists() and is_whole(out, len(record.where))
-    if left or not whole:
-        conclude(out, record, summary)
+    gallery = GALLERY in spec.formats
+    whole = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
+    if left or not whole or (gallery and not is_whole(out, len(record.where))):
+        conclude(out, record, summary, gallery)
     else:
         summary = record.counts
     if left or missing(source, out, spec):
@@ -118,17 +119,18 @@ def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
             )
     else:
         remove_written(out)
+        remove_gallery(out)
         for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
             (out / name).unlink(missing_ok=True)
-    for name in (*spec.folders, FOLDER):
+    for name in spec.folders:
         make_folder(out / name)
         remove_partials(out / name)
     remove_partials(out)
     return read_record(out) if old is not None else Record()
 
 
-def tasks_of(source: Source, glyphs: Sequence[str], there: Iterable[int]) -> list[Task]:
-    """A task for each glyph, in glyph index order; ``there`` are indices of those that the folder has."""
+def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
+    """A task for each glyph, in glyph index order."""
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     stems = file_names(source.glyph_names)
     unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
@@ -136,8 +138,7 @@ def tasks_of(source: Source, glyphs: Sequence[str], there: Iterable[int]) -> lis
         if name in unicodes:
             unicodes[name].append(code)
     chosen = sorted((index[name], name, tuple(sorted(codes))) for name, codes in unicodes.items())
-    places = {gid: place for place, gid in enumerate(sorted({*(gid for gid, _, _ in chosen), *there}))}
-    return [Task(gid, name, stems[gid], codes, places[gid]) for gid, name, codes in chosen]
+    return [Task(gid, name, stems[gid], codes) for gid, name, codes in chosen]
 
 
 def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
@@ -164,12 +165,7 @@ def convert_tasks(
     before = len(journal.record.finished())
     failures = 0
     for chunk, result in spread(pool, work, job, chunks_of(tasks, pool)):
-        if isinstance(result, list):
-            done, page = result, page_of(chunk)
-            if page is not None:
-                journal.record.pages.add(page)
-        else:
-            done = [failed(task, result.message) for task in chunk]
+        done = result if isinstance(result, list) else [failed(task, result.message) for task in chunk]
         journal.add(done)
         for glyph in done:
             summary.time(glyph.seconds, glyph.name)
@@ -178,22 +174,20 @@ def convert_tasks(
             observer(before + summary.done, before + len(tasks), failures)
 
 
-def conclude(out: Path, record: Record, summary: Summary) -> None:
-    """Write manifest and gallery, and count what is in them."""
-    gallery = Gallery(out, record.pages)
+def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:
+    """Write the manifest, count what is in it, and write the gallery's page and tables."""
+    gallery = Gallery(out) if with_gallery else None
     with finish(out, record) as lines:
         for gid, line in lines:
             name, status, row, facts = record.notes.get(gid) or _noted(line)
             summary.count(name, status, json.loads(line)["error"] if status == "failed" else None, facts)
-            gallery.add(row, partial(_shown, out, line))
-        gallery.close(read_run(out) or {})
+            if gallery:
+                gallery.add(row or line_row(line))
+        if gallery:
+            gallery.close(read_run(out) or {})
 
 
 def _noted(line: bytes) -> Note:
-    """Of a glyph that an earlier run has done, what is noted of those done now."""
+    """The note on a glyph that an earlier run has done."""
     entry = json.loads(line)
-    return entry["glyph"], entry["status"], *told_of(entry)
-
-
-def _shown(out: Path, line: bytes) -> bytes:
-    return shown(out, json.loads(line))
+    return entry["glyph"], entry["status"], "", facts_of(columns_of(entry["contours"]))

@@ -6,20 +6,17 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..fitting.options import Options
-from ..report.data import CHUNK
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for
 
 if TYPE_CHECKING:
     from .job import Job, Task
 
-LARGEST_CHUNK = CHUNK
-"""Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar. As many
-as a page of the gallery shows, so that the worker can write that, too."""
+LARGEST_CHUNK = 40
+"""Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar."""
 
 AHEAD = 4
 """Chunks in flight for each worker, so that none waits for the next: two that it has, and two to come."""
@@ -65,11 +62,8 @@ def pool_size(pool: Executor) -> int:
 
 
 def chunks_of(tasks: Sequence[Task], pool: Executor) -> list[Sequence[Task]]:
-    """Glyphs in chunks, so many that the workers finish at about the same time; of many glyphs, page by page."""
-    size = min(LARGEST_CHUNK, len(tasks) // (8 * pool_size(pool)))
-    if size < LARGEST_CHUNK:
-        return slices(tasks, max(1, size))
-    return [list(page) for _, page in groupby(tasks, lambda task: task.place // CHUNK)]
+    """Glyphs in chunks, so many that the workers finish at about the same time."""
+    return slices(tasks, max(1, min(LARGEST_CHUNK, len(tasks) // (8 * pool_size(pool)))))
 
 
 def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from .._version import __version__
 from ..errors import GlyphsplineError, OutputError
 from ..fitting.options import Options
+from ..report.data import FOLDER as GALLERY
+from ..report.data import SUFFIX
 from ..writers.svg.document import VIEW_BOXES, ViewBox
 from .files import write_whole
 
@@ -22,9 +24,12 @@ RUN_FILE = "run.json"
 
 RESULTS = "results"
 
-SUFFIXES = {"source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", RESULTS: ".json"}
-"""Formats of one file a glyph, each in a folder of its name. "source" is what the index shows beside a map, "results"
-what formats of the whole font are made from."""
+SUFFIXES = {
+    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", GALLERY: SUFFIX,
+    RESULTS: ".json",
+}  # fmt: skip
+"""Formats of one file a glyph, each in a folder of its name. "source" belongs to the gallery; formats of the whole font
+are made from "results"."""
 
 WHOLE = ("ufo", "otf", "ttf", "parquet")
 """Formats of one file a font."""
@@ -46,6 +51,11 @@ class Limits:
     segments: int = 100_000
     vertices: int = 200_000
 
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if not value > 0:
+                raise GlyphsplineError(f"the limit of {name} is positive, not {value}")
+
 
 @dataclass(frozen=True)
 class RunSpec:
@@ -57,23 +67,27 @@ class RunSpec:
     """
 
     options: Options = field(default_factory=Options)
-    formats: tuple[str, ...] = ("svg", "curvature")
+    formats: tuple[str, ...] = ("svg", "curvature", GALLERY)
     view_box: ViewBox = "em"
     limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.formats if name not in FORMATS]
+        if isinstance(self.formats, str):
+            raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
+        unknown = [str(name) for name in self.formats if name not in FORMATS]
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
         if self.view_box not in VIEW_BOXES:
             raise GlyphsplineError(f"view_box is one of {', '.join(VIEW_BOXES)}, not {self.view_box!r}")
+        if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
+            raise GlyphsplineError("options are Options, limits are Limits")
         object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
 
     @property
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one a format of single glyphs, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        return (*own, *(["source"] if "curvature" in own else []), *([RESULTS] if self.whole else []))
+        return (*own, *(["source"] if GALLERY in own else []), *([RESULTS] if self.whole else []))
 
     @property
     def whole(self) -> tuple[str, ...]:

@@ -1,12 +1,15 @@
-"""What a run came to: glyphs by status, the worst of them, and what failed."""
+"""The summary of a run: glyphs by status, the worst of them, and what failed."""
 
 from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
+
+from ..fitting.results import MeasureColumns
+from .entry import columns_of
 
 SHOWN = 10
 """How many of the worst, the slowest and the failed are kept by name; a CJK face may have thousands."""
@@ -18,17 +21,15 @@ SLOW = 0.5
 Facts = tuple[bool, bool, float | None]
 """Of a glyph: whether a contour did not converge, whether one is outside the tolerance, the largest deviation."""
 
+NO_FACTS: Facts = (False, False, None)
 
-def facts_of(contours: Iterable[Mapping[str, Any]]) -> Facts:
-    """What the measures of a glyph's contours, as the manifest has them, come to."""
-    not_converged, outside, deviation = False, False, None
-    for contour in contours:
-        not_converged |= contour["converged"] is False
-        outside |= contour["within_tolerance"] is False
-        own = contour["deviation"]
-        if own is not None and (deviation is None or own > deviation):
-            deviation = own
-    return not_converged, outside, deviation
+
+def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) -> Facts:
+    """The facts of a glyph whose contours are those from ``first`` up to ``last``."""
+    names = ("converged", "within_tolerance", "deviation")
+    converged, within, deviations = (measures.get(name, ())[first:last] for name in names)
+    known = [value for value in deviations if value is not None]
+    return False in converged, False in within, max(known, default=None)
 
 
 @dataclass
@@ -38,8 +39,8 @@ class Summary:
     Attributes:
         statuses: glyphs by status. not_converged, outside_tolerance: glyphs with such a contour.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
-        slowest: (seconds, glyph) of what was done now. done: glyphs done now, the others had been before.
-        remarks: what is to be said of files written of the whole font.
+        slowest: (seconds, glyph) of those done now. done: glyphs done now; the others were done by an earlier run.
+        remarks: on files of the whole font.
     """
 
     statuses: Counter[str] = field(default_factory=Counter)
@@ -53,7 +54,7 @@ class Summary:
 
     def add(self, entry: Mapping[str, Any]) -> None:
         """Count one line of the manifest."""
-        self.count(entry["glyph"], entry["status"], entry["error"], facts_of(entry["contours"]))
+        self.count(entry["glyph"], entry["status"], entry["error"], facts_of(columns_of(entry["contours"])))
 
     def count(self, glyph: str, status: str, error: str | None, facts: Facts) -> None:
         """Count one glyph."""

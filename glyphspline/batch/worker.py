@@ -1,196 +1,226 @@
-"""What a worker does: glyph after glyph from outline to files and a manifest line.
-
-The font is opened by the first glyph that needs more of it than HarfBuzz draws.
-"""
+"""What a worker does, in batches: tasks to outlines to results to files and lines of the manifest."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ..curves.curvature import Comb
-from ..errors import GlyphsplineError
-from ..fitting.convert import convert
-from ..fitting.results import GlyphResult
+from ..errors import GlyphsplineError, OutputError
+from ..fitting.convert import convert_many
+from ..fitting.options import Options
+from ..fitting.results import GlyphResult, end_to_end
+from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers import Source, open_source
-from ..readers.opentype.bulk_contours import BulkReader, read_chunk
-from ..report.data import files_text, glyph_text, page_file, page_text
-from ..report.drawings import Drawing, drawing, drawing_of
-from ..writers.svg.curvature_map import combs, combs_of, to_curvature_svg
-from ..writers.svg.document import to_svg
-from ..writers.svg.source_drawing import to_source_svg
-from .entry import known, measured, solved_texts, told_of_solved
+from ..readers.opentype.bulk import BulkReader
+from ..report.data import FOLDER as GALLERY
+from ..report.data import files_text, glyph_text, line_row
+from ..writers.svg.curvature_map import combs, map_document
+from ..writers.svg.document import svg_document
+from ..writers.svg.path_data import PathData, curves_data
+from ..writers.svg.source_drawing import SourceData, source_data, source_document
+from .entry import contour_texts, manifest_line
 from .files import write_whole
-from .job import Done, Job, Task, failed, finished, page_of
-from .lane import Drawn, draw_chunk, drawn_map, drawn_source, drawn_svg, source_texts, suits
+from .job import Done, Job, Task, failed, finished
 from .pool import sign_of_life
-from .spec import RESULTS, SUFFIXES, RunSpec
+from .spec import RESULTS, SUFFIXES, Limits
 from .store import to_text
+from .summary import Facts, facts_of
+
+Location = tuple[tuple[str, float], ...]
+
+BATCH = 40_000
+"""Segments of outlines, and vertices, that are converted at once: some 40 glyphs of a CJK face. The time limit and the
+memory of a worker are for one batch."""
 
 
-@lru_cache(maxsize=1)
-def source_of(path: Path, face_index: int, location: tuple[tuple[str, float], ...]) -> Source:
-    """The source, opened once a process; only one is kept, as a CJK face takes some 100 MB."""
-    return open_source(path, face_index, dict(location))
+class Read(NamedTuple):
+    """A glyph that has been read; ``cost`` counts segments, and vertices."""
 
-
-@lru_cache(maxsize=1)
-def bulk_reader(path: Path, face_index: int) -> BulkReader:
-    """The short way's reader, made once a process."""
-    return BulkReader(path, face_index)
+    task: Task
+    outline: Outline
+    cost: float
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
-    """Convert and write glyphs, the short way where there is one. A glyph that cannot be converted fails alone.
-
-    Glyphs that are just a page of the gallery are written to it, too: now their drawings are in memory.
+    """Convert and write glyphs. A glyph that cannot be converted fails alone.
 
     Raises:
-        OutputError: the output folder cannot be written to, which no other glyph would survive either.
+        OutputError: the output folder cannot be written to, which would stop every other glyph, too.
     """
-    each = draw_and_write(job, tasks) if short_way(job) else read_and_work(job, tasks)
-    found, shown = [], []
-    for done, glyph in each:
-        found.append(done)
-        shown.append(glyph)
+    read, done = readable(job, tasks)
+    for batch in batches(read):
+        done += convert_and_write(job, batch)
         sign_of_life()
-    page = page_of(tasks)
-    if page is not None:
-        write_whole(f"{job.out}/{page_file(page)}", page_text(shown))
+    return done
+
+
+def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
+    """Combs of a few glyphs, for the scale that all curvature maps of the run share; glyphs that fail are left out."""
+    found = []
+    for glyph in readable(job, tasks)[0]:
+        sign_of_life()
+        try:
+            (result,) = converted(job, [glyph])
+        except Exception:  # reported when the glyph is converted for its files
+            continue
+        found += combs(result) if isinstance(result, GlyphResult) else []
     return found
 
 
-def draw_and_write(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
-    """Glyphs the short way; those that it leaves, the long way."""
-    started = time.perf_counter()
-    drawn = draw(job, tasks)
-    chunk = next((short.chunk for short in drawn if short is not None), None)
-    lines = solved_texts(chunk.solved) if chunk is not None else []
-    share = (time.perf_counter() - started) / len(tasks)
-    folders = job.spec.folders
-    for task, short in zip(tasks, drawn, strict=True):
-        yield work_one(job, task) if short is None else write_drawn(job, folders, task, short, lines, share)
+def readable(job: Job, tasks: Sequence[Task]) -> tuple[list[Read], list[Done]]:
+    """The glyphs whose outlines can be read and are not too large, and those that fail here."""
+    read, done = [], []
+    found = outlines(job, tasks)
+    good = [outline for outline in found if isinstance(outline, Outline)]
+    vertices = iter(vertices_of(good, job.spec.options))
+    for task, outline in zip(tasks, found, strict=True):
+        try:
+            if isinstance(outline, GlyphsplineError):
+                raise outline
+            read.append(Read(task, outline, cost_of(outline, next(vertices), job.spec.limits)))
+        except GlyphsplineError as error:
+            done.append(failed(task, reason(error)))
+    return read, done
 
 
-def read_and_work(job: Job, tasks: Sequence[Task]) -> Iterator[tuple[Done, bytes]]:
-    """Glyphs the long way."""
-    for task, outline in zip(tasks, outlines(job, tasks), strict=True):
-        yield work_one(job, task, outline)
+def outlines(job: Job, tasks: Sequence[Task]) -> Sequence[Outline | GlyphsplineError]:
+    """The glyphs' outlines, or what is wrong with them."""
+    if job.is_font:
+        reader = bulk_reader(job.path, job.face_index, job.location)
+        return reader.outlines([(task.name, task.gid, task.unicodes) for task in tasks], job.metrics)
+    source = source_of(job.path, job.face_index, job.location)
+    return source.outlines([task.gid for task in tasks], errors="return")
 
 
-def short_way(job: Job) -> bool:
-    """Whether a run's glyphs can be converted in compiled chunks: drawings of a font that does not vary."""
-    return job.static and set(job.spec.folders) <= SHORT and suits(job.spec.options)
+@lru_cache(maxsize=1)
+def bulk_reader(path: Path, face_index: int, location: Location) -> BulkReader:
+    """The reader of a font, opened once a process. It is much quicker to open than the font."""
+    return BulkReader(path, face_index, location)
 
 
-SHORT = {"source", "svg", "curvature"}
-"""What the short way can write."""
+@lru_cache(maxsize=1)
+def source_of(path: Path, face_index: int, location: Location) -> Source:
+    """The source, opened once a process; only one is kept, which may take 100 MB."""
+    return open_source(path, face_index, dict(location))
 
 
-def draw(job: Job, tasks: Sequence[Task]) -> list[Drawn | None]:
-    """Glyphs the short way."""
-    return draw_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks], job.spec.options)
+def cost_of(outline: Outline, vertices: float, limits: Limits) -> float:
+    """Segments of an outline and vertices together.
 
-
-def write_drawn(
-    job: Job, folders: Sequence[str], task: Task, drawn: Drawn, lines: Sequence[str], seconds: float
-) -> tuple[Done, bytes]:
-    """Write what the short way has drawn; and the glyph as the gallery shows it. ``lines``: of its chunk's contours."""
-    started = time.perf_counter()
-    advance, (first, last) = drawn.advance, drawn.contours
-    outline = Outline(task.name, task.gid, task.unicodes, advance, (), job.metrics)
-    documents, shown = documents_of(job, folders, outline, drawn)
-    files, sizes = write_documents(job, task, documents)
-    contours = ",".join(lines[first:last])
-    told = told_of_solved(task.name, task.gid, task.unicodes, advance, drawn.chunk.solved, first, last)
-    seconds += time.perf_counter() - started
-    done = finished(task, "ok", advance, files, sizes, contours, None, seconds, told)
-    return done, glyph_text(shown, files, known(contours), None)
-
-
-def write_documents(job: Job, task: Task, documents: Mapping[str, str | bytes]) -> tuple[str, tuple[int, ...]]:
-    """Write a glyph's files: what they are called, as JSON, and their sizes."""
-    files = {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in documents}
-    sizes = [write_whole(f"{job.out}/{files[name]}", document) for name, document in documents.items()]
-    return files_text(files), tuple(sizes)
-
-
-def documents_of(job: Job, folders: Sequence[str], outline: Outline, drawn: Drawn) -> tuple[dict[str, bytes], Drawing]:
-    """A glyph's files in the order of ``WRITERS``; of ``outline`` everything but its contours is needed."""
-    documents, shown = {}, drawing(drawn.text)
-    precision = job.spec.options.precision
-    if "source" in folders:
-        texts = source_texts(drawn, outline.metrics.units_per_em, precision)
-        documents["source"] = drawn_source(outline, drawn, texts, precision)
-        shown |= texts._asdict()
-    if "svg" in folders:
-        documents["svg"] = drawn_svg(outline, drawn, precision, job.spec.view_box)
-    if "curvature" in folders:
-        assert job.curvature_scale is not None
-        documents["curvature"] = drawn_map(outline, drawn, job.curvature_scale)
-    return documents, shown
-
-
-def work_one(job: Job, task: Task, outline: Outline | None = None) -> tuple[Done, bytes]:
-    """Convert and write one glyph; and the glyph as the gallery shows it. None: its outline is still to be read."""
-    started = time.perf_counter()
-    given = outline is not None
-    try:
-        outline = outline or outline_of(job, task)
-        check_size(outline, job.spec)
-        result = convert(outline, job.spec.fitting(outline.metrics.units_per_em))
-        documents = {name: make(job, result) for name, make in writers(job).items()} if result.contours else {}
-    except Exception as error:
-        if given:  # the font's own reader knows better what is wrong
-            return work_one(job, task)
-        why = reason(error)
-        return failed(task, why, time.perf_counter() - started), glyph_text(drawing(), "", "", why)
-    files, sizes = write_documents(job, task, documents)
-    contours = measured((contour.measures for contour in result.contours), job.spec.options)
-    seconds = time.perf_counter() - started
-    done = finished(task, "ok" if files else "empty", outline.advance, files, sizes, contours, None, seconds)
-    texts = {name: document for name, document in documents.items() if isinstance(document, str)}
-    return done, glyph_text(drawing_of(lambda kind: texts.get(kind, "")), files, contours, None)
-
-
-def outline_of(job: Job, task: Task) -> Outline:
-    """The glyph's outline, by the font's own reader."""
-    return source_of(job.path, job.face_index, job.location).outline(task.name)
-
-
-def outlines(job: Job, tasks: Sequence[Task]) -> list[Outline | None]:
-    """What is read of glyphs in bulk; None where the font has to be opened for it."""
-    if not job.static or job.spec.whole or not tasks:  # files of a whole font say what a glyph had beside its contours
-        return [None] * len(tasks)
-    found = read_chunk(bulk_reader(job.path, job.face_index), [task.gid for task in tasks])
-    return [
-        Outline(task.name, task.gid, task.unicodes, *glyph, job.metrics) if glyph is not None else None
-        for task, glyph in zip(tasks, found, strict=True)
-    ]
-
-
-def check_size(outline: Outline, spec: RunSpec) -> None:
-    """Refuse an outline that asks for more work than any real glyph does."""
-    limits, options = spec.limits, spec.options
-    segments = sum(len(contour) for contour in outline.contours)
+    Raises:
+        GlyphsplineError: more than any real glyph has.
+    """
+    segments = len(outline.arrays.degrees)
     if segments > limits.segments:
         raise GlyphsplineError(f"{segments} segments, more than the {limits.segments} allowed")
-    vertices = float(len(outline.contours) * (options.count or 0))
-    if options.step is not None and options.step > 0:
-        # The control polygon is at least as long as the contour.
-        lengths = (np.hypot(*np.diff(c.points, axis=0, append=c.points[:1]).T).sum() for c in outline.contours)
-        vertices = sum(lengths) / options.step
     if not vertices <= limits.vertices:
         raise GlyphsplineError(f"about {vertices:.3g} vertices, more than the {limits.vertices} allowed")
+    return segments + vertices
+
+
+def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
+    """About how many vertices ``step`` or ``count`` ask for: control polygons are longer than their contours."""
+    if options.step is None or not outlines:
+        return [float(len(outline.contours) * (options.count or 0)) for outline in outlines]
+    points, _, _, starts = joined([outline.arrays for outline in outlines])
+    ends = offsets_of([len(outline.arrays.points) for outline in outlines])
+    with np.errstate(all="ignore"):
+        sides = np.zeros(len(points) + 1)
+        sides[1:-1] = np.hypot(*(points[1:] - points[:-1]).T)
+        sides[starts] = 0.0  # from one contour to the next
+        return [float(sides[a:b].sum()) / options.step for a, b in pairwise(ends.tolist())]
+
+
+def batches(read: Sequence[Read]) -> Iterator[list[Read]]:
+    """Glyphs in batches of bounded cost, those of a batch with the same em."""
+    batch: list[Read] = []
+    for glyph in read:
+        whole = sum(other.cost for other in batch) + glyph.cost > BATCH
+        if batch and (whole or glyph.outline.metrics != batch[0].outline.metrics):
+            yield batch
+            batch = []
+        batch.append(glyph)
+    if batch:
+        yield batch
+
+
+def convert_and_write(job: Job, batch: Sequence[Read]) -> list[Done]:
+    """Convert a batch and write its files; after an unforeseen error, each glyph on its own."""
+    started = time.perf_counter()
+    try:
+        results = converted(job, batch)
+        glyphs = iter(drawn(job, [result for result in results if isinstance(result, GlyphResult)]))
+        formats = [name for name in WRITERS if name in job.spec.folders]
+        share = (time.perf_counter() - started) / len(batch)
+        return [
+            write_files(job, formats, read.task, next(glyphs), share)
+            if isinstance(result, GlyphResult)
+            else failed(read.task, reason(result), share)
+            for read, result in zip(batch, results, strict=True)
+        ]
+    except OutputError:
+        raise
+    except Exception as error:
+        if len(batch) == 1:
+            return [failed(batch[0].task, reason(error), time.perf_counter() - started)]
+        return [done for read in batch for done in convert_and_write(job, [read])]
+
+
+def converted(job: Job, batch: Sequence[Read]) -> list[GlyphResult | GlyphsplineError]:
+    """The results of a batch."""
+    options = job.spec.fitting(batch[0].outline.metrics.units_per_em)
+    return convert_many([read.outline for read in batch], options, errors="return")
+
+
+class Glyph(NamedTuple):
+    """What the writers take.
+
+    Attributes:
+        path: of the result. source: None where no format shows the source.
+        measures: of the contours, as JSON without the brackets. facts: of these, for the summary.
+    """
+
+    result: GlyphResult
+    path: PathData
+    source: SourceData | None
+    measures: str
+    facts: Facts
+
+
+def drawn(job: Job, results: Sequence[GlyphResult]) -> list[Glyph]:
+    """Path data and measures of a batch."""
+    if not results:
+        return []
+    arrays, offsets = end_to_end(results)
+    paths = curves_data(arrays.curves, job.spec.options.precision, offsets)
+    sources = source_data(results) if GALLERY in job.spec.formats else [None] * len(results)
+    facts = [facts_of(arrays.measures, a, b) for a, b in pairwise(offsets.tolist())]
+    return list(map(Glyph, results, paths, sources, contour_texts(arrays.measures, offsets), facts))
+
+
+def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seconds: float) -> Done:
+    """Write a glyph's files, none if it is empty. ``seconds``: what it has taken so far."""
+    started = time.perf_counter()
+    empty = not glyph.result.contours
+    files = {} if empty else {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in formats}
+    sizes = [write_whole(f"{job.out}/{path}", WRITERS[name](job, glyph, files)) for name, path in files.items()]
+    status, advance = "empty" if empty else "ok", glyph.result.outline.advance
+    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures)
+    row = line_row(line) if GALLERY in formats else ""
+    seconds += time.perf_counter() - started
+    return finished(task, status, line, sizes, seconds, glyph.facts, row)
 
 
 def reason(error: Exception) -> str:
-    """What went wrong, without the file's path: a manifest does not tell where a font lay."""
+    """What went wrong, without the file's path, which is no part of a manifest."""
     if isinstance(error, GlyphsplineError):
         return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
     if isinstance(error, MemoryError):
@@ -198,64 +228,53 @@ def reason(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def writers(job: Job) -> dict[str, Callable[[Job, GlyphResult], str | bytes]]:
-    """The writers of the formats asked for, in a fixed order."""
-    folders = job.spec.folders
-    return {name: writer for name, writer in WRITERS.items() if name in folders}
+Files = dict[str, str]
 
 
-def _source(job: Job, result: GlyphResult) -> str:
-    return to_source_svg(result)
+def _source(job: Job, glyph: Glyph, files: Files) -> bytes:
+    assert glyph.source is not None
+    return source_document(glyph.result, glyph.source)
 
 
-def _svg(job: Job, result: GlyphResult) -> str:
-    return to_svg(result, view_box=job.spec.view_box)
+def _svg(job: Job, glyph: Glyph, files: Files) -> bytes:
+    return svg_document(glyph.result, glyph.path, job.spec.view_box)
 
 
-def _curvature(job: Job, result: GlyphResult) -> str:
-    return to_curvature_svg(result, scale=job.curvature_scale)
+def _curvature(job: Job, glyph: Glyph, files: Files) -> bytes:
+    assert job.curvature_scale is not None
+    return map_document(glyph.result, glyph.path, job.curvature_scale)
 
 
-def _png(job: Job, result: GlyphResult) -> bytes:
+def _png(job: Job, glyph: Glyph, files: Files) -> bytes:
     from ..writers.figures.raster import to_png  # matplotlib, only when asked for
 
-    return to_png(result, scale=job.curvature_scale)
+    return to_png(glyph.result, scale=job.curvature_scale)
 
 
-def _pdf(job: Job, result: GlyphResult) -> bytes:
+def _pdf(job: Job, glyph: Glyph, files: Files) -> bytes:
     from ..writers.figures.raster import to_pdf
 
-    return to_pdf(result, scale=job.curvature_scale)
+    return to_pdf(glyph.result, scale=job.curvature_scale)
 
 
-def _results(job: Job, result: GlyphResult) -> str:
-    return to_text(result)
+def _gallery(job: Job, glyph: Glyph, files: Files) -> bytes:
+    assert glyph.source is not None
+    source, polygon, control = (part.text for part in glyph.source)
+    shown = {"source": source, "result": glyph.path.text, "polygon": polygon, "control": control}
+    return glyph_text(shown, files, glyph.measures)
 
 
-WRITERS: dict[str, Callable[[Job, GlyphResult], str | bytes]] = {
+def _results(job: Job, glyph: Glyph, files: Files) -> str:
+    return to_text(glyph.result)
+
+
+WRITERS: dict[str, Callable[[Job, Glyph, Files], str | bytes]] = {
     "source": _source,
     "svg": _svg,
     "curvature": _curvature,
     "png": _png,
     "pdf": _pdf,
+    GALLERY: _gallery,
     RESULTS: _results,
 }
-
-
-def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
-    """Combs of a few glyphs, for the scale that all curvature maps of the run share; what fails is left out."""
-    found: list[Comb] = []
-    if short_way(job):
-        drawn = draw(job, tasks)
-        for short in drawn:
-            found += combs_of(*short.curves, job.metrics.units_per_em) if short is not None else []
-        tasks = [task for task, short in zip(tasks, drawn, strict=True) if short is None]
-    for task, given in zip(tasks, outlines(job, tasks), strict=True):
-        sign_of_life()
-        try:
-            outline = given or outline_of(job, task)
-            check_size(outline, job.spec)
-            found += combs(convert(outline, job.spec.fitting(outline.metrics.units_per_em)))
-        except Exception:  # it will be reported when the glyph's own turn comes
-            continue
-    return found
+"""The formats of one file a glyph, in the order in which they are written and listed."""

@@ -50,6 +50,7 @@ FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
 OwnFont = Annotated[Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)]
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)]
+RunFont = Annotated[Path | None, typer.Option("--font", metavar="FONT", help="The font that the run was made of.")]
 Out = Annotated[Path, typer.Option("--out", "-o", help="Folder to write to.", show_default=False)]
 
 Text = Annotated[str | None, typer.Option("--text", help="Glyphs of these characters.")]
@@ -83,7 +84,7 @@ ViewBox = Annotated[View, typer.Option("--view-box", help="Region an SVG drawing
 Precision = Annotated[int, typer.Option("--precision", min=0, max=9, help="Decimals written.")]
 RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
 Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
-Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, png, pdf, ufo, otf, ttf, parquet.")]
+Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.")]
 
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=0, help="Worker processes. Without it, one a core.")]
 Resume = Annotated[bool, typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.")]
@@ -104,11 +105,8 @@ Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
 def spec_of(given: Mapping[str, Any]) -> RunSpec:
     """What the options of a conversion say, by their parameters' names."""
     from ..batch import RunSpec
-    from ..errors import GlyphsplineError
     from ..fitting.options import Options
 
-    if sum(given[name] is not None for name in ("tolerance", "step", "count")) > 1:
-        raise GlyphsplineError("give one of --tolerance, --step and --count")
     named = ("variant", "tolerance", "step", "count", "margin", "precision", "measure", "remove_overlaps")
     options = Options(
         **{name: given[name] for name in named},

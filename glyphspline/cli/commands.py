@@ -62,7 +62,7 @@ def convert(
     precision: opt.Precision = 2,
     remove_overlaps: opt.RemoveOverlaps = False,
     measure: opt.Measure = False,
-    formats: opt.Formats = "svg,curvature",
+    formats: opt.Formats = "svg,curvature,gallery",
     jobs: opt.Jobs = None,
     scheduler: opt.Scheduler = None,
     resume: opt.Resume = True,
@@ -103,12 +103,17 @@ def info(
 
 
 @app.command()
-def report(folder: opt.Folder) -> None:
-    """Write the gallery, index.html, anew: of one run, or of a folder that holds several."""
+def report(folder: opt.Folder, font: opt.RunFont = None) -> None:
+    """Write the gallery, index.html, of one run, or of a folder that holds several.
+
+    Results of a run without --format gallery come from its drawings, source outlines from its font: --font, or the
+    file of the same name and bytes in the current folder, in DIR or above it. There are no polygons in such a gallery,
+    and without the font no sources.
+    """
     with errors():
         from ..batch import write_gallery
 
-        write_gallery(folder)
+        write_gallery(folder, font)
     typer.echo(folder / "index.html")
 
 

@@ -13,7 +13,7 @@ from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Contours, Outline
 from ..types import BoolArray
 from .options import Options
-from .results import ContourResults, ConvertedContours, GlyphResult
+from .results import ContourResults, ConvertedContours, GlyphResult, MeasureColumns
 
 DEFAULTS = Options()
 
@@ -102,8 +102,8 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
     ends = np.searchsorted(which, before).tolist()
     results = []
     for outline, (first, last), said in zip(glyphs, pairwise(ends), notes, strict=True):
-        own = found.part(first, last)
-        results.append(GlyphResult(outline, options, ContourResults(own), (*said, *remarks(own, tolerance))))
+        own = ContourResults(found, first, last)
+        results.append(GlyphResult(outline, options, own, (*said, *remarks(found.measures, first, last, tolerance))))
     return results
 
 
@@ -138,13 +138,14 @@ def enclosing(contours: ContourArrays) -> BoolArray:
     return kept
 
 
-def remarks(found: ConvertedContours, tolerance: float) -> Iterator[str]:
-    """What a reader has to know: contours out of tolerance, or crossing themselves where their source does not."""
-    measures = found.measures
-    for index, within in enumerate(measures.get("within_tolerance", ())):
+def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -> Iterator[str]:
+    """What a reader has to know of the contours from ``first`` up to ``last``: those out of tolerance, and those that
+    cross themselves where their source does not.
+    """
+    for index, within in enumerate(measures.get("within_tolerance", ())[first:last]):
         if within is False:
-            bound = measures["deviation_bound"][index]
+            bound = measures["deviation_bound"][first + index]
             yield f"result contour {index} is certified to {bound:.3g} units, not to {tolerance:g}"
-    for index, crossings in enumerate(measures.get("new_crossings", ())):
+    for index, crossings in enumerate(measures.get("new_crossings", ())[first:last]):
         if crossings:
             yield f"result contour {index} crosses itself, {crossings} times more than its source"

@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 
 from ..interpolation.result import Interpolation
-from ..outlines.contour_arrays import ContourArrays, Polylines, offsets_of, polylines
+from ..outlines.contour_arrays import (
+    ContourArrays,
+    Polylines,
+    joined,
+    joined_offsets,
+    joined_polylines,
+    offsets_of,
+    polylines,
+)
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
 from ..types import FloatArray, IntArray, Views
 from .options import Options
@@ -131,18 +139,35 @@ class ConvertedContours:
 
 
 class ContourResults(Views[ContourResult]):
-    """The results of a glyph's contours: a sequence of :class:`ContourResult`, whose numbers lie in ``arrays``."""
+    """The results of a glyph's contours: a sequence of :class:`ContourResult`, made from arrays when one is read.
 
-    __slots__ = ("arrays",)
+    Attributes:
+        batch: the results of the whole batch. first, last: of these the glyph's are those from ``first`` up to
+            ``last``.
+    """
 
-    def __init__(self, results: Iterable[ContourResult] | ConvertedContours) -> None:
+    __slots__ = ("_part", "batch", "first", "last")
+
+    def __init__(
+        self, results: Iterable[ContourResult] | ConvertedContours, first: int = 0, last: int | None = None
+    ) -> None:
+        self._part: ConvertedContours | None = None
+        self.first = first
         if isinstance(results, ConvertedContours):
-            self.arrays = results
-            super().__init__(results.source.num_contours, results.contour_results)
+            self.batch = results
+            self.last = results.source.num_contours if last is None else last
+            super().__init__(self.last - first, lambda: self.arrays.contour_results())
         else:
             given = tuple(results)
-            self.arrays = _end_to_end(given)
+            self.batch, self.last = _end_to_end(given), len(given)
             super().__init__(len(given), lambda: given)
+
+    @property
+    def arrays(self) -> ConvertedContours:
+        """The glyph's part of the batch."""
+        if self._part is None:
+            self._part = self.batch.part(self.first, self.last)
+        return self._part
 
 
 def _end_to_end(results: tuple[ContourResult, ...]) -> ConvertedContours:
@@ -190,3 +215,24 @@ def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
     known = [Measures(vertices=len(c), segments=len(c), numbers=2 * len(c.points)) for c in drawn]
     contours = [ContourResult(c, c.points[c.offsets], (), c, m) for c, m in zip(drawn, known, strict=True)]
     return GlyphResult(thing, Options(), tuple(contours))
+
+
+def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:
+    """The contours of many glyphs end to end, and (G + 1,) where those of each begin: a batch is not copied."""
+    contours = [glyph.contours for glyph in glyphs]
+    offsets = offsets_of([len(own) for own in contours])
+    parts = [own for own in contours if isinstance(own, ContourResults)]
+    if parts and all(own.batch is parts[0].batch and own.first == a for own, a in zip(parts, offsets, strict=False)):
+        return parts[0].batch.part(0, parts[-1].last), offsets
+    arrays = [own.arrays for own in parts]
+    arcs = [arc for own in arrays for arc in own.arcs]
+    columns = {name: None for own in arrays for name in own.measures}
+    measures = {
+        name: [value for own in arrays for value in own.measures.get(name, [None] * own.source.num_contours)]
+        for name in columns
+    }
+    return ConvertedContours(
+        joined([own.source for own in arrays]), joined([own.curves for own in arrays]),
+        joined_polylines([own.polygons for own in arrays]), arcs, joined_polylines([own.controls for own in arrays]),
+        joined_offsets([own.arc_offsets for own in arrays]), measures,
+    ), offsets  # fmt: skip

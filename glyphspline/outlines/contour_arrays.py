@@ -85,6 +85,14 @@ def joined(parts: Sequence[ContourArrays]) -> ContourArrays:
     )
 
 
+def joined_polylines(parts: Sequence[Polylines]) -> Polylines:
+    """The polylines of several arrays end to end."""
+    if len(parts) == 1:
+        return parts[0]
+    points, closed = (np.concatenate([part[k] for part in parts]) for k in (0, 2))
+    return Polylines(points, joined_offsets([part.offsets for part in parts]), closed)
+
+
 def joined_offsets(parts: Sequence[IntArray]) -> IntArray:
     """Offsets (C + 1,) of arrays end to end, from those of each."""
     ends = np.cumsum([0, *(int(part[-1]) for part in parts)])

@@ -1,4 +1,4 @@
-"""The gallery of a finished run: written from its manifest and the drawings beside it, and nothing else."""
+"""The gallery of a finished run."""
 
 from .gallery import write_index, write_report
 

@@ -1,31 +1,28 @@
-"""What the gallery's data files say of a glyph: its drawing, and a row of the table that glyphs are sorted by.
-
-Both are text as soon as they are known, so that a worker can write a whole page of drawings from what it has in memory.
-"""
+"""The gallery's data files: a script for each glyph, with its drawing, and tables by which glyphs are sorted."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from json.encoder import encode_basestring_ascii as quoted
+from pathlib import PurePosixPath
 from typing import Any
 
 from ..fitting.results import SOLVED
-from ..writers.svg.markup import Text, joined
-from .drawings import Drawing
+from ..writers.svg.markup import Text, document
 from .glyph_measures import MEASURES, glyph_measures
 
 FOLDER = "gallery"
 
-CHUNK = 40
-"""Glyphs on a page, a file of drawings: about half a megabyte of CJK outlines, a tenth of a second to load."""
+SUFFIX = ".glyph.js"
+"""Of a glyph's file. No other file of the gallery ends so, whatever a glyph is called."""
 
 COLUMNS = (
-    "glyph", "gid", "unicodes", "advance", "status", "contours",
+    "glyph", "gid", "unicodes", "advance", "status", "file", "error", "contours",
     *SOLVED, *(name for name in MEASURES if name not in SOLVED),
 )  # fmt: skip
-"""What a row of the table has, in order; what is not known is null, and left out at a row's end."""
+"""What a row of the table has, in order; nulls at a row's end are left out."""
 
 DIGITS = 5
 """Significant digits of the table's measures."""
@@ -35,48 +32,25 @@ _NULL = re.compile(r',"[a-z_]+":null')
 _encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
 
 
-def page_file(number: int) -> str:
-    """Where a page is, relative to the run's folder."""
-    return f"{FOLDER}/glyphs-{number:05}.js"
-
-
-def page_text(glyphs: Iterable[bytes]) -> bytes:
-    """A page of drawings, each as :func:`glyph_text` gives it."""
-    return b"glyphsplineData([" + b",".join(glyphs) + b"]);\n"
-
-
-def glyph_text(drawing: Drawing, files: str, contours: str, error: str | None) -> bytes:
-    """A glyph on its page, as JSON.
+def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: str) -> bytes:
+    """A glyph's data file.
 
     Args:
-        drawing: its path data. files: its files as :func:`files_text` gives them. error: what went wrong.
-        contours: the measures of its contours as the manifest has them, without the brackets; nulls are left out.
+        drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" for what is not known.
+        files: by format, relative to the run's folder.
+        contours: the measures of its contours as JSON without the brackets; nulls are left out.
     """
-    if ":null" in contours:
-        contours = _NULL.sub("", contours)
-    parts: list[Text] = ["{"]
+    links = files_text({name: path for name, path in files.items() if name != FOLDER})
+    parts: list[Text] = ["glyphsplineData({"]
     for name, data in drawing.items():
         parts += [f'"{name}":"', data, '",']
-    said = "null" if error is None else as_json(error)
-    parts.append(f'"files":{{{escaped(files)}}},"contours":[{escaped(contours)}],"error":{said}}}')
-    return joined(parts)
+    parts.append(f'"files":{{{escaped(links)}}},"contours":[{escaped(_NULL.sub("", contours))}]}});\n')
+    return document(parts)
 
 
 def files_text(files: Mapping[str, str]) -> str:
-    """Files by format, relative to the run's folder, as JSON without the braces."""
+    """Files by format as JSON without the braces."""
     return ",".join([f"{quoted(name)}:{quoted(path)}" for name, path in files.items()])
-
-
-def contours_text(contours: Iterable[Mapping[str, Any]]) -> str:
-    """What :func:`glyph_text` wants of the measures that were read from a manifest: the same text but for nulls."""
-    return ",".join(
-        "{" + ",".join(f"{as_json(str(name))}:{_value(value)}" for name, value in known.items()) + "}"
-        for known in ({name: value for name, value in contour.items() if value is not None} for contour in contours)
-    )
-
-
-def _value(value: Any) -> str:
-    return number(value) if value is None or isinstance(value, int | float) else as_json(value)
 
 
 def number(value: float | None, digits: int = 7) -> str:
@@ -91,21 +65,31 @@ def number(value: float | None, digits: int = 7) -> str:
     return "null" if "n" in text else text
 
 
-def table_row(
-    glyph: str,
-    gid: int,
-    unicodes: Iterable[object],
-    advance: float | None,
-    status: str,
-    contours: Sequence[Mapping[str, Any]],
-) -> str:
-    """A glyph's row of the table, as JSON; the arguments are what its line of the manifest has."""
+def line_row(line: str | bytes) -> str:
+    """The row of the table that belongs to a line of the manifest."""
+    return row_of(json.loads(line))
+
+
+def row_of(entry: Mapping[str, Any]) -> str:
+    """The same of a line that is parsed. A manifest may come from anywhere: files are links only inside its folder."""
+    contours = entry.get("contours") or ()
     measures = glyph_measures(contours)
-    row = [as_json(glyph), str(gid), as_json(" ".join(map(str, unicodes))), number(advance), as_json(status)]
-    row += [str(len(contours)), *(number(measures[name], DIGITS) for name in COLUMNS[len(row) + 1 :])]
+    file = (entry.get("files") or {}).get(FOLDER)
+    row = [
+        as_json(str(entry["glyph"])), str(int(entry["gid"])), as_json(" ".join(map(str, entry.get("unicodes") or ()))),
+        number(entry.get("advance")), as_json(str(entry["status"])), as_json(file if inside(file) else None),
+        as_json(entry.get("error")), str(len(contours)),
+    ]  # fmt: skip
+    row += [number(measures[name], DIGITS) for name in COLUMNS[len(row) :]]
     while row[-1] == "null":
         row.pop()
     return f"[{','.join(row)}]"
+
+
+def inside(path: object) -> bool:
+    """Whether a path stays in the run's folder."""
+    pure = PurePosixPath(str(path))
+    return isinstance(path, str) and not pure.is_absolute() and ".." not in pure.parts and "\\" not in path
 
 
 def table_text(rows: Iterable[str]) -> str:

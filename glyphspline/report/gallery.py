@@ -1,7 +1,7 @@
 """The gallery: one page, and beside it in ``gallery/`` the data of all glyphs in script files that it loads as needed.
 
 Scripts, because a page opened from disk may not read other files in any other way. ``run.js`` says what was run,
-``table-N.js`` have the measures that glyphs are sorted by, ``glyphs-N.js`` their drawings.
+``table-N.js`` have the measures that glyphs are sorted by, ``*.glyph.js`` a glyph's drawing each.
 """
 
 from __future__ import annotations
@@ -9,31 +9,17 @@ from __future__ import annotations
 import os
 import re
 from base64 import b64encode
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from hashlib import sha256
 from importlib.resources import files
-from itertools import chain
 from pathlib import Path
 from string import Template
 from typing import Any
 
 from ..writers.svg.colours import SIDES, class_colour
 from ..writers.svg.markup import text
-from .data import (
-    CHUNK,
-    FOLDER,
-    as_json,
-    contours_text,
-    files_text,
-    glyph_text,
-    page_file,
-    page_text,
-    script,
-    table_row,
-    table_text,
-)
-from .drawings import inside, read_drawing
+from .data import FOLDER, as_json, row_of, script, table_text
 from .glyph_measures import MEASURES
 
 TABLE = 5000
@@ -50,11 +36,9 @@ LAYERS = {
 }  # fmt: skip
 """What can be switched on and off: its name, and the key that does it."""
 
-Entry = Mapping[str, Any]
 
-
-def write_report(out_dir: Path, entries: Iterable[Entry], run: Mapping[str, Any]) -> None:
-    """Write a run's ``index.html`` and the data beside it.
+def write_report(out_dir: Path, entries: Iterable[Mapping[str, Any]], run: Mapping[str, Any]) -> None:
+    """Write a run's ``index.html`` and its tables; the files of its glyphs are there.
 
     Args:
         out_dir: the run's folder.
@@ -63,7 +47,7 @@ def write_report(out_dir: Path, entries: Iterable[Entry], run: Mapping[str, Any]
     """
     gallery = Gallery(out_dir)
     for entry in entries:
-        gallery.add(row_of(entry), partial(shown, out_dir, entry))
+        gallery.add(row_of(entry))
     gallery.close(run)
 
 
@@ -72,42 +56,31 @@ class Gallery:
 
     Args:
         out_dir: the run's folder.
-        pages: numbers of the pages, of ``CHUNK`` glyphs each, that are there and as they should be.
     """
 
-    def __init__(self, out_dir: Path, pages: Container[int] = ()) -> None:
-        self._out, self._there = out_dir, pages
+    def __init__(self, out_dir: Path) -> None:
+        self._out = out_dir
         self._rows: list[str] = []
-        self._glyphs: list[Callable[[], bytes]] = []
-        self._count = self._tables = self._pages = 0
+        self._count = self._tables = 0
         (out_dir / FOLDER).mkdir(exist_ok=True)
 
-    def add(self, row: str, glyph: Callable[[], bytes]) -> None:
-        """The next glyph: its row of the table, and what gives its drawing if its page has to be written."""
+    def add(self, row: str) -> None:
+        """The next glyph's row of the table."""
         self._rows.append(row)
-        self._glyphs.append(glyph)
         self._count += 1
-        if len(self._glyphs) == CHUNK:
-            self._end_page()
         if len(self._rows) == TABLE:
             self._end_table()
 
     def close(self, run: Mapping[str, Any]) -> None:
         """Write what is left, and the page to look at. ``run`` is the content of ``run.json``."""
-        if self._glyphs:
-            self._end_page()
         if self._rows:
             self._end_table()
-        folder = self._out / FOLDER
-        _replace(folder / "run.js", script(_run(run, self._count)))
-        _remove_stale(folder, {"table": self._tables, "glyphs": self._pages})
+        _replace(self._out / FOLDER / "run.js", script(_run(run, self._count)))
+        for path in (self._out / FOLDER).glob("table-*.js"):  # that a larger run left
+            found = re.fullmatch(r"table-(\d{5,})\.js", path.name)
+            if found and int(found[1]) >= self._tables:
+                path.unlink()
         write_index(self._out, [""], _heading(run))
-
-    def _end_page(self) -> None:
-        if self._pages not in self._there:
-            _replace(self._out / page_file(self._pages), page_text(glyph() for glyph in self._glyphs))
-        self._glyphs.clear()
-        self._pages += 1
 
     def _end_table(self) -> None:
         _replace(self._out / FOLDER / f"table-{self._tables:05}.js", table_text(self._rows))
@@ -115,11 +88,20 @@ class Gallery:
         self._tables += 1
 
 
+def remove_gallery(out_dir: Path) -> None:
+    """Remove the page and the tables that an earlier run has written; the glyphs' files are the manifest's."""
+    folder = out_dir / FOLDER
+    if folder.is_symlink() or not (folder / "run.js").is_file():
+        return  # another's index.html, perhaps
+    for path in [out_dir / "index.html", *folder.glob("table-*.js"), folder / "run.js"]:
+        with suppress(OSError):
+            path.unlink()
+
+
 def is_whole(out_dir: Path, count: int) -> bool:
-    """Whether the gallery of so many glyphs is there, and no file of it was cut off."""
+    """Whether page and tables of so many glyphs are there, and none was cut off."""
     names = ["run.js", *(f"table-{k:05}.js" for k in range(-(-count // TABLE)))]
-    paths = [*(f"{FOLDER}/{name}" for name in names), *(page_file(k) for k in range(-(-count // CHUNK)))]
-    ends = [*((path, b");\n") for path in paths), ("index.html", b"</html>\n")]
+    ends = [*((f"{FOLDER}/{name}", b");\n") for name in names), ("index.html", b"</html>\n")]
     return all(_end_of(out_dir / path, len(end)) == end for path, end in ends)
 
 
@@ -130,21 +112,6 @@ def _end_of(path: Path, size: int) -> bytes:
             return file.read()
     except OSError:  # not there, or shorter
         return b""
-
-
-def row_of(entry: Entry) -> str:
-    """An entry's row of the table."""
-    return table_row(
-        str(entry["glyph"]), int(entry["gid"]), entry.get("unicodes") or (), entry.get("advance"),
-        str(entry["status"]), entry.get("contours") or (),
-    )  # fmt: skip
-
-
-def shown(out_dir: Path, entry: Entry) -> bytes:
-    """An entry on its page, its drawing read from the files."""
-    named = {str(kind): path for kind, path in (entry.get("files") or {}).items() if inside(path)}
-    contours = contours_text(entry.get("contours") or ())
-    return glyph_text(read_drawing(out_dir, named), files_text(named), contours, entry.get("error"))
 
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
@@ -194,7 +161,6 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
         "scale": run.get("curvature_scale") or 4 / metrics["units_per_em"],
         "options": run.get("options", {}),
         "glyphs": count,
-        "chunk": CHUNK,
         "table": TABLE,
     }
 
@@ -204,11 +170,3 @@ def _replace(path: Path, content: str | bytes) -> None:
     temporary = path.with_name(f".{path.name}.part")
     temporary.write_bytes(content.encode() if isinstance(content, str) else content)
     os.replace(temporary, path)
-
-
-def _remove_stale(folder: Path, counts: Mapping[str, int]) -> None:
-    """Remove files that an earlier, larger run left behind."""
-    for path in chain.from_iterable(folder.glob(f"{kind}-*.js") for kind in counts):
-        found = re.fullmatch(r"(table|glyphs)-(\d{5,})\.js", path.name)
-        if found and int(found[2]) >= counts[found[1]]:
-            path.unlink()

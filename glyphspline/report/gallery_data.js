@@ -2,7 +2,7 @@
 /* The data beside the page: script files that call glyphsplineData, because a page opened from disk may not fetch. */
 
 (() => {
-  const KEPT = 20; // chunks of outlines held at a time
+  const KEPT = 800; // glyphs held at a time
   const waiting = new Map();
 
   window.glyphsplineData = (data) => {
@@ -11,7 +11,7 @@
   };
 
   const load = (folder, file) => new Promise((resolve, reject) => {
-    const path = [...folder.split("/").filter(Boolean), "gallery", file].map(encodeURIComponent).join("/");
+    const path = GS.fileLink({ folder }, file);
     const script = document.createElement("script");
     const end = (act, value) => {
       waiting.delete(path);
@@ -25,14 +25,14 @@
     document.head.append(script);
   });
 
-  const numbered = (kind, index) => `${kind}-${String(index).padStart(5, "0")}.js`;
+  const numbered = (kind, index) => `gallery/${kind}-${String(index).padStart(5, "0")}.js`;
 
   /** All runs of the page with their tables: [{folder, family, …, rows}]; `progress` hears how many rows are in. */
   GS.loadRuns = async (folders, progress) => {
     const runs = [];
     let rows = 0;
     for (const folder of folders) {
-      const run = Object.assign(await load(folder, "run.js"), { folder, tables: [] });
+      const run = Object.assign(await load(folder, "gallery/run.js"), { folder, tables: [] });
       for (let i = 0; i * run.table < run.glyphs; i++) {
         run.tables.push(await load(folder, numbered("table", i)));
         rows += run.tables[i].rows.length;
@@ -43,17 +43,18 @@
     return runs;
   };
 
-  const chunks = new Map(); // in order of use, the oldest first
+  const kept = new Map(); // in order of use, the oldest first
+  const NOTHING = { source: "", result: "", polygon: "", control: "", files: {}, contours: [] };
 
-  /** The drawings of row `index` of a run: a promise of {source, result, polygon, control, files, contours, error}. */
-  GS.drawings = (run, index) => {
-    const number = Math.floor(index / run.chunk), key = `${run.folder}/${number}`;
-    const chunk = chunks.get(key) || load(run.folder, numbered("glyphs", number));
-    chunks.delete(key);
-    chunks.set(key, chunk);
-    chunk.catch(() => chunks.delete(key));
-    if (chunks.size > KEPT) chunks.delete(chunks.keys().next().value);
-    return chunk.then((glyphs) => glyphs[index % run.chunk]);
+  /** The drawing of a row: a promise of {source, result, polygon, control, files, contours}. */
+  GS.drawing = (row) => {
+    if (!row.file) return Promise.resolve(NOTHING);
+    const key = `${row.run.folder}/${row.file}`, drawing = kept.get(key) || load(row.run.folder, row.file);
+    kept.delete(key);
+    kept.set(key, drawing);
+    drawing.catch(() => kept.delete(key));
+    if (kept.size > KEPT) kept.delete(kept.keys().next().value);
+    return drawing;
   };
 
   GS.fileLink = (run, path) => [...run.folder.split("/"), ...path.split("/")]

@@ -60,7 +60,7 @@
       const links = Object.entries(drawing.files).map(([kind, path]) =>
         GS.element("a", { href: GS.fileLink(row.run, path), target: "_blank", rel: "noopener" }, kind));
       find("facts").replaceChildren(
-        ...(drawing.error ? [GS.element("p", { class: "bad" }, drawing.error)] : []),
+        ...(row.error ? [GS.element("p", { class: "bad" }, row.error)] : []),
         ...(drawing.contours.length ? [GS.element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Measures" }, table)] : []),
         GS.element("p", { class: "links" }, ...links));
     };
@@ -74,7 +74,7 @@
       find("count").textContent = `${position + 1} of ${rows.length}`;
       find("before").disabled = position === 0;
       find("after").disabled = position === rows.length - 1;
-      drawing = await GS.drawings(row.run, row.index);
+      drawing = await GS.drawing(row);
       if (rows[position] !== row) return;
       picture.setAttribute("aria-label", `${row.name}: source outline and interpolated curve`);
       zoom.fit(GS.box(row.run, row.advance));

@@ -47,7 +47,7 @@
         "aria-setsize": String(rows.length) }, button);
       button.addEventListener("click", () => { current = position; open(position); });
       button.addEventListener("focus", () => { current = position; });
-      GS.drawings(row.run, row.index).then((drawing) => {
+      GS.drawing(row).then((drawing) => {
         if (cards.get(position) === item) picture.replaceChildren(GS.layers(row.run, drawing, layersOn()));
       }, () => picture.classList.add("missing"));
       return item;

@@ -2,19 +2,18 @@
 /* Rows of all runs: what is searched, filtered and sorted by. */
 
 (() => {
-  /** One row a glyph: {run, index, name, gid, unicodes, text, status, values}. */
+  /** One row a glyph: {run, name, gid, unicodes, text, status, file, error, values}. */
   GS.rows = (runs) => {
     const rows = [];
     for (const run of runs) {
-      let index = 0;
       for (const table of run.tables) {
         const at = Object.fromEntries(table.columns.map((name, column) => [name, column]));
         for (const values of table.rows) {
           const codes = values[at.unicodes];
           const text = codes.split(" ").filter(Boolean).map((code) => String.fromCodePoint(parseInt(code.slice(2), 16))).join("");
           rows.push({
-            run, index: index++, name: values[at.glyph], gid: values[at.gid], unicodes: codes, text, advance: values[at.advance],
-            status: values[at.status], values, at,
+            run, name: values[at.glyph], gid: values[at.gid], unicodes: codes, text, advance: values[at.advance],
+            status: values[at.status], file: values[at.file] ?? null, error: values[at.error] ?? null, values, at,
           });
         }
       }

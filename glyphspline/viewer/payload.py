@@ -12,7 +12,8 @@ from ..fitting.results import GlyphResult, Measures
 from ..interpolation.result import Interpolation
 from ..outlines.outline import Contour, Outline
 from ..types import FloatArray
-from ..writers.svg.markup import code_points, path_data, polyline_data
+from ..writers.svg.markup import code_points
+from ..writers.svg.path_data import path_data, polyline_data
 
 DIGITS = 2
 

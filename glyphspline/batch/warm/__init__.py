@@ -1,7 +1,7 @@
 """Loads compiled code once, in the process from which workers are forked, instead of in each of them.
 
-Importing a module of this package runs what it loads, and compiles it where no cache holds it yet: so that a cold
-start takes its time before the workers' time limits count, and is not made twice.
+Importing a module of this package converts two contours by one mode, and compiles the code that no cache holds yet: a
+cold start happens before the workers' time limits count, and only once.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...fitting.convert import convert
 from ...fitting.options import Options
-from ...outlines.outline import Contour
+from ...fitting.results import GlyphResult
+from ...outlines.outline import Contour, Outline
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
 LEAF = Contour(
@@ -20,12 +22,18 @@ LEAF = Contour(
 
 
 def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
-    """Names of the modules of this package that a run with these options wants loaded; None: nothing is converted."""
+    """Names of the modules of this package that a run with these options needs; None: nothing is converted."""
     if options is None:
         return []
-    wanted = ["stepped"]
-    if options.step is None and options.count is None:
-        wanted.append(options.corners)
-    if "curvature" in formats:
-        wanted.append("mapped")
-    return [f"{__name__}.{name}" for name in wanted]
+    fixed = options.step is not None or options.count is not None
+    drawings = ["drawings"] if {"curvature", "gallery"} & set(formats) else []
+    return [f"{__name__}.{name}" for name in ("fixed" if fixed else options.corners, *drawings)]
+
+
+def converted(options: Options) -> GlyphResult:
+    """A leaf of two cubics that meet in corners, and a square."""
+    from ...writers.svg.document import to_svg
+
+    result = convert(Outline("leaf", contours=(LEAF, SQUARE)), options)
+    to_svg(result)
+    return result

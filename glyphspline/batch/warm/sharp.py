@@ -1,11 +1,6 @@
-"""Fitting to a tolerance in "sharp": a leaf of two cubics that meet in corners."""
+"""Conversion to a tolerance, with corners."""
 
-from __future__ import annotations
-
-from ...fitting.convert import convert
 from ...fitting.options import Options
-from ...outlines.outline import Outline
-from ...writers.svg.document import to_svg
-from . import LEAF, SQUARE
+from . import converted
 
-to_svg(convert(Outline("leaf", contours=(LEAF, SQUARE)), Options(corners="sharp")))
+converted(Options(corners="sharp"))

@@ -1,54 +1,62 @@
 """Path data of a curvature comb, compiled: teeth by colour, the line through their tips, marks of those cut short.
 
-All of it is relative but for the first point, in whole units of the last digit, so that nothing adds up.
+All of it is relative but for the first point, in units of the last decimal, so that rounding errors do not add up.
 """
-
-# mypy: disable-error-code="no-untyped-def, no-any-return"
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...compiled import compiled, store
+from ...compiled import compiled
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.segments import all_cubics
+from ...types import FloatArray, IntArray
 from .colours import SIDES
-from .numbers import LARGEST, SLACK, WIDEST
-from .path_data import DOT, LINE_BY, MOVE, MOVE_BY, more, nearest, step
-
-__all__ = ["comb_text", "control_length", "dots_text", "sampled"]
+from .numbers import LARGEST, SLACK, WIDEST, Figures
+from .path_text import LINE_BY, MOVE, MOVE_BY, TIE, dots, more, step
 
 CLASSES = 2 * SIDES + 1
 LAYERS = CLASSES + 2
 """Texts of a comb: a path of teeth for each colour class, from the strongest right turn; the line; the marks."""
 
 FLAT = -1
-TWO = np.uint64(2)
 
 
 @compiled
-def comb_text(samples, contours, tooth, scale, longest, least, precision, power, limit, words):
+def comb_text(
+    curves: ContourArrays, spacing: float, most_teeth: float, angle: float, tooth: float, scale: float, longest: float,
+    least: float, tables: Figures,
+) -> tuple[NDArray[np.uint8], IntArray, FloatArray]:  # fmt: skip
     """The texts of a glyph's comb.
 
     Args:
-        samples: (k, 6) as ``combing`` has them. contours: (c + 1,) where those of each contour begin.
+        curves: the glyph's contours.
+        spacing, angle: largest distance and turn from tooth to tooth. most_teeth: beyond so many, spacing grows.
         tooth: length of a tooth at the scale. scale: in 1/unit; 0 draws no teeth. longest: where teeth are cut, in
             units of the scale. least: teeth shorter than this are left out.
-        precision, power, limit, words: the figures of so many decimals.
+        tables: for numbers of the decimals wanted.
 
     Returns:
-        The text as bytes; (LAYERS + 1,) where each part of it begins; (4,) left, bottom, right, top of feet and tips.
+        The text as bytes; (LAYERS + 1,) where each part of it begins; (4,) left, bottom, right, top of feet and tips,
+        infinite the wrong way round without any.
     """
-    figures = (precision, power, limit, np.uint64(words.ctypes.data))
+    power = tables.power
+    figures = Figures(tables.precision, power, tables.limit, np.uint64(tables.words.ctypes.data))
+    cubics = all_cubics(curves)
+    spacing = max(spacing, control_length(cubics) / most_teeth)
+    samples, starts = sampled(cubics, spacing, angle, scale * least / tooth)
     k = len(samples)
     points, classes = np.empty((k, 4)), np.empty(k, dtype=np.int64)
-    ends = np.zeros(len(contours), dtype=np.int64)
+    ends = np.zeros(len(curves.offsets), dtype=np.int64)
     text = np.empty(k * 10 * WIDEST + SLACK, dtype=np.uint8)
     parts = np.zeros(LAYERS + 1, dtype=np.int64)
     used = 0
-    for contour in range(len(contours) - 1):
-        part = samples[contours[contour] : contours[contour + 1]]
+    for c in range(len(ends) - 1):
+        part = samples[starts[curves.offsets[c]] : starts[curves.offsets[c + 1]]]
         used = _place(part, tooth, scale, longest, least, power, points, classes, used)
-        ends[contour + 1] = used
+        ends[c + 1] = used
     box = _bounds(points[:used])
     start = np.uint64(text.ctypes.data)
     at = start
@@ -56,25 +64,29 @@ def comb_text(samples, contours, tooth, scale, longest, least, precision, power,
         at = _teeth(at, points, classes[:used], parts, figures)
         at = _line(at, points, classes, ends, figures)
         parts[CLASSES + 1] = np.int64(at - start)
-        at = _marks(at, points, classes[:used], figures)
+        at = dots(at, points[:used, 2:][classes[:used] >= CLASSES], figures)
     parts[LAYERS] = np.int64(at - start)
     return text[: parts[LAYERS]], parts, box / power
 
 
-@compiled
-def _place(samples, tooth, scale, longest, least, power, points, classes, used):
-    """Feet and tips of a contour's teeth, rounded; their colour classes, FLAT if left out, beyond CLASSES if cut.
+@compiled(internal=True)
+def _place(
+    samples: FloatArray, tooth: float, scale: float, longest: float, least: float, power: int,
+    points: FloatArray, classes: IntArray, used: int,
+) -> int:  # fmt: skip
+    """Write a contour's feet and tips, rounded, and colour classes: FLAT if left out, CLASSES or above if cut.
 
-    What is where the one before it was is left out: pieces share their ends. How many there are now.
+    Pieces share their ends: what is where the one before it was is left out. Returns the number of teeth so far.
     """
     first = used
     inverse = 1.0 / scale if scale > 0.0 else 0.0
+    half = 0.5 + TIE
     for i in range(len(samples)):
         strength = samples[i, CURVATURE] * inverse
         reach = tooth * min(max(strength, -longest), longest)
-        x, y = nearest(samples[i, X] * power), nearest(samples[i, Y] * power)
-        tx = nearest((samples[i, X] - reach * samples[i, NX]) * power)
-        ty = nearest((samples[i, Y] - reach * samples[i, NY]) * power)
+        x, y = np.floor(samples[i, X] * power + half), np.floor(samples[i, Y] * power + half)
+        tx = np.floor((samples[i, X] - reach * samples[i, NX]) * power + half)
+        ty = np.floor((samples[i, Y] - reach * samples[i, NY]) * power + half)
         if used > first and _same(points, used - 1, x, y, tx, ty):
             continue
         points[used, 0], points[used, 1], points[used, 2], points[used, 3] = x, y, tx, ty
@@ -89,13 +101,14 @@ def _place(samples, tooth, scale, longest, least, power, points, classes, used):
     return used
 
 
-@compiled
-def _same(points, i, x, y, tx, ty):
+@compiled(internal=True)
+def _same(points: FloatArray, i: int, x: float, y: float, tx: float, ty: float) -> bool:
     return points[i, 0] == x and points[i, 1] == y and points[i, 2] == tx and points[i, 3] == ty
 
 
-@compiled
-def _bounds(points):
+@compiled(internal=True)
+def _bounds(points: FloatArray) -> FloatArray:
+    """(4,) left, bottom, right, top of feet and tips (k, 4)."""
     left = bottom = np.inf
     right = top = -np.inf
     for i in range(len(points)):
@@ -104,8 +117,8 @@ def _bounds(points):
     return np.array([left, bottom, right, top])
 
 
-@compiled
-def _teeth(at, points, classes, parts, figures):
+@compiled(internal=True)
+def _teeth(at: np.uint64, points: FloatArray, classes: IntArray, parts: IntArray, figures: Figures) -> np.uint64:
     """Every tooth a stroke from foot to tip, class after class."""
     start = at
     order = np.empty(len(classes), dtype=np.int64)
@@ -133,8 +146,8 @@ def _teeth(at, points, classes, parts, figures):
     return at
 
 
-@compiled
-def _line(at, points, classes, ends, figures):
+@compiled(internal=True)
+def _line(at: np.uint64, points: FloatArray, classes: IntArray, ends: IntArray, figures: Figures) -> np.uint64:
     """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
     x = y = 0.0
     letter = MOVE
@@ -155,39 +168,3 @@ def _line(at, points, classes, ends, figures):
             letter, down = MOVE_BY, True
             x, y = points[j, 2], points[j, 3]
     return at
-
-
-@compiled
-def _marks(at, points, classes, figures):
-    """A dot on every tip that was cut."""
-    x = y = 0.0
-    letter = MOVE
-    for i in range(len(classes)):
-        if classes[i] >= CLASSES:
-            at = step(at, letter, points[i, 2] - x, points[i, 3] - y, figures)
-            store(at, DOT)
-            at += TWO
-            x, y = points[i, 2], points[i, 3]
-            letter = MOVE_BY
-    return at
-
-
-@compiled
-def dots_text(points, precision, power, limit, words):
-    """Path data of a dot on each of the points (n, 2), as bytes; nothing if one is too large to be written."""
-    figures = (precision, power, limit, np.uint64(words.ctypes.data))
-    text = np.empty(len(points) * 3 * WIDEST + SLACK, dtype=np.uint8)
-    start = np.uint64(text.ctypes.data)
-    at = start
-    x = y = 0.0
-    letter = MOVE
-    for i in range(len(points)):
-        nx, ny = nearest(points[i, 0] * power), nearest(points[i, 1] * power)
-        if not (abs(nx) < LARGEST and abs(ny) < LARGEST):
-            continue
-        at = step(at, letter, nx - x, ny - y, figures)
-        store(at, DOT)
-        at += TWO
-        x, y = nx, ny
-        letter = MOVE_BY
-    return text[: np.int64(at - start)]

@@ -6,30 +6,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from ...curves.curvature import ANGLE, Comb, comb, relative, robust_scale
 from ...fitting.results import GlyphResult
-from ...outlines.outline import Outline
-from ...types import BoolArray, FloatArray, IntArray
+from ...outlines.contour_arrays import ContourArrays
+from ...types import BoolArray, FloatArray
 from .colours import SIDES, class_colour
-from .digit_tables import figures
 from .document import title
 from .legend import legend_svg
-from .markup import (
-    Box,
-    Text,
-    data_attributes,
-    id_prefix,
-    joined,
-    number,
-    path_data,
-    polyline_data,
-    union,
-    view_box_value,
-)
+from .markup import Text, data_attributes, document, id_prefix, number, union, view_box_value
+from .path_data import Box, PathData, curves_data, dots_data, polylines_data
 
 SPACING = 1 / 140
 """Teeth stand this far apart, in em, or nearer. Twice as dense they run together in print; half as dense the joined
@@ -71,41 +59,21 @@ def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
     return robust_scale(item for glyph in glyphs for item in combs(glyph))
 
 
-def combs(glyph: GlyphResult) -> list[Comb]:
-    """One comb a contour, twice as dense as those of the maps, for the scale: at theirs it can be 15% too large."""
-    return combs_of(*curves_of(glyph), glyph.outline.metrics.units_per_em)
+def combs(glyph: GlyphResult, density: float = 2.0) -> list[Comb]:
+    """One comb a contour; for the scale twice as dense as those of the maps: at theirs it can be 15% too large."""
+    from ...curves.comb import control_length  # here and not above: the package opens without a compiler
+    from ...outlines.segments import all_cubics
 
-
-def combs_of(cubics: FloatArray, contours: IntArray, em: float, density: float = 2.0) -> list[Comb]:
-    """The same from a glyph's pieces (m, 4, 2) and (c + 1,) where each contour begins among them."""
-    spacing = spacing_of(cubics, em) / density
-    return [comb(cubics[a:b], spacing) for a, b in pairwise(contours.tolist())]
-
-
-def curves_of(glyph: GlyphResult) -> tuple[FloatArray, IntArray]:
-    """All pieces of a result, and (c + 1,) where each contour begins among them; empty ones are left out."""
-    pieces = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
-    cubics = np.concatenate([np.empty((0, 4, 2)), *pieces])
-    return cubics, np.cumsum([0, *map(len, pieces)], dtype=np.int64)
-
-
-def spacing_of(cubics: FloatArray, em: float) -> float:
-    """How far apart teeth stand along a glyph's pieces (m, 4, 2), in font units."""
-    return max(SPACING * em, _compiled().control_length(cubics) / MOST_TEETH)
-
-
-@cache
-def _compiled() -> Any:
-    """The compiled code of maps, imported when it is first wanted: the package opens without a compiler."""
-    from . import comb_paths as comb_text
-
-    return comb_text
+    curves = glyph.arrays.curves
+    cubics = all_cubics(curves)
+    spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
+    return [comb(cubics[a:b], spacing) for a, b in pairwise(curves.offsets.tolist()) if a < b]
 
 
 def teeth(glyph: GlyphResult, scale: float) -> list[Teeth]:
     """Feet and tips of each contour's comb. Teeth point away from the centre of curvature."""
     em = glyph.outline.metrics.units_per_em
-    return [teeth_of(item, em, scale) for item in combs_of(*curves_of(glyph), em, density=1.0)]
+    return [teeth_of(item, em, scale) for item in combs(glyph, density=1.0)]
 
 
 def teeth_of(item: Comb, em: float, scale: float) -> Teeth:
@@ -137,55 +105,34 @@ def to_curvature_svg(
         control_polygon: draw the control polygon of each interpolation.
     """
     scale = curvature_scale([glyph]) if scale is None else scale
-    curves = (contour.curve for contour in glyph.contours)
-    splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    document = map_document(
-        glyph.outline,
-        *curves_of(glyph),
-        path_data(curves, glyph.options.precision),
-        scale,
-        polygon=np.concatenate([np.empty((0, 2)), *(contour.polygon for contour in glyph.contours)])
-        if vertices
-        else None,
-        controls=[(spline.control_points, spline.closed) for spline in splines] if control_polygon else None,
-    )
-    return document.decode()
+    path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
+    return map_document(glyph, path, scale, vertices=vertices, control_polygon=control_polygon).decode()
 
 
 def map_document(
-    outline: Outline,
-    cubics: FloatArray,
-    contours: IntArray,
-    path: Text,
-    scale: float,
-    *,
-    polygon: FloatArray | None = None,
-    controls: list[tuple[FloatArray, bool]] | None = None,
+    glyph: GlyphResult, path: PathData, scale: float, *, vertices: bool = True, control_polygon: bool = False
 ) -> bytes:
-    """The map of a glyph from its curves, in UTF-8.
-
-    Args:
-        outline: of which everything but the contours is written.
-        cubics: (m, 4, 2) pieces of all contours. contours: (c + 1,) where each contour begins among them.
-        path: the same as it is written, as path data. scale: curvature of a full tooth, in 1/unit.
-        polygon: (n, 2) all vertices, if they are to be marked.
-        controls: control polygons and whether they are closed, if they are to be drawn.
-    """
+    """The same in UTF-8, from the path data of the glyph's curves."""
+    outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    layers, reach = _comb_layer(cubics, contours, em, scale, precision)
-    box = reach or (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
+    layers, box = _comb_layer(arrays.curves, em, scale, precision)
+    box = box or (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
     box = (min(box[0], 0.0), box[1], max(box[2], outline.advance), box[3])
     layers += [
         f'<path class="outline" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
-        ' fill-opacity=".07" fill-rule="nonzero" d="', path, '"/>\n',
+        ' fill-opacity=".07" fill-rule="nonzero" d="', path.text, '"/>\n',
     ]  # fmt: skip
-    if controls is not None:
-        layers.append(_control_layer(controls, em, precision))
-        box = _around(box, [points for points, _ in controls])
-    if polygon is not None:
+    if control_polygon:
+        polygons = polylines_data(arrays.controls, precision)[0]
+        layers += [
+            f'<path class="control-polygon" stroke="currentColor" stroke-opacity=".6" stroke-width="{_width(em, 1.2)}"'
+            f' stroke-dasharray="{_width(em, 6)}" d="', polygons.text, '"/>\n',
+        ]  # fmt: skip
+        box = union(box, polygons.box)
+    if vertices:
         style = f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="'
-        layers += [style, dots(polygon, precision), '"/>\n']
+        layers += [style, dots_data(arrays.polygons.points, precision), '"/>\n']
     legend, box = legend_svg(box, em, scale, precision, TOOTH, LONGEST)
     margin = 0.02 * em
     box = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
@@ -196,7 +143,7 @@ def map_document(
         f' data-scale="{scale:.6g}" fill="none" stroke-linecap="round" stroke-linejoin="round">\n'
         f'<title id="{prefix}-map-title">Curvature of {title(outline)}</title>\n'
     )
-    return joined([head, *layers, legend, "\n</svg>\n"])
+    return document([head, *layers, legend, "\n</svg>\n"])
 
 
 @cache
@@ -205,24 +152,23 @@ def comb_precision(em: float) -> int:
     return max(0, PRECISION + 3 - round(float(np.log10(em))))
 
 
-def _comb_layer(
-    cubics: FloatArray, contours: IntArray, em: float, scale: float, precision: int
-) -> tuple[list[Text], Box | None]:
+def _comb_layer(curves: ContourArrays, em: float, scale: float, precision: int) -> tuple[list[Text], Box | None]:
     """Teeth, grouped by colour into one path a class, the line that joins the tips, and the marks of cut teeth; and
     the box around curve and comb."""
-    least = 0.5 * STROKE * em / 1000
-    flat = scale * least / (TOOTH * em)
-    samples, starts = _compiled().sampled(cubics, spacing_of(cubics, em), ANGLE, flat)
-    text, ends, box = _compiled().comb_text(
-        samples, starts[contours], TOOTH * em, scale, LONGEST, least, *figures(precision)
-    )
-    view = memoryview(text)
+    from .comb_paths import comb_text  # here and not above: the package opens without a compiler
+    from .numbers import figures
+
+    text, ends, (left, bottom, right, top) = comb_text(
+        curves, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale, LONGEST, 0.5 * STROKE * em / 1000,
+        figures(precision),
+    )  # fmt: skip
+    view = text.data
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
     for style, (a, b) in zip(_styles(em), pairwise(ends.tolist()), strict=True):
         if b > a:
             layers += [style, view[a:b], '"/>\n']
     layers.append("</g>\n")
-    return layers, tuple(box.tolist()) if len(samples) else None
+    return layers, (float(left), float(bottom), float(right), float(top)) if left <= right else None
 
 
 @cache
@@ -235,27 +181,6 @@ def _styles(em: float) -> list[str]:
     ]
 
 
-def dots(points: FloatArray, precision: int) -> Text:
-    """Path data of a dot on each of the points (n, 2), to be stroked with round caps; y flipped."""
-    return memoryview(_compiled().dots_text(points, *figures(precision)))
-
-
-def _control_layer(controls: list[tuple[FloatArray, bool]], em: float, precision: int) -> str:
-    data = "".join(polyline_data(points, precision, closed=closed) for points, closed in controls)
-    dash = _width(em, 6)
-    return (
-        f'<path class="control-polygon" stroke="currentColor" stroke-opacity=".6" stroke-width="{_width(em, 1.2)}"'
-        f' stroke-dasharray="{dash}" d="{data}"/>\n'
-    )
-
-
 def _width(em: float, thousandths: float) -> str:
     """A stroke width given in 1/1000 em."""
     return number(thousandths * em / 1000, 3)
-
-
-def _around(box: Box, points: list[FloatArray]) -> Box:
-    for part in points:
-        (left, bottom), (right, top) = part.min(axis=0), part.max(axis=0)
-        box = union(box, (float(left), float(bottom), float(right), float(top)))
-    return box

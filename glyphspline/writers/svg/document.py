@@ -4,24 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
-
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
-from .markup import (
-    Box,
-    Text,
-    code_points,
-    curves_bounds,
-    curves_data,
-    data_attributes,
-    id_prefix,
-    joined,
-    laid_out,
-    text,
-    union,
-    view_box_value,
-)
+from .markup import code_points, data_attributes, document, id_prefix, text, union, view_box_value
+from .path_data import Box, PathData, curves_data
 
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = ("em", "metrics", "ink")
@@ -44,15 +30,14 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
     Raises:
         ValueError: ``view_box`` is none of these.
     """
-    precision = glyph.options.precision
-    points, degrees, contours = laid_out(contour.curve for contour in glyph.contours)
-    ink = curves_bounds(np.round(points, precision), degrees, contours)
-    path = curves_data(points, degrees, contours, precision)
-    return svg_document(glyph.outline, path, shown_box(glyph.outline, ink, view_box), precision, view_box).decode()
+    path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
+    return svg_document(glyph, path, view_box).decode()
 
 
-def svg_document(outline: Outline, path: Text, box: Box, precision: int, view_box: ViewBox) -> bytes:
-    """The document around path data, in UTF-8; of ``outline`` everything but its contours is written."""
+def svg_document(glyph: GlyphResult, path: PathData, view_box: ViewBox) -> bytes:
+    """The same in UTF-8, from the path data of the glyph's curves."""
+    outline, precision = glyph.outline, glyph.options.precision
+    box = shown_box(outline, path.box, view_box)
     overflow = ' overflow="visible"' if view_box == "metrics" else ""
     prefix = id_prefix(outline.name, outline.gid)
     head = (
@@ -61,7 +46,7 @@ def svg_document(outline: Outline, path: Text, box: Box, precision: int, view_bo
         f'<title id="{prefix}-title">{title(outline)}</title>\n'
         f'<path id="{prefix}-outline" fill="currentColor" fill-rule="nonzero" d="'
     )
-    return joined([head, path, '"/>\n</svg>\n'])
+    return document([head, path.text, '"/>\n</svg>\n'])
 
 
 def shown_box(outline: Outline, ink: Box | None, choice: ViewBox) -> Box:
@@ -78,5 +63,5 @@ def shown_box(outline: Outline, ink: Box | None, choice: ViewBox) -> Box:
 
 
 def title(outline: Outline) -> str:
-    """What a reader is told the drawing shows, escaped: the glyph's name and code points."""
+    """The accessible title of a drawing, escaped: the glyph's name and code points."""
     return text(f"{outline.name} {code_points(outline)}".strip())

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...types import FloatArray
 from .colours import SIDES, class_colour
-from .markup import Box, number
+from .markup import number
+from .path_data import Box
 
 WIDTH = 0.56
 """Length in em of the scale's axis, from -κ to κ of the shared scale."""

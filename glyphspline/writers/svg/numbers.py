@@ -1,48 +1,81 @@
-"""Numbers as text, compiled: whole numbers of the last digit in, ASCII bytes out.
+"""Numbers as ASCII text, compiled: a coordinate is an integer, in units of the last decimal.
 
-Whole part and decimals of an ordinary number are looked up (see ``figures``). Places in texts and tables are addresses
-(see ``words``).
+An ordinary number is looked up and stored as two words: its integer part and its decimals, "12" and ".5", or nothing
+and ".5", since a zero before the point is left out. A word holds its characters in order, lowest byte first, and their
+number in the highest byte. Texts and tables are addresses (see :func:`glyphspline.compiled.store`).
 """
 
-# mypy: disable-error-code="no-untyped-def, no-any-return"
-
 from __future__ import annotations
+
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...compiled import compiled, load, store
-from .digit_tables import WHOLE
+
+INTEGERS = 10_000
+"""Integer parts below this are looked up."""
+
+MOST_DECIMALS = 4
+"""Numbers with more decimals are written digit by digit."""
 
 WIDEST = 20
-"""Characters of the longest number written, with what separates it from the next."""
+"""Characters of the longest number written, with its separator."""
 
 LARGEST = 1e15
-"""Rounded coordinates, in units of the last digit, have to be below this: as doubles they are whole numbers there."""
+"""Coordinates, in units of the last decimal, have to be below this: as doubles they are integers there."""
 
 SLACK = 8
-"""Room needed beyond the end of a text: words are stored whole."""
+"""Bytes needed beyond the end of a text: words are stored whole."""
 
 MINUS, SPACE, POINT = (np.uint8(ord(c)) for c in "- .")
 ONE, EIGHT, TOP = np.uint64(1), np.uint64(8), np.uint64(56)
-PARTS = np.uint64(8 * WHOLE)
+PARTS = np.uint64(8 * INTEGERS)
 
 
-@compiled
-def decimal(at, value, figures):
+class Figures(NamedTuple):
+    """Tables for numbers of so many decimals.
+
+    Attributes:
+        precision: decimals. power: 10**precision. limit: smaller values are looked up.
+        words: of integer parts, then of decimals with the point before them: first those that follow an integer part
+            of 0, then those that follow another.
+    """
+
+    precision: int
+    power: int
+    limit: int
+    words: Any  # (n,) uint64
+
+
+@cache
+def figures(precision: int) -> Figures:
+    """The tables for a number of decimals."""
+    power = 10**precision
+    looked_up = precision <= MOST_DECIMALS
+    parts = [f".{value:0{precision}d}".rstrip("0").rstrip(".") for value in range(power if looked_up else 0)]
+    texts = ["", *map(str, range(1, INTEGERS)), *(part or "0" for part in parts), *parts]
+    words = [int.from_bytes(text.encode(), "little") | len(text) << 56 for text in texts]
+    return Figures(precision, power, INTEGERS * power if looked_up else 0, np.array(words, dtype=np.uint64))
+
+
+@compiled(internal=True)
+def decimal(at: np.uint64, value: np.int64, figures: Figures) -> np.uint64:
     """Write value / power with no zeros at its end, and none before its point.
 
     Args:
-        at: address. value: int64. figures: what :class:`.digit_tables.Figures` has, but of the words their address.
+        at: address. value: np.int6464. figures: the tables; of ``words`` the address.
 
     Returns:
         The address of the next character.
     """
     precision, power, limit, words = figures
     store(at, MINUS)
-    at += np.uint64(value < 0)  # no branch: signs cannot be foreseen
+    at += np.uint64(value < 0)  # no branch: signs cannot be predicted
     value = abs(value)
     if np.uint64(value) >= np.uint64(limit):
-        return by_digits(at, value, precision, power)
+        return _by_digits(at, value, precision, power)
     whole = np.uint64(value) // np.uint64(power)
     part = np.uint64(value) - whole * np.uint64(power)
     word = load(words + EIGHT * whole)
@@ -53,8 +86,8 @@ def decimal(at, value, figures):
     return at + (word >> TOP)
 
 
-@compiled
-def by_digits(at, value, precision, power):
+@compiled(internal=True)
+def _by_digits(at: np.uint64, value: np.int64, precision: int, power: int) -> np.uint64:
     """The same digit by digit, for any value from 0 up and any number of decimals."""
     whole = value // power
     part = value - whole * power

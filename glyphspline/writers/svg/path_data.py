@@ -1,151 +1,101 @@
-"""SVG path data, compiled: of curves, polygons and dots, from coordinates in whole units of the last digit.
+"""SVG path data of the contours of many glyphs in one compiled call; of one glyph, a batch of one.
 
-Coordinates are doubles that are whole numbers below ``LARGEST``, y up; y is written with its sign turned. What numbers
-are written with, ``figures``, is explained in ``digits``.
+A font point (x, y) is written as (x, -y). Coordinates are rounded, and written as differences, which add up to the
+rounded coordinates exactly.
 """
-
-# mypy: disable-error-code="no-untyped-def, no-any-return"
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import Any, NamedTuple
+
 import numpy as np
 
-from ...compiled import compiled, store
-from .numbers import LARGEST, ONE, SLACK, SPACE, WIDEST, decimal
+from ...outlines.contour_arrays import ContourArrays, Polylines
+from ...outlines.outline import Contour, Contours
+from ...types import BoolArray, FloatArray, IntArray
 
-MOVE, QUADRATIC, CUBIC, CLOSE = (np.uint8(ord(c)) for c in "MQCZ")
-MOVE_BY, LINE_BY, QUADRATIC_BY, CUBIC_BY = (np.uint8(ord(c)) for c in "mlqc")
-DOT = np.uint16(int.from_bytes(b"h0", "little"))
-"""A stroke of no length, which round caps make a dot."""
+Box = tuple[float, float, float, float]
+"""Left, bottom, right, top in font units, y up."""
 
+NUMBER = "%.15g"
+"""A rounded coordinate. 15 digits never show the binary tail of a double, and %g drops zeros at the end; 17 would
+write 0.1 as 0.10000000000000001."""
 
-TIE = 1e-6
-"""Fractions this near to a half are rounded up: rounding errors should not decide which way."""
-
-
-@compiled
-def nearest(value):
-    """The whole number nearest."""
-    return np.floor(value + (0.5 + TIE))
+_COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
 
 
-@compiled
-def apart(at, value, figures):
-    """One more number: a minus sets it apart from the one before as well as a space."""
-    store(at, SPACE)
-    return decimal(at + np.uint64(value >= 0), value, figures)
+class PathData(NamedTuple):
+    """Path data of a glyph, in ASCII, and the tight box around it; None if there is nothing."""
+
+    text: memoryview
+    box: Box | None
 
 
-@compiled
-def more(at, dx, dy, figures):
-    """One more pair of numbers of the command before."""
-    at = apart(at, np.int64(dx), figures)
-    return apart(at, -np.int64(dy), figures)
-
-
-@compiled
-def step(at, letter, dx, dy, figures):
-    """A command with one pair of numbers."""
-    store(at, letter)
-    at = decimal(at + ONE, np.int64(dx), figures)
-    return apart(at, -np.int64(dy), figures)
-
-
-@compiled
-def curve(at, points, degrees, figures):
-    """A closed chain of Bézier segments: M, then l, q or c, then Z, which also draws a last line.
-
-    Relative numbers take two thirds of the room. A last curve is absolute, so that it ends where the chain begins for
-    a reader, too, who has added up binary fractions.
+def curves_data(curves: ContourArrays, precision: int, glyphs: IntArray | None = None) -> list[PathData]:
+    """Path data of lines, quadratics and cubics.
 
     Args:
-        points: (N, 2). degrees: (m,) whose sum is N, as :class:`~glyphspline.outlines.outline.Contour` has them.
+        curves: of all glyphs end to end. precision: decimals.
+        glyphs: (G + 1,) where the contours of each glyph begin; None: they are one glyph's.
     """
-    at = step(at, MOVE, points[0, 0], points[0, 1], figures)
-    m = len(degrees)
-    i, before = 0, 0
-    for j in range(m - 1):
-        degree = degrees[j]
-        x, y = points[i, 0], points[i, 1]
-        for k in range(1, degree + 1):
-            dx, dy = points[i + k, 0] - x, points[i + k, 1] - y
-            if k > 1 or degree == before:
-                at = more(at, dx, dy, figures)
-            else:
-                at = step(at, CUBIC_BY if degree == 3 else LINE_BY if degree == 1 else QUADRATIC_BY, dx, dy, figures)
-        i, before = i + degree, degree
-    degree = degrees[m - 1]
-    if degree > 1:
-        at = step(at, CUBIC if degree == 3 else QUADRATIC, points[i + 1, 0], points[i + 1, 1], figures)
-        if degree == 3:
-            at = more(at, points[i + 2, 0], points[i + 2, 1], figures)
-        at = more(at, points[0, 0], points[0, 1], figures)
-    store(at, CLOSE)
-    return at + ONE
+    return _written(curves, np.ones(curves.num_contours, dtype=np.bool_), precision, glyphs)
 
 
-@compiled
-def polyline(at, points, closed, figures):
-    """Points joined by straight lines: M, then l."""
-    at = step(at, MOVE, points[0, 0], points[0, 1], figures)
-    for i in range(1, len(points)):
-        dx, dy = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
-        at = more(at, dx, dy, figures) if i > 1 else step(at, LINE_BY, dx, dy, figures)
-    if closed:
-        store(at, CLOSE)
-        at += ONE
-    return at
+def polylines_data(lines: Polylines, precision: int, glyphs: IntArray | None = None) -> list[PathData]:
+    """Path data of polygons and open polylines; arguments as for :func:`curves_data`."""
+    ones = np.ones(len(lines.points), dtype=np.int64)
+    return _written(ContourArrays(lines.points, ones, lines.offsets, lines.offsets), lines.closed, precision, glyphs)
 
 
-@compiled
-def fit(whole):
-    """Whether all numbers of an array (N, 2) can be written digit by digit."""
-    fine = True
-    for i in range(len(whole)):
-        fine &= abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST
-    return fine
+def dots_data(points: FloatArray, precision: int) -> memoryview:
+    """Path data of a dot on each of the points (n, 2), to be stroked with round caps."""
+    from .numbers import figures  # here and not above: the package opens without a compiler
+    from .path_text import dots_text
+
+    return dots_text(np.ascontiguousarray(points), figures(precision)).data
 
 
-@compiled
-def curves_text(points, degrees, contours, precision, power, limit, words):
-    """Path data of closed contours as bytes; None if a number is too large for it.
-
-    Args:
-        points: (N, 2) of all contours one after the other. degrees: (m,) of all segments. contours: (c + 1,) where
-            those of each contour begin. precision, power, limit, words: the figures of so many decimals.
-    """
-    figures = (precision, power, limit, np.uint64(words.ctypes.data))
-    whole = np.rint(points * power)
-    if not fit(whole):
-        return None
-    text = np.empty((len(points) + len(contours)) * 2 * WIDEST + SLACK, dtype=np.uint8)
-    start = np.uint64(text.ctypes.data)
-    at, first = start, 0
-    for c in range(len(contours) - 1):
-        part = degrees[contours[c] : contours[c + 1]]
-        n = part.sum()
-        if n:
-            at = curve(at, whole[first : first + n], part, figures)
-        first += n
-    return text[: np.int64(at - start)]
+def path_data(contours: Iterable[Contour], precision: int) -> str:
+    """The contours of one glyph as SVG path data."""
+    arrays = contours.arrays if isinstance(contours, Contours) else Contours(contours).arrays
+    return str(curves_data(arrays, precision)[0].text, "ascii")
 
 
-@compiled
-def polylines_text(points, starts, stops, closed, precision, power, limit, words):
-    """Path data of polygons as bytes; None if a number is too large for it.
+def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
+    """Points (k, 2) joined by straight lines, as SVG path data."""
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    lines = Polylines(points, np.array([0, len(points)]), np.array([closed]))
+    return str(polylines_data(lines, precision)[0].text, "ascii")
 
-    Args:
-        points: (N, 2) of all. starts, stops: (p,) where in it each begins and stops. closed: (p,) whether Z ends it.
-        precision, power, limit, words: the figures of so many decimals.
-    """
-    figures = (precision, power, limit, np.uint64(words.ctypes.data))
-    whole = np.rint(points * power)
-    if not fit(whole):
-        return None
-    text = np.empty((len(points) + len(starts)) * 2 * WIDEST + SLACK, dtype=np.uint8)
-    start = np.uint64(text.ctypes.data)
-    at = start
-    for p in range(len(starts)):
-        if stops[p] > starts[p]:
-            at = polyline(at, whole[starts[p] : stops[p]], closed[p], figures)
-    return text[: np.int64(at - start)]
+
+def _written(curves: ContourArrays, closed: BoolArray, precision: int, glyphs: IntArray | None) -> list[PathData]:
+    from .numbers import figures  # here and not above: the package opens without a compiler
+    from .path_text import path_text
+
+    bounds = np.asarray([0, curves.num_contours] if glyphs is None else glyphs, dtype=np.int64)
+    text, ends, boxes, too_large = path_text(curves, closed, bounds, figures(precision))
+    parts = [text.data[a:b] for a, b in pairwise(ends.tolist())]
+    for glyph in np.flatnonzero(too_large).tolist():
+        parts[glyph] = _of_any_size(curves, closed, range(*bounds[glyph : glyph + 2].tolist()), precision)
+    return [PathData(part, _box(box)) for part, box in zip(parts, boxes.tolist(), strict=True)]
+
+
+def _box(values: list[float]) -> Box | None:
+    left, bottom, right, top = values
+    return (left, bottom, right, top) if left <= right else None
+
+
+def _of_any_size(curves: ContourArrays, closed: BoolArray, which: range, precision: int) -> memoryview:
+    """Path data of one glyph with absolute numbers of any size."""
+    texts = []
+    for c in which:
+        part: Any = curves.part(c, c + 1)
+        values, degrees = np.round(part.points * (1, -1), precision) + 0.0, part.degrees.tolist()
+        if degrees:
+            ends = [] if degrees[-1] == 1 else [values[:1]]  # Z draws a last line
+            degrees = degrees[: len(degrees) - 1 + len(ends)]
+            template = f"M{NUMBER} {NUMBER}" + "".join([_COMMANDS[d] for d in degrees]) + "Z" * bool(closed[c])
+            texts.append(template % tuple(np.concatenate([values, *ends]).ravel().tolist()))
+    return memoryview("".join(texts).encode())

@@ -1,27 +1,35 @@
-"""A glyph as it was read and sampled: the source outline and the polygons over it, as an SVG drawing."""
+"""A glyph before and after sampling: the source outline and the polygons over it, as an SVG drawing."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from ...fitting.results import GlyphResult
-from ...outlines.outline import Outline
-from ...types import FloatArray
-from .curvature_map import comb_precision, dots
+from ...fitting.results import GlyphResult, end_to_end
+from ...outlines.contour_arrays import joined, offsets_of
+from .curvature_map import comb_precision
 from .document import title
-from .markup import (
-    Box,
-    chains,
-    data_attributes,
-    id_prefix,
-    ink_bounds,
-    joined,
-    number,
-    path_data,
-    polylines_data,
-    union,
-    view_box_value,
-)
+from .markup import data_attributes, document, id_prefix, number, union, view_box_value
+from .path_data import PathData, curves_data, dots_data, polylines_data
+
+
+class SourceData(NamedTuple):
+    """Path data of a glyph's source outline, its polygons, and the control polygons of its result."""
+
+    source: PathData
+    polygon: PathData
+    control: PathData
+
+
+def source_data(glyphs: Sequence[GlyphResult]) -> list[SourceData]:
+    """Path data of glyphs, at least one, that have the same options and em."""
+    precision, coarse = glyphs[0].options.precision, comb_precision(glyphs[0].outline.metrics.units_per_em)
+    outlines = [glyph.outline.arrays for glyph in glyphs]
+    source = curves_data(joined(outlines), precision, offsets_of([own.num_contours for own in outlines]))
+    arrays, offsets = end_to_end(glyphs)
+    polygon = polylines_data(arrays.polygons, precision, offsets)
+    control = polylines_data(arrays.controls, coarse, arrays.arc_offsets[offsets])
+    return [SourceData(*parts) for parts in zip(source, polygon, control, strict=True)]
 
 
 def to_source_svg(glyph: GlyphResult) -> str:
@@ -29,40 +37,16 @@ def to_source_svg(glyph: GlyphResult) -> str:
 
     Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. Shown as an image with the fragment of the first, as in
     ``a.svg#g36-A-source``, the drawing leaves the polygon out. A third group, ``…-control``, holds the control
-    polygons of the result for whoever wants them; it is not displayed.
+    polygons of the result; it is not displayed.
     """
+    return source_document(glyph, source_data([glyph])[0]).decode()
+
+
+def source_document(glyph: GlyphResult, data: SourceData) -> bytes:
+    """The same in UTF-8, from its path data."""
     outline, precision = glyph.outline, glyph.options.precision
-    polygons = [contour.polygon for contour in glyph.contours if len(contour.polygon)]
-    splines = [interpolation.spline for contour in glyph.contours for interpolation in contour.interpolations]
-    corners = chains(polygons, [True] * len(polygons))
-    control = chains([spline.control_points for spline in splines], [spline.closed for spline in splines])
-    texts = SourceTexts(
-        memoryview(path_data(outline.contours, precision).encode()),
-        polylines_data(corners, precision),
-        polylines_data(control, comb_precision(outline.metrics.units_per_em)),
-    )
-    return source_document(outline, texts, ink_bounds(outline.contours), corners.points, precision).decode()
-
-
-class SourceTexts(NamedTuple):
-    """Path data of a source drawing: the source's outline, the polygons, the control polygons of the result."""
-
-    source: memoryview
-    polygon: memoryview
-    control: memoryview
-
-
-def source_document(
-    outline: Outline, texts: SourceTexts, ink: Box | None, vertices: FloatArray, precision: int
-) -> bytes:
-    """The drawing from its parts, in UTF-8.
-
-    Args:
-        outline: of which everything but the contours is written. ink: the box around these.
-        vertices: (n, 2) of all polygons. precision: decimals of the view box.
-    """
     em = outline.metrics.units_per_em
-    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), ink)
+    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), data.source.box)
     prefix = id_prefix(outline.name, outline.gid)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" overflow="visible"'
@@ -80,8 +64,8 @@ def source_document(
         f'"/></g>\n<g id="{prefix}-control" display="none" fill="none" stroke="#75c"'
         f' stroke-width="{number(em / 600, 3)}"><path d="'
     )
-    between = f'"/><path stroke-width="{number(em / 100, 3)}" d="'
-    return joined([
-        head, texts.source, polygon, texts.polygon, between, dots(vertices, comb_precision(em)), control, texts.control,
-        '"/></g>\n</svg>\n',
+    dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
+    return document([
+        head, data.source.text, polygon, data.polygon.text, f'"/><path stroke-width="{number(em / 100, 3)}" d="', dots,
+        control, data.control.text, '"/></g>\n</svg>\n',
     ])  # fmt: skip

@@ -1,4 +1,4 @@
-"""Runs over so many glyphs that workers write the gallery page by page; and the short way, interrupted."""
+"""Runs over hundreds of glyphs that are interrupted, and gone on with: the folder is the same to the byte."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from glyphspline.batch import OutputError, RunSpec, convert_font, write_gallery
 from glyphspline.batch.manifest import JOURNAL
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
-from glyphspline.report.data import CHUNK, page_file
 
 from .test_batch import content
 from .test_hostile import built, square
 
-SPEC = RunSpec(Options(step=300.0), ("svg",))
+SPEC = RunSpec(Options(step=300.0), ("svg", "gallery"))
+CHUNK = 40
 MANY = 16 * CHUNK + 5
-"""Glyphs of which each of two workers gets whole pages; the last page is none."""
+"""Glyphs of which each of two workers gets whole chunks."""
 
 
 @pytest.fixture(scope="module")
@@ -46,31 +46,24 @@ def stop_at(least: int) -> Any:
     return observe
 
 
-def test_a_page_is_there_as_soon_as_its_glyphs_are(font: Font, tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(1))
-    assert (tmp_path / page_file(0)).exists()
-    assert not (tmp_path / "gallery" / "run.js").exists()
-
-
-def test_pages_are_those_that_are_made_of_the_files(finished: Path, font: Font, tmp_path: Path) -> None:
+def test_the_gallery_written_again_is_the_same(finished: Path, font: Font, tmp_path: Path) -> None:
     convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2)
     assert content(tmp_path) == content(finished)
-    for path in [*(tmp_path / "gallery").iterdir(), tmp_path / "index.html"]:
+    for path in [tmp_path / "index.html", tmp_path / "gallery" / "run.js", tmp_path / "gallery" / "table-00000.js"]:
         path.unlink()
     write_gallery(tmp_path)
     assert content(tmp_path) == content(finished)
 
 
-def test_an_interrupted_run_ends_with_the_same_pages(finished: Path, font: Font, tmp_path: Path) -> None:
+def test_an_interrupted_run_ends_with_the_same_files(finished: Path, font: Font, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(3 * CHUNK))
-    (tmp_path / "gallery" / ".glyphs-00001.js-1.part").write_text("half a pa")
+    (tmp_path / "gallery" / ".glyph001.glyph.js-1.part").write_text("half a fi")
     assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2).done == MANY - 3 * CHUNK
     assert content(tmp_path) == content(finished)
 
 
-def test_glyphs_between_those_that_are_there_move_the_pages(finished: Path, font: Font, tmp_path: Path) -> None:
+def test_glyphs_between_those_that_are_there_are_added(finished: Path, font: Font, tmp_path: Path) -> None:
     convert_font(font, font.glyph_names[1::2], tmp_path, SPEC, jobs=0)
     convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0)
     assert content(tmp_path) == content(finished)
@@ -105,8 +98,8 @@ def test_a_gallery_that_could_not_be_written_is_made_up_for(finished: Path, font
     assert content(tmp_path) == content(finished)
 
 
-def test_a_page_that_cannot_be_written_ends_a_run_that_can_go_on(finished: Path, font: Font, tmp_path: Path) -> None:
-    blocked = tmp_path / page_file(2)
+def test_a_file_that_cannot_be_written_ends_a_run_that_can_go_on(finished: Path, font: Font, tmp_path: Path) -> None:
+    blocked = tmp_path / "gallery" / "glyph100.glyph.js"
     blocked.mkdir(parents=True)
     with pytest.raises(OutputError, match=blocked.name):
         convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2)

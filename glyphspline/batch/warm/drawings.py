@@ -1,0 +1,9 @@
+"""Curvature maps, and what the gallery shows."""
+
+from ...fitting.options import Options
+from ...writers.svg.curvature_map import to_curvature_svg
+from ...writers.svg.source_drawing import to_source_svg
+from . import converted
+
+to_curvature_svg(converted(Options(step=20.0)))
+to_source_svg(converted(Options(step=20.0)))

@@ -1,0 +1,6 @@
+"""Conversion by step."""
+
+from ...fitting.options import Options
+from . import converted
+
+converted(Options(step=20.0))
