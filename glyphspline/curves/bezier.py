@@ -6,12 +6,6 @@ import numpy as np
 
 from ..types import FloatArray
 
-SLOW = 1e-7
-"""Speed over a piece's size below which its tangent is not trusted. Nearer to zero, rounding sets the direction."""
-
-NUDGE = 1e-3
-"""How far, in local parameter, a sample moves off a point of no speed: the comb shows the limit beside a cusp."""
-
 
 def evaluate(pieces: FloatArray, x: FloatArray) -> FloatArray:
     """Each piece at its own local parameter, by de Casteljau: (m, degree + 1, k) and (m,) give (m, k)."""

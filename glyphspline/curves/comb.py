@@ -1,13 +1,18 @@
 """Samples along cubic pieces for curvature combs, compiled: where they stand, and the curve's frame there."""
 
-# mypy: disable-error-code="no-untyped-def, no-any-return"
-
 from __future__ import annotations
 
 import numpy as np
 
 from ..compiled import compiled
-from .bezier import NUDGE, SLOW
+from ..types import FloatArray, IntArray
+from .cubics import jet
+
+SLOW = 1e-7
+"""Speed over a piece's size below which its tangent is not trusted. Nearer to zero, rounding sets the direction."""
+
+NUDGE = 1e-3
+"""How far, in local parameter, a sample moves off a point of no speed: the comb shows the limit beside a cusp."""
 
 TABLE = 16
 """Chords of a piece by which arc length is measured; half as many make teeth visibly uneven on an S-shaped piece."""
@@ -34,7 +39,7 @@ X, Y, NX, NY, CURVATURE, WEIGHT = range(6)
 
 
 @compiled
-def sampled(cubics, spacing, angle, flat):
+def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tuple[FloatArray, IntArray]:
     """Samples of all pieces in order, both ends of each included.
 
     Args:
@@ -45,77 +50,59 @@ def sampled(cubics, spacing, angle, flat):
         (k, 6) samples; (m + 1,) where those of each piece begin.
     """
     m = len(cubics)
-    starts = np.zeros(m + 1, dtype=np.int64)
-    samples = np.empty((4 * m + 64, 6))
-    table = np.empty((6, TABLE + 1))
-    used = 0
+    starts, samples, table = np.empty(m + 1, dtype=np.int64), np.empty((4 * m + 64, 6)), np.empty((6, TABLE + 1))
+    used = starts[0] = 0
     for j in range(m):
-        piece = (
-            cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1],
-            cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1],
-        )  # fmt: skip
-        length, turn = _even(piece)
+        length, wanted = tame_samples(cubics, j, spacing, angle, flat)
         even = length > 0.0
         if not even:
-            wanted = _measure(piece, table, spacing, angle)
-        elif abs(_curvature(piece, False)) < flat and abs(_curvature(piece, True)) < flat:
-            wanted = 1.0
-        else:
-            wanted = max(length / spacing, turn / angle)
+            wanted = measure(cubics, j, table, spacing, angle)
         n = max(int(np.ceil(wanted - TIE)), 1 if even else LEAST)
-        while used + n + 1 > len(samples):
-            larger = np.empty((2 * len(samples), 6))
-            larger[:used] = samples[:used]
+        stop = starts[j] + n + 1
+        if stop > len(samples):
+            larger = np.empty((2 * stop, 6))
+            for i in range(starts[j]):
+                for column in range(6):
+                    larger[i, column] = samples[i, column]
             samples = larger
         if even:
-            _sample_evenly(piece, length, n, samples, used)
+            sample_evenly(cubics, j, length, n, samples[starts[j] : stop])
         else:
-            _sample(piece, table, n, samples, used)
-        used += n + 1
-        starts[j + 1] = used
+            sample_by_length(cubics, j, table, n, samples[starts[j] : stop])
+        used = starts[j + 1] = stop
     return samples[:used], starts
 
 
-@compiled
-def _legs(piece):
-    """The three sides of a control polygon."""
-    x0, y0, x1, y1, x2, y2, x3, y3 = piece
-    return x1 - x0, y1 - y0, x2 - x1, y2 - y1, x3 - x2, y3 - y2
-
-
-@compiled
-def _even(piece):
-    """Length and turn of a tame piece; -1 and 0 for another."""
-    ax, ay, bx, by, cx, cy = _legs(piece)
+@compiled(internal=True)
+def tame_samples(cubics: FloatArray, j: int, spacing: float, angle: float, flat: float) -> tuple[float, float]:
+    """Length of a tame piece and the intervals that it asks for; -1 and 0 for another."""
+    ax, ay = cubics[j, 1, 0] - cubics[j, 0, 0], cubics[j, 1, 1] - cubics[j, 0, 1]
+    bx, by = cubics[j, 2, 0] - cubics[j, 1, 0], cubics[j, 2, 1] - cubics[j, 1, 1]
+    cx, cy = cubics[j, 3, 0] - cubics[j, 2, 0], cubics[j, 3, 1] - cubics[j, 2, 1]
     a, b, c = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
-    if not (min(a, b, c) > TINY and max(a, b, c) <= TAME_RATIO * TAME_RATIO * min(a, b, c)):
+    least, most = min(a, min(b, c)), max(a, max(b, c))
+    if not (least > TINY and most <= TAME_RATIO * TAME_RATIO * least):
         return -1.0, 0.0
     la, lb, lc = np.sqrt(a), np.sqrt(b), np.sqrt(c)
-    first, second = abs(ax * by - ay * bx) / (la * lb), abs(bx * cy - by * cx) / (lb * lc)  # sines of the turns
+    before, after = ax * by - ay * bx, bx * cy - by * cx
+    first, second = abs(before) / (la * lb), abs(after) / (lb * lc)  # sines of the turns
     if not (max(first, second) <= TAME_SINE and ax * bx + ay * by > 0.0 and bx * cx + by * cy > 0.0):
         return -1.0, 0.0
     x, y = ax + 2.0 * bx + cx, ay + 2.0 * by + cy
+    length = 0.5 * (la + np.sqrt(x * x + y * y) + lc)  # Simpson's rule
+    if abs((2.0 / 3.0) * before / (a * la)) < flat and abs((2.0 / 3.0) * after / (c * lc)) < flat:
+        return length, 1.0
     turn = first + second
-    # Simpson's rule; and no less than the sum of the two arcsines
-    return 0.5 * (la + np.sqrt(x * x + y * y) + lc), turn * (1.0 + turn * turn / 5.0)
+    turn = turn * (1.0 + turn * turn / 5.0)  # no less than the sum of the two arcsines
+    return length, max(length / spacing, turn / angle)
 
 
-@compiled
-def _curvature(piece, end):
-    """Curvature where a piece begins or ends, which has to be one that does not stand still there."""
-    ax, ay, bx, by, cx, cy = _legs(piece)
-    if end:
-        ax, ay, bx, by = bx, by, cx, cy
-    dx, dy = (bx, by) if end else (ax, ay)
-    square = dx * dx + dy * dy
-    return (2.0 / 3.0) * (ax * by - ay * bx) / (square * np.sqrt(square))
-
-
-@compiled
-def _sample_evenly(piece, length, n, samples, used):
-    """Frames at n + 1 even parameters of a piece that stands still nowhere, into ``samples`` from ``used`` on."""
-    x0, y0, x1, y1, x2, y2, x3, y3 = piece
-    ax, ay, bx, by, cx, cy = _legs(piece)
+@compiled(internal=True)
+def sample_evenly(cubics: FloatArray, j: int, length: float, n: int, samples: FloatArray) -> None:
+    """Frames at n + 1 even parameters of a piece that stands still nowhere, into ``samples`` (n + 1, 6)."""
+    x0, y0, x1, y1 = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
+    x2, y2, x3, y3 = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
+    ax, ay, bx, by, cx, cy = x1 - x0, y1 - y0, x2 - x1, y2 - y1, x3 - x2, y3 - y2
     for i in range(n + 1):
         t = i / n
         s = 1.0 - t
@@ -125,19 +112,20 @@ def _sample_evenly(piece, length, n, samples, used):
         inverse = 1.0 / np.sqrt(dx * dx + dy * dy)
         tx, ty = dx * inverse, dy * inverse
         u, v, w, z = s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
-        samples[used + i, X] = u * x0 + v * x1 + w * x2 + z * x3
-        samples[used + i, Y] = u * y0 + v * y1 + w * y2 + z * y3
-        samples[used + i, NX], samples[used + i, NY] = -ty, tx
-        samples[used + i, CURVATURE] = (tx * ey - ty * ex) * inverse * inverse * (2.0 / 3.0)
-        samples[used + i, WEIGHT] = length / n
-    samples[used, WEIGHT] = samples[used + n, WEIGHT] = 0.5 * (length / n)
+        samples[i, X] = u * x0 + v * x1 + w * x2 + z * x3
+        samples[i, Y] = u * y0 + v * y1 + w * y2 + z * y3
+        samples[i, NX], samples[i, NY] = -ty, tx
+        samples[i, CURVATURE] = (tx * ey - ty * ex) * inverse * inverse * (2.0 / 3.0)
+        samples[i, WEIGHT] = length / n
+    samples[0, WEIGHT] = samples[n, WEIGHT] = 0.5 * (length / n)
 
 
-@compiled
-def _measure(piece, table, spacing, angle):
+@compiled(internal=True)
+def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle: float) -> float:
     """Samples that a piece asks for, by its chords. Rows of the table, TABLE + 1 long: before each chord's end the
-    samples, then the length; the others are room to work in."""
-    x0, y0, x1, y1, x2, y2, x3, y3 = piece
+    samples, then the length; the others are scratch."""
+    x0, y0, x1, y1 = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
+    x2, y2, x3, y3 = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
     for i in range(TABLE + 1):
         t = i / TABLE
         s = 1.0 - t
@@ -165,24 +153,11 @@ def _measure(piece, table, spacing, angle):
     return samples
 
 
-@compiled
-def _point(piece, t):
-    x0, y0, x1, y1, x2, y2, x3, y3 = piece
-    s = 1.0 - t
-    ax, ay = s * x0 + t * x1, s * y0 + t * y1
-    bx, by = s * x1 + t * x2, s * y1 + t * y2
-    cx, cy = s * x2 + t * x3, s * y2 + t * y3
-    return s * (s * ax + t * bx) + t * (s * bx + t * cx), s * (s * ay + t * by) + t * (s * by + t * cy)
-
-
-@compiled
-def _sample(piece, table, n, samples, used):
-    """Frames at the n + 1 places that divide a piece evenly by its table."""
-    x0, y0, x1, y1, x2, y2, x3, y3 = piece
-    size = max(abs(x1 - x0), abs(y1 - y0), abs(x2 - x0), abs(y2 - y0), abs(x3 - x0), abs(y3 - y0))
-    whole = table[SHARES, TABLE]
-    cell = 0
-    behind = 0.0
+@compiled(internal=True)
+def sample_by_length(cubics: FloatArray, j: int, table: FloatArray, n: int, samples: FloatArray) -> None:
+    """Frames at the n + 1 places that divide a piece evenly by its table, into ``samples`` (n + 1, 6)."""
+    size, whole = size_of(cubics, j), table[SHARES, TABLE]
+    cell, behind = 0, 0.0
     for i in range(n + 1):
         share = i / n * whole
         while cell < TABLE - 1 and table[SHARES, cell + 1] < share:
@@ -195,48 +170,54 @@ def _sample(piece, table, n, samples, used):
             t, length = 1.0, table[LENGTHS, TABLE]
         elif whole == 0.0:
             t = i / n
-        samples[used + i, X], samples[used + i, Y] = _point(piece, t)
-        samples[used + i, NX], samples[used + i, NY], samples[used + i, CURVATURE] = _frame(piece, t, size)
-        samples[used + i, WEIGHT] = 0.5 * (length - behind)
+        samples[i, X], samples[i, Y], samples[i, NX], samples[i, NY], samples[i, CURVATURE] = frame(cubics, j, t, size)
+        samples[i, WEIGHT] = 0.5 * (length - behind)
         if i:
-            samples[used + i - 1, WEIGHT] += samples[used + i, WEIGHT]
+            samples[i - 1, WEIGHT] += samples[i, WEIGHT]
         behind = length
 
 
-@compiled
-def _frame(piece, t, size):
-    """Normal and curvature. Where the piece stands still they are those beside the point; a piece without extent has
-    zeros."""
-    dx, dy, ex, ey = _derivatives(piece, t)
-    speed = _size(dx, dy)
+@compiled(internal=True)
+def size_of(cubics: FloatArray, j: int) -> float:
+    """The largest distance, along either axis, of a control point of piece j from its first."""
+    size = 0.0
+    for k in range(1, 4):
+        for axis in range(2):
+            size = max(size, abs(cubics[j, k, axis] - cubics[j, 0, axis]))
+    return size
+
+
+@compiled(internal=True)
+def frame(cubics: FloatArray, j: int, t: float, size: float) -> tuple[float, float, float, float, float]:
+    """Point, unit normal to the left and signed curvature of piece j, of a size.
+
+    Where it stands still (a cusp, or a handle on its end), normal and curvature are those beside the point; a piece
+    without extent has zeros.
+    """
+    x, y, dx, dy, ex, ey = jet(cubics, j, t)
+    speed = np.hypot(dx, dy)
     if speed <= SLOW * size:
-        dx, dy, ex, ey = _derivatives(piece, t + NUDGE if t < 0.5 else t - NUDGE)
-        speed = _size(dx, dy)
+        _, _, dx, dy, ex, ey = jet(cubics, j, t + NUDGE if t < 0.5 else t - NUDGE)
+        speed = np.hypot(dx, dy)
     if speed > SLOW * NUDGE * size:  # a nudged sample has a speed of the order of NUDGE squared
         inverse = 1.0 / speed
         tx, ty = dx * inverse, dy * inverse
-        return -ty, tx, (tx * (ey * inverse) - ty * (ex * inverse)) * inverse
-    return 0.0, 0.0, 0.0
+        return x, y, -ty, tx, (tx * (ey * inverse) - ty * (ex * inverse)) * inverse
+    return x, y, 0.0, 0.0, 0.0
 
 
 @compiled
-def _size(x, y):
-    """Length of a vector, however small."""
-    square = x * x + y * y
-    return np.sqrt(square) if square > TINY else np.hypot(x, y)
+def end_curvatures(cubics: FloatArray) -> FloatArray:
+    """(m, 2) signed curvature where each piece begins and ends."""
+    found = np.empty((len(cubics), 2))
+    for j in range(len(cubics)):
+        for end in range(2):
+            _, _, _, _, found[j, end] = frame(cubics, j, 1.0 * end, size_of(cubics, j))
+    return found
 
 
 @compiled
-def _derivatives(piece, t):
-    """First and second derivative by the local parameter."""
-    ax, ay, bx, by, cx, cy = _legs(piece)
-    s = 1.0 - t
-    dx, dy = s * (s * ax + t * bx) + t * (s * bx + t * cx), s * (s * ay + t * by) + t * (s * by + t * cy)
-    return 3.0 * dx, 3.0 * dy, 6.0 * (s * (bx - ax) + t * (cx - bx)), 6.0 * (s * (by - ay) + t * (cy - by))
-
-
-@compiled
-def control_length(cubics):
+def control_length(cubics: FloatArray) -> float:
     """Length of all control polygons, which is no less than that of the curves."""
     length = 0.0
     for j in range(len(cubics)):

@@ -1,7 +1,7 @@
 """Self-crossings of closed contours, and how far they leave a convex hull, on a few chords a segment.
 
-Segments that cannot matter are told by their Bézier points: a segment lies in their hull, and one whose legs all run
-forward along a common direction crosses nothing by itself.
+Bézier points rule out most segments: a segment lies in their hull, and one whose legs all run forward along a common
+direction crosses nothing by itself.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet
+from .sorting import ascending
 
 STEPS = 12
 """Chords a cubic; a straight one takes a single chord. Loops smaller than a twelfth of a segment go uncounted."""
@@ -26,7 +27,7 @@ def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
     return float(farthest_outside(cubics, *chords(cubics), polygon))
 
 
-@compiled
+@compiled(internal=True)
 def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[int, float]:
     """Both of a closed chain of cubics (m, 4, 2), from the same chords; no overshoot over a polygon of no vertices."""
     points, first = chords(cubics)
@@ -38,12 +39,12 @@ def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[in
 def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
     """(N, 2) ends of the chords, the first not repeated at the end, and (m + 1,) where each segment's begin."""
     m = len(cubics)
-    points, first = np.empty((STEPS * m, 2)), np.zeros(m + 1, dtype=np.int64)
-    count = 0
+    points, first = np.empty((STEPS * m, 2)), np.empty(m + 1, dtype=np.int64)
+    count = first[0] = 0
     for j in range(m):
         b = cubics[j]
         bend = 0.0
-        for k in (1, 2):
+        for k in range(1, 3):
             bend = max(
                 bend, abs(b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0]) + abs(b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1])
             )
@@ -60,33 +61,43 @@ def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
 @compiled
 def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> int:
     """Pairs of chords that cross properly, of a closed chain (m, 4, 2) and its :func:`chords`."""
-    m = len(cubics)
-    box = np.empty((m, 4))
+    m, n = len(cubics), len(points)
+    left, right, low, high = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     for j in range(m):
-        b = cubics[j]
-        for axis in range(2):
-            box[j, 2 * axis] = min(min(b[0, axis], b[1, axis]), min(b[2, axis], b[3, axis]))
-            box[j, 2 * axis + 1] = max(max(b[0, axis], b[1, axis]), max(b[2, axis], b[3, axis]))
-    order = np.argsort(box[:, 0])
+        left[j] = right[j] = cubics[j, 0, 0]
+        low[j] = high[j] = cubics[j, 0, 1]
+        for k in range(1, 4):
+            left[j], right[j] = min(left[j], cubics[j, k, 0]), max(right[j], cubics[j, k, 0])
+            low[j], high[j] = min(low[j], cubics[j, k, 1]), max(high[j], cubics[j, k, 1])
+    order = ascending(left)
     found = 0
     for oi in range(m):
-        i = order[oi]
-        if not _forward(cubics, i, i):
-            found += _crossing_chords(points, first, i, i)
-        for oj in range(oi + 1, m):
-            j = order[oj]
-            if box[j, 0] > box[i, 1]:
+        for oj in range(oi, m):
+            s, t = order[oi], order[oj]
+            if left[t] > right[s]:
                 break
-            if box[j, 2] > box[i, 3] or box[j, 3] < box[i, 2]:
+            if low[t] > high[s] or high[t] < low[s]:
                 continue
-            if (j == i + 1 and _forward(cubics, i, j)) or (i == j + 1 and _forward(cubics, j, i)):
+            if abs(s - t) <= 1 and runs_forward(cubics, min(s, t), max(s, t)):
                 continue
-            found += _crossing_chords(points, first, i, j)
+            for i in range(first[s], first[s + 1]):
+                ax, ay, bx, by = points[i, 0], points[i, 1], points[(i + 1) % n, 0], points[(i + 1) % n, 1]
+                least_x, most_x, least_y, most_y = min(ax, bx), max(ax, bx), min(ay, by), max(ay, by)
+                for j in range(i + 1 if s == t else first[t], first[t + 1]):
+                    cx, cy, dx, dy = points[j, 0], points[j, 1], points[(j + 1) % n, 0], points[(j + 1) % n, 1]
+                    if max(cx, dx) < least_x or min(cx, dx) > most_x or max(cy, dy) < least_y or min(cy, dy) > most_y:
+                        continue
+                    if j == (i + 1) % n or i == (j + 1) % n:
+                        continue
+                    # A chord that only reaches the other one is counted at one of its ends: zero belongs to the left.
+                    one = (side(ax, ay, bx, by, cx, cy) >= 0) != (side(ax, ay, bx, by, dx, dy) >= 0)
+                    if one and (side(cx, cy, dx, dy, ax, ay) >= 0) != (side(cx, cy, dx, dy, bx, by) >= 0):
+                        found += 1
     return found
 
 
-@compiled
-def _forward(cubics: FloatArray, i: int, j: int) -> bool:
+@compiled(internal=True)
+def runs_forward(cubics: FloatArray, i: int, j: int) -> bool:
     """Whether all legs of segments i to j run along the chord from the first point to the last."""
     x, y = cubics[j, 3, 0] - cubics[i, 0, 0], cubics[j, 3, 1] - cubics[i, 0, 1]
     for s in range(i, j + 1):
@@ -97,88 +108,69 @@ def _forward(cubics: FloatArray, i: int, j: int) -> bool:
     return True
 
 
-@compiled
-def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+@compiled(internal=True)
+def side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+    """Positive where p lies to the left of the line from a to b."""
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-
-
-@compiled
-def _crossing_chords(p: FloatArray, first: IntArray, s: int, t: int) -> int:
-    """Pairs of a chord of segment s and one of segment t that cross; those within a segment once."""
-    n = len(p)
-    found = 0
-    for i in range(first[s], first[s + 1]):
-        ax, ay = p[i]
-        bx, by = p[(i + 1) % n]
-        left, right, low, high = min(ax, bx), max(ax, bx), min(ay, by), max(ay, by)
-        for j in range(i + 1 if s == t else first[t], first[t + 1]):
-            cx, cy = p[j]
-            dx, dy = p[(j + 1) % n]
-            if max(cx, dx) < left or min(cx, dx) > right or max(cy, dy) < low or min(cy, dy) > high:
-                continue
-            if j == (i + 1) % n or i == (j + 1) % n:
-                continue
-            # A chord that only reaches the other one is counted at one of its ends: zero belongs to the left side.
-            one = (_side(ax, ay, bx, by, cx, cy) >= 0) != (_side(ax, ay, bx, by, dx, dy) >= 0)
-            two = (_side(cx, cy, dx, dy, ax, ay) >= 0) != (_side(cx, cy, dx, dy, bx, by) >= 0)
-            if one and two:
-                found += 1
-    return found
 
 
 @compiled
 def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, polygon: FloatArray) -> float:
     """Largest distance of ends of the chain's :func:`chords` outside a polygon's convex hull."""
-    hull = _hull(polygon)
+    hull = convex_hull(polygon)
     worst = 0.0
     for s in range(len(cubics)):
         # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
         reach = 0.0
         for k in range(4):
-            reach = max(reach, _outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
+            reach = max(reach, outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
         if reach > worst:
             for k in range(first[s], first[s + 1]):
-                worst = max(worst, _outside(hull, points[k, 0], points[k, 1]))
+                worst = max(worst, outside(hull, points[k, 0], points[k, 1]))
     return worst
 
 
-@compiled
-def _outside(hull: FloatArray, x: float, y: float) -> float:
+@compiled(internal=True)
+def outside(hull: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a convex polygon, 0 within."""
     n = len(hull)
-    nearest, outside = np.inf, False
+    nearest, found = np.inf, False
     for k in range(n):
         ax, ay = hull[k, 0], hull[k, 1]
         dx, dy = hull[k + 1 if k + 1 < n else 0, 0] - ax, hull[k + 1 if k + 1 < n else 0, 1] - ay
         # The nearest point lies on a side that is seen from outside.
         if n < 3 or dx * (y - ay) - dy * (x - ax) < 0:
-            outside = True
+            found = True
             square = dx * dx + dy * dy
             along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
             along = min(max(along, 0.0), 1.0)
             nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
-    return np.sqrt(nearest) if outside else 0.0
+    return np.sqrt(nearest) if found else 0.0
 
 
-@compiled
-def _hull(points: FloatArray) -> FloatArray:
+@compiled(internal=True)
+def convex_hull(points: FloatArray) -> FloatArray:
     """The convex hull, counter-clockwise, by Andrew's monotone chain."""
-    p = points[np.argsort(points[:, 1], kind="mergesort")]
-    p = p[np.argsort(p[:, 0], kind="mergesort")]
-    n = len(p)
-    hull = np.empty((2 * n + 1, 2))
+    n = len(points)
+    x, y, hull = np.empty(n), np.empty(n), np.empty((2 * n + 1, 2))
+    for i in range(n):
+        y[i] = points[i, 1]
+    by_y = ascending(y)
+    for i in range(n):
+        x[i] = points[by_y[i], 0]
+    by_x = ascending(x)
     count = 0
     for step in range(2):
         base = count
         for k in range(n):
-            q = p[k] if step == 0 else p[n - 1 - k]
-            while (
-                count >= base + 2
-                and _side(hull[count - 2, 0], hull[count - 2, 1], hull[count - 1, 0], hull[count - 1, 1], q[0], q[1])
-                <= 0
-            ):
+            q = by_y[by_x[k if step == 0 else n - 1 - k]]
+            px, py = points[q, 0], points[q, 1]
+            while count >= base + 2:
+                a, b = count - 2, count - 1
+                if side(hull[a, 0], hull[a, 1], hull[b, 0], hull[b, 1], px, py) > 0:
+                    break
                 count -= 1
-            hull[count] = q
+            hull[count, 0], hull[count, 1] = px, py
             count += 1
         count -= 1
     return hull[: max(count, 1)]

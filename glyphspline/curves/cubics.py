@@ -1,8 +1,7 @@
-"""Small clamped arcs in compiled code: the variant 2 spline of few vertices, and its Bézier form.
+"""Plane cubics, compiled: evaluation, nearest points, subdivision, tangents, lengths, Bézier form of splines.
 
-This is the inner loop of the frugal fit, which tries thousands of arcs a glyph. Footpoints are found by Newton's
-method from the last ones, without the certificate of :mod:`.footpoint`: what is kept of a fit are only its vertices
-and end tangents, through which :func:`glyphspline.interpolate` then puts the curve that is written.
+A chain of cubics is an array (m, 4, 2). A *place* j + x of a closed chain is local parameter x of its segment j; places
+count on past m.
 """
 
 from __future__ import annotations
@@ -12,54 +11,26 @@ import numpy as np
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 
-PEAK_SHARE = 0.9
-"""As in :mod:`..interpolation.intervals`, for arcs of two spans, whose one free vertex has a peak of 1/2 at most.
+CONVEX = 0.2
+"""Newton's method for a nearest point takes the second derivative of the squared distance only where it exceeds this
+share of the squared speed; elsewhere the Gauss-Newton step is shorter and always goes downhill."""
 
-Lemma 2 has no interval there, but does not need one: alone, a vertex has its error multiplied by 1 - B_i < 1.
-"""
+STEPS = 4
+"""Newton steps to a nearest point: from the guesses here, the fourth moves by less than 1e-12."""
+
+CLOSE = 1e-6
+"""A Newton step shorter than this is the last: the next one would move by its square."""
+
+ONE = np.uint64(1)
+
+COARSE = 8
+"""Intervals a segment whose ends are compared for a first guess of the nearest point."""
 
 
-@compiled
+@compiled(internal=True)
 def length(x: float, y: float) -> float:
     """Length of a vector whose square neither over- nor underflows: in a third of the time of ``hypot``."""
     return np.sqrt(x * x + y * y)
-
-
-@compiled
-def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
-    """M[s]: the Bézier points of span s are ``M[s] @ P[s : s + 4]`` for a clamped cubic with breaks u[: k + 1]."""
-    for s in range(k):
-        before = u[s] - u[s - 1] if s > 0 else 0.0
-        h = u[s + 1] - u[s]
-        after = u[s + 2] - u[s + 1] if s + 1 < k else 0.0
-        w1, w2 = before / (before + h + after), (before + h) / (before + h + after)
-        M[s] = 0.0
-        M[s, 1, 1], M[s, 1, 2] = 1 - w1, w1
-        M[s, 2, 1], M[s, 2, 2] = 1 - w2, w2
-    for s in range(k + 1):
-        # The point at break s lies between the last inner point of the span before and the first of the span after.
-        if s == 0:
-            M[0, 0, 0] = 1.0
-        elif s == k:
-            M[k - 1, 3, 3] = 1.0
-        else:
-            weight = (u[s] - u[s - 1]) / (u[s + 1] - u[s - 1])
-            for j in range(3):
-                left, right = M[s - 1, 2, j + 1], M[s, 1, j]
-                M[s - 1, 3, j + 1] = (1 - weight) * left + weight * (M[s, 1, j])
-                M[s, 0, j] = (1 - weight) * left + weight * right
-
-
-@compiled
-def bezier_points(M: FloatArray, P: FloatArray, k: int, b: FloatArray) -> None:
-    """b[s]: the (4, 2) Bézier points of each of the k spans."""
-    for s in range(k):
-        for r in range(4):
-            x = y = 0.0
-            for j in range(4):
-                x += M[s, r, j] * P[s + j, 0]
-                y += M[s, r, j] * P[s + j, 1]
-            b[s, r, 0], b[s, r, 1] = x, y
 
 
 @compiled
@@ -84,197 +55,210 @@ def raised(points: FloatArray, degrees: IntArray) -> FloatArray:
     return cubics
 
 
-@compiled
-def jet(b: FloatArray, s: int, x: float) -> tuple[float, float, float, float, float, float]:
-    """Position, first and second derivative by the local parameter of piece s."""
+@compiled(internal=True)
+def jet(cubics: FloatArray, s: int, x: float) -> tuple[float, float, float, float, float, float]:
+    """Position, first and second derivative by the local parameter of segment s."""
     y = 1 - x
-    ax, ay = b[s, 1, 0] - b[s, 0, 0], b[s, 1, 1] - b[s, 0, 1]
-    bx, by = b[s, 2, 0] - b[s, 1, 0], b[s, 2, 1] - b[s, 1, 1]
-    cx, cy = b[s, 3, 0] - b[s, 2, 0], b[s, 3, 1] - b[s, 2, 1]
+    ax, ay = cubics[s, 1, 0] - cubics[s, 0, 0], cubics[s, 1, 1] - cubics[s, 0, 1]
+    bx, by = cubics[s, 2, 0] - cubics[s, 1, 0], cubics[s, 2, 1] - cubics[s, 1, 1]
+    cx, cy = cubics[s, 3, 0] - cubics[s, 2, 0], cubics[s, 3, 1] - cubics[s, 2, 1]
     lx, ly = y * ax + x * bx, y * ay + x * by
     rx, ry = y * bx + x * cx, y * by + x * cy
     dx, dy = 3 * (y * lx + x * rx), 3 * (y * ly + x * ry)
     y3, x3 = y * y * y, x * x * x
-    px = y3 * b[s, 0, 0] + 3 * y * y * x * b[s, 1, 0] + 3 * y * x * x * b[s, 2, 0] + x3 * b[s, 3, 0]
-    py = y3 * b[s, 0, 1] + 3 * y * y * x * b[s, 1, 1] + 3 * y * x * x * b[s, 2, 1] + x3 * b[s, 3, 1]
+    px = y3 * cubics[s, 0, 0] + 3 * y * y * x * cubics[s, 1, 0] + 3 * y * x * x * cubics[s, 2, 0] + x3 * cubics[s, 3, 0]
+    py = y3 * cubics[s, 0, 1] + 3 * y * y * x * cubics[s, 1, 1] + 3 * y * x * x * cubics[s, 2, 1] + x3 * cubics[s, 3, 1]
     return px, py, dx, dy, 6 * (rx - lx), 6 * (ry - ly)
 
 
-@compiled
-def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
-    y = 1 - x
-    return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
-
-
-@compiled
-def _within(x: float, f: float, slope: float, low: float, high: float) -> float:
-    """Newton's next estimate of a zero between ``low`` and ``high``, or their middle where that leads out of them."""
-    new = x - f / slope if slope != 0 else (low + high) / 2
-    return new if low < new < high else (low + high) / 2
-
-
-@compiled
-def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
-    """Where a cubic that is monotone on [low, high] takes a value between those at the ends."""
-    rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)
-    x = (low + high) / 2
-    for _ in range(60):
-        f = _bernstein(c0, c1, c2, c3, x) - level
-        if (f > 0) == rising:
-            high = x
-        else:
-            low = x
-        y = 1 - x
-        slope = 3 * (y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2))
-        new = _within(x, f, slope, low, high)
-        if abs(new - x) < 1e-12:
-            return new
-        x = new
-    return x
-
-
-@compiled
-def _top(c0: float, c1: float, c2: float, c3: float) -> float:
-    """Local parameter of the maximum of a cubic whose derivative changes sign once on [0, 1]."""
-    low, high = 0.0, 1.0
-    x = 0.5
-    for _ in range(40):
-        y = 1 - x
-        slope = y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2)
-        if slope > 0:
-            low = x
-        else:
-            high = x
-        bend = 2 * (y * ((c2 - c1) - (c1 - c0)) + x * ((c3 - c2) - (c2 - c1)))
-        new = _within(x, slope, bend, low, high)
-        if abs(new - x) < 1e-12:
-            return new
-        x = new
-    return x
-
-
-@compiled
-def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float, float]:
-    """Lemma 2 for one vertex: where B_i ≥ 1/2 + c, or all of its peak if that is lower.
+@compiled(internal=True)
+def newton_step(at: float, slope: float, speed: float, bend: float, low: float, high: float) -> float:
+    """Newton's next estimate of a nearest point, in [low, high]; Gauss and Newton's where the distance is not convex.
 
     Args:
-        a, b: (4,) Bernstein coefficients of B_i on the span before u_i and on the span after it.
-        margin: c of the lemma.
-        share: below 1, ask for no more than this share of the peak, ``fallback="peak"``; 1 is ``fallback="knot"``.
-
-    Returns:
-        The interval's ends, each as a signed share of its span (-1 is u_{i-1}, +1 is u_{i+1}), and the least value
-        of B_i on it.
+        slope, bend: half the first and second derivative of the squared distance. speed: the square of it, positive.
     """
-    right = b[1] > b[0]
-    if right:
-        x = _top(b[0], b[1], b[2], b[3])
-        peak, top = x, _bernstein(b[0], b[1], b[2], b[3], x)
-    else:
-        x = _top(a[0], a[1], a[2], a[3])
-        peak, top = x - 1, _bernstein(a[0], a[1], a[2], a[3], x)
-    if share == 1.0 and top <= 0.5:
-        return 0.0, 0.0, top
-    level = min(0.5 + margin, share * top)
-    if a[0] >= level:
-        low = -1.0
-    elif a[3] >= level:
-        low = _crossing(a[0], a[1], a[2], a[3], level, 0.0, 1.0 if right else peak + 1) - 1
-    else:
-        low = (
-            _crossing(b[0], b[1], b[2], b[3], level, 0.0, peak)
-            if right
-            else _crossing(a[0], a[1], a[2], a[3], level, 0.0, peak + 1) - 1
-        )
-    if b[3] >= level:
-        high = 1.0
-    elif b[0] >= level:
-        high = _crossing(b[0], b[1], b[2], b[3], level, peak if right else 0.0, 1.0)
-    else:
-        high = (
-            _crossing(a[0], a[1], a[2], a[3], level, peak + 1, 1.0) - 1
-            if not right
-            else _crossing(b[0], b[1], b[2], b[3], level, peak, 1.0)
-        )
-    return low, high, min(level, min(a[0] if low == -1.0 else level, 9.0))
+    return min(max(at - slope / (bend if bend > CONVEX * speed else speed), low), high)
 
 
-@compiled
-def solve_arc(
-    p: FloatArray,
-    k: int,
-    start: FloatArray,
-    end: FloatArray,
-    margin: float,
-    tolerance: float,
-    u: FloatArray,
-    M: FloatArray,
-    P: FloatArray,
-    b: FloatArray,
-    t: FloatArray,
-) -> float:
-    """Variant 2 on a clamped arc with vertices p[: k + 1] and end derivatives ``start``, ``end`` (Algorithm 2).
+@compiled(internal=True)
+def nearest(cubic: FloatArray, low: float, high: float, guess: float, x: float, y: float) -> float:
+    """The parameter in [low, high] at which a cubic (4, 2) is nearest (x, y): Newton's method from a guess.
 
-    Args:
-        p: (k + 1, 2) or more rows; k: number of spans.
-        start, end: (2,) derivatives by chord length at the ends.
-        margin: c of Lemma 2.
-        tolerance: the largest error has to fall below it.
-        u, M, P, b, t: results of at least k + 1, k, k + 3, k, k + 1 rows: knots, Bézier weights, control points,
-            Bézier points, and the footpoints as signed shares of the neighbouring span.
-
-    Returns:
-        The largest error left.
+    It writes out :func:`jet`, with the position in fewer products: subdivision asks it again and again.
     """
-    u[0] = 0.0
-    for i in range(k):
-        u[i + 1] = u[i] + np.hypot(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
-    bezier_weights(u, k, M)
-    for c in range(2):
-        P[0, c], P[k + 2, c] = p[0, c], p[k, c]
-        P[1, c] = p[0, c] + (u[1] - u[0]) / 3 * start[c]
-        P[k + 1, c] = p[k, c] - (u[k] - u[k - 1]) / 3 * end[c]
-    bounds = np.empty((k + 1, 2))
-    for i in range(1, k):
-        P[i + 1] = p[i]
-        low, high, _ = lemma2_interval(M[i - 1, :, 2], M[i, :, 1], margin, PEAK_SHARE if k == 2 else 1.0)
-        bounds[i, 0], bounds[i, 1] = low, high
-        t[i] = min(max(0.0, low), high)
-    error = 0.0
-    e = np.empty((k + 1, 2))
-    for _ in range(200):
-        bezier_points(M, P, k, b)
-        error = 0.0
-        for i in range(1, k):
-            e[i, 0], e[i, 1], t[i] = _foot_error(b, u, i, p[i, 0], p[i, 1], t[i], bounds[i, 0], bounds[i, 1])
-            error = max(error, e[i, 0] * e[i, 0] + e[i, 1] * e[i, 1])
-        error = np.sqrt(error)
-        if error < tolerance or not error < 1e9:
-            break
-        for i in range(1, k):
-            P[i + 1, 0] += e[i, 0]
-            P[i + 1, 1] += e[i, 1]
-    return error
-
-
-@compiled
-def _foot_error(
-    b: FloatArray, u: FloatArray, i: int, x: float, y: float, t: float, low: float, high: float
-) -> tuple[float, float, float]:
-    """Vertex less its footpoint, and the footpoint, as a signed share of the span before or after u_i."""
-    before, after = u[i] - u[i - 1], u[i + 1] - u[i]
-    cx = cy = 0.0
-    for step in range(3):
-        s = i if t >= 0 else i - 1
-        h = after if t >= 0 else before
-        cx, cy, dx, dy, ax, ay = jet(b, s, t if t >= 0 else t + 1)
-        if step == 2:
-            break
+    x0, y0, x1, y1 = cubic[0, 0], cubic[0, 1], cubic[1, 0], cubic[1, 1]
+    x2, y2, x3, y3 = cubic[2, 0], cubic[2, 1], cubic[3, 0], cubic[3, 1]
+    ax, ay, bx, by, cx, cy = x1 - x0, y1 - y0, x2 - x1, y2 - y1, x3 - x2, y3 - y2
+    at = guess
+    for _ in range(STEPS):
+        z = 1 - at
+        lx, ly, rx, ry = z * ax + at * bx, z * ay + at * by, z * bx + at * cx, z * by + at * cy
+        dx, dy = 3 * (z * lx + at * rx), 3 * (z * ly + at * ry)
+        qx = z * z * (z * x0 + 3 * at * x1) + at * at * (3 * z * x2 + at * x3) - x
+        qy = z * z * (z * y0 + 3 * at * y1) + at * at * (3 * z * y2 + at * y3) - y
         speed = dx * dx + dy * dy
-        slope = (cx - x) * dx + (cy - y) * dy
-        bend = speed + (cx - x) * ax + (cy - y) * ay
-        move = -slope / (bend if bend > 0.1 * speed else speed) * h if speed > 0 else 0.0
-        length = (t * h) + move
-        new = length / after if length >= 0 else length / before
-        t = min(max(new, low), high)
-    return x - cx, y - cy, t
+        if speed <= 0:
+            break
+        bend = speed + 6 * (qx * (rx - lx) + qy * (ry - ly))
+        before, at = at, newton_step(at, qx * dx + qy * dy, speed, bend, low, high)
+        if abs(at - before) < CLOSE:
+            break
+    return at
+
+
+@compiled(internal=True)
+def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
+    """The place between two places of a closed chain that is nearest (x, y), as far as coarse points tell."""
+    m = len(cubics)
+    if high <= low:
+        return low
+    best, at = np.inf, low
+    for s in range(int(np.floor(low)), int(np.ceil(high))):
+        a, b = max(low - s, 0.0), min(high - s, 1.0)
+        for k in range(COARSE + 1):
+            z = a + (b - a) * k / COARSE
+            px, py, _, _, _, _ = jet(cubics, s % m, z)
+            d = (px - x) ** 2 + (py - y) ** 2
+            if d < best:
+                best, at = d, s + z
+    s = min(int(np.floor(at)), int(np.ceil(high)) - 1)
+    z = nearest(cubics[s % m], max(low - s, 0.0), min(high - s, 1.0), at - s, x, y)
+    px, py, _, _, _, _ = jet(cubics, s % m, z)
+    return s + z if (px - x) ** 2 + (py - y) ** 2 <= best else at
+
+
+@compiled(internal=True)
+def split(cubic: FloatArray, x: float, first: FloatArray) -> None:
+    """Cut a cubic (4, 2) by de Casteljau's rule: its part before x into ``first``, that after x in its own place."""
+    for k in range(2):
+        a, b, d, e = cubic[0, k], cubic[1, k], cubic[2, k], cubic[3, k]
+        ab, bd, de = a + x * (b - a), b + x * (d - b), d + x * (e - d)
+        abd, bde = ab + x * (bd - ab), bd + x * (de - bd)
+        middle = abd + x * (bde - abd)
+        first[0, k], first[1, k], first[2, k], first[3, k] = a, ab, abd, middle
+        cubic[0, k], cubic[1, k], cubic[2, k], cubic[3, k] = middle, bde, de, e
+
+
+@compiled(internal=True)
+def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
+    """Bézier points (4, 2) of a cubic between two parameters, by blossoming."""
+    for c in range(2):
+        a, b, d, e = cubic[0, c], cubic[1, c], cubic[2, c], cubic[3, c]
+        for k in range(4):
+            x = x1 if k > 2 else x0
+            p, q, r = a + x * (b - a), b + x * (d - b), d + x * (e - d)
+            x = x1 if k > 1 else x0
+            p, q = p + x * (q - p), q + x * (r - q)
+            x = x1 if k > 0 else x0
+            out[k, c] = p + x * (q - p)
+
+
+@compiled(internal=True)
+def extent(cubics: FloatArray) -> float:
+    """The largest coordinate of (m, 4, 2) Bézier points."""
+    most = 0.0
+    for s in range(len(cubics)):
+        for k in range(4):
+            most = max(most, max(abs(cubics[s, k, 0]), abs(cubics[s, k, 1])))
+    return most
+
+
+@compiled(internal=True)
+def directions(cubics: FloatArray, s: int, least: float) -> tuple[float, float, float, float]:
+    """Where segment s leaves its first point, and where it arrives at its last: vectors along the tangents.
+
+    They run to and from the nearest control point whose coordinates differ by more than ``least`` in sum; (0, 0) if
+    there is none.
+    """
+    ax = ay = bx = by = 0.0
+    for j in range(3, 0, -1):
+        x, y = cubics[s, j, 0] - cubics[s, 0, 0], cubics[s, j, 1] - cubics[s, 0, 1]
+        if abs(x) + abs(y) > least:
+            ax, ay = x, y
+        x, y = cubics[s, 3, 0] - cubics[s, 3 - j, 0], cubics[s, 3, 1] - cubics[s, 3 - j, 1]
+        if abs(x) + abs(y) > least:
+            bx, by = x, y
+    return ax, ay, bx, by
+
+
+@compiled
+def turns(cubics: FloatArray, least: float) -> FloatArray:
+    """(m,) angle by which the tangent of a closed chain turns where each segment begins, positive to the left.
+
+    Control points within ``least`` of an end are passed over.
+    """
+    m = len(cubics)
+    found = np.empty(m)
+    ax = ay = 0.0
+    for j in range(-1, m):
+        bx, by, cx, cy = directions(cubics, j, least)
+        if j >= 0:
+            found[j] = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
+        ax, ay = cx, cy
+    return found
+
+
+def bernstein(steps: int) -> FloatArray:
+    """(4, steps + 1) the cubic Bernstein polynomials at even parameters."""
+    t = np.arange(steps + 1) / steps
+    s = 1 - t
+    return np.array([s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t])
+
+
+@compiled
+def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
+    """(m steps + 1,) chord lengths summed along a chain, at even parameters of each segment.
+
+    Args:
+        weights: :func:`bernstein` of so many steps.
+    """
+    m, steps = len(cubics), weights.shape[1] - 1
+    table, xs, ys, chords = np.empty(m * steps + 1), np.empty(steps + 1), np.empty(steps + 1), np.empty(steps)
+    table[0] = total = 0.0
+    for j in range(m):
+        ax, ay, bx, by = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
+        cx, cy, dx, dy = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
+        for i in range(np.uint64(steps + 1)):  # one kind of work a loop, and unsigned: such loops become SIMD
+            xs[i] = weights[0, i] * ax + weights[1, i] * bx + weights[2, i] * cx + weights[3, i] * dx
+            ys[i] = weights[0, i] * ay + weights[1, i] * by + weights[2, i] * cy + weights[3, i] * dy
+        for i in range(np.uint64(steps)):
+            chords[i] = np.sqrt((xs[i + ONE] - xs[i]) ** 2 + (ys[i + ONE] - ys[i]) ** 2)
+        for i in range(np.uint64(steps)):
+            total += chords[i]
+            table[np.uint64(j * steps + 1) + i] = total
+    return table
+
+
+@compiled(internal=True)
+def spline_beziers(controls: FloatArray, knots: FloatArray, closed: bool, cubics: FloatArray) -> None:
+    """Bézier points of a cubic B-spline, a segment a span, into ``cubics`` (n, 4, 2).
+
+    Args:
+        controls: (n, 2) if closed, where row i belongs to knot i; (n + 3, 2) if clamped at both ends.
+        knots: (n + 1,).
+    """
+    n = len(knots) - 1
+    before = knots[n] - knots[n - 1] if closed else 0.0
+    for k in range(n):
+        h = knots[k + 1] - knots[k]
+        i, j = (k, k + 1 if k + 1 < n else 0) if closed else (k + 1, k + 2)
+        after = knots[j + 1] - knots[j] if closed else (knots[j] - knots[k + 1] if k + 1 < n else 0.0)
+        whole = before + h + after
+        a, b = before / whole, (before + h) / whole
+        for axis in range(2):
+            start, end = controls[i, axis], controls[j, axis]
+            cubics[k, 1, axis] = (1.0 - a) * start + a * end
+            cubics[k, 2, axis] = (1.0 - b) * start + b * end
+        before = h
+    before = knots[n] - knots[n - 1]
+    for k in range(n):
+        h = knots[k + 1] - knots[k]
+        share = before / (before + h)
+        for axis in range(2):
+            joint = (1.0 - share) * cubics[k - 1, 2, axis] + share * cubics[k, 1, axis]
+            cubics[k, 0, axis] = cubics[k - 1, 3, axis] = joint
+        before = h
+    if not closed:
+        for axis in range(2):
+            cubics[0, 0, axis], cubics[n - 1, 3, axis] = controls[0, axis], controls[n + 2, axis]

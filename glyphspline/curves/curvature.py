@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types import FloatArray, IntArray
-from .bezier import NUDGE, SLOW, cross, derivative_points, elevate, evaluate
+from .bezier import elevate
 
 SCALE_PERCENTILE = 80.0
 """Share of the arc length whose curvature the robust scale covers. Near 100 the rounded corners, a tenth of the length
@@ -68,43 +68,6 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
 def comb_of(samples: FloatArray, starts: IntArray) -> Comb:
     """A comb from what :func:`.comb.sampled` gave: (k, 6) samples and where pieces begin among them."""
     return Comb(samples[:, :2], samples[:, 2:4], samples[:, 4], samples[:, 5], starts)
-
-
-def frames(pieces: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Point, unit left normal and signed curvature of each piece at its own parameter x (k,).
-
-    Where a piece stands still (a cusp, or a handle on its end), tangent and curvature are taken beside that point.
-    A piece without extent has normal and curvature zero.
-    """
-    size = _size(pieces)
-    points = evaluate(pieces, x)
-    first, second = _derivatives(pieces, x)
-    slow = np.hypot(*first.T) <= SLOW * size
-    if slow.any():
-        moved = np.where(x[slow] < 0.5, x[slow] + NUDGE, x[slow] - NUDGE)
-        first[slow], second[slow] = _derivatives(pieces[slow], moved)
-    speed = np.hypot(*first.T)
-    moving = speed > SLOW * NUDGE * size  # a nudged sample of a cubic has a speed of the order of NUDGE squared
-    unit = np.where(moving, speed, 1.0)
-    tangent = np.where(moving[:, None], first / unit[:, None], 0.0)
-    curvature = np.where(moving, cross(tangent, second / unit[:, None]) / unit, 0.0)
-    return points, np.stack([-tangent[:, 1], tangent[:, 0]], axis=1), curvature
-
-
-def _size(pieces: FloatArray) -> FloatArray:
-    """(k,) largest distance, along either axis, of a control point from the first."""
-    size = np.zeros(len(pieces))
-    for j in range(1, pieces.shape[1]):  # over few points: NumPy is slow to reduce short axes
-        offset = np.abs(pieces[:, j] - pieces[:, 0])
-        size = np.maximum(size, np.maximum(offset[:, 0], offset[:, 1]))
-    return size
-
-
-def _derivatives(pieces: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    first = evaluate(derivative_points(pieces), x)
-    if pieces.shape[1] < 3:
-        return first, np.zeros_like(first)
-    return first, evaluate(derivative_points(pieces, 2), x)
 
 
 def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) -> float:

@@ -8,13 +8,15 @@ import numpy as np
 
 from ..compiled import compiled
 from ..types import FloatArray
-from .cubics import jet
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """For integrals over a Bézier piece; exact for areas, converged for the rest but at near-cusps."""
 
 CURVATURE_STEPS = 32
 """Steps a piece at whose ends curvature is looked at for its maximum."""
+
+PLACES = np.concatenate([(NODES + 1) / 2, np.arange(CURVATURE_STEPS + 1) / CURVATURE_STEPS])
+"""Parameters at which speed and curvature are looked at: for integrals, then for the largest curvature."""
 
 
 class Shape(NamedTuple):
@@ -39,32 +41,34 @@ def shape(pieces: FloatArray) -> Shape:
 
 @compiled
 def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
-    """The numbers of a :class:`Shape`, of some cubics (m, 4, 2), closed or not."""
+    """The numbers of a :class:`Shape`, of some cubics (m, 4, 2), closed or not. The loops over places become SIMD."""
     length = area = energy = highest = 0.0
+    count, nodes = len(PLACES), len(NODES)
+    speeds, bends, areas = np.empty(count), np.empty(count), np.empty(count)
     for s in range(len(pieces)):
-        for k in range(len(NODES)):
-            x, y, dx, dy, ax, ay = jet(pieces, s, (NODES[k] + 1) / 2)
-            speed = np.hypot(dx, dy)
-            length += WEIGHTS[k] * speed / 2
-            area += WEIGHTS[k] * (x * dy - y * dx) / 4
-            curvature = _curvature(dx, dy, ax, ay)
-            energy += WEIGHTS[k] * curvature * curvature * speed / 2 if speed > 0 else np.inf
-        for k in range(CURVATURE_STEPS + 1):
-            _, _, dx, dy, ax, ay = jet(pieces, s, k / CURVATURE_STEPS)
-            highest = max(highest, _curvature(dx, dy, ax, ay))
+        c = pieces[s]
+        ax, ay = 3 * (c[1, 0] - c[0, 0]), 3 * (c[1, 1] - c[0, 1])
+        bx, by = 3 * (c[2, 0] - c[1, 0]) - ax, 3 * (c[2, 1] - c[1, 1]) - ay
+        ex, ey = 3 * (c[3, 0] - c[2, 0]) - ax - 2 * bx, 3 * (c[3, 1] - c[2, 1]) - ay - 2 * by
+        for k in range(count):
+            x = PLACES[k]
+            dx, dy = ax + x * (2 * bx + x * ex), ay + x * (2 * by + x * ey)
+            hx, hy = 2 * (bx + x * ex), 2 * (by + x * ey)
+            px = c[0, 0] + x * (ax + x * (bx + x * (ex / 3)))
+            py = c[0, 1] + x * (ay + x * (by + x * (ey / 3)))
+            speed = np.sqrt(dx * dx + dy * dy)
+            # Dividing by the speed three times keeps tiny and huge curves from under- and overflow.
+            inverse = 1 / speed
+            speeds[k] = speed
+            bends[k] = abs(dx * inverse * (hy * inverse) - dy * inverse * (hx * inverse)) * inverse
+            areas[k] = px * dy - py * dx
+        for k in range(nodes):
+            length += WEIGHTS[k] * speeds[k] / 2
+            area += WEIGHTS[k] * areas[k] / 4
+            energy += WEIGHTS[k] * bends[k] * bends[k] * speeds[k] / 2 if speeds[k] > 0 else np.inf
+        for k in range(nodes, count):
+            highest = max(highest, bends[k] if speeds[k] > 0 else np.inf)
     return length, area, energy, highest
-
-
-@compiled
-def _curvature(dx: float, dy: float, ax: float, ay: float) -> float:
-    """Absolute curvature. Dividing by the speed three times keeps tiny and huge curves from under- and overflow."""
-    square = dx * dx + dy * dy
-    if 1e-60 < square < 1e60:
-        return abs(dx * ay - dy * ax) / (square * np.sqrt(square))
-    speed = np.hypot(dx, dy)
-    if speed == 0:
-        return np.inf
-    return abs(dx / speed * (ay / speed) - dy / speed * (ax / speed)) / speed
 
 
 def area(pieces: FloatArray) -> float:

@@ -1,8 +1,5 @@
 """A certified bound of the two-sided distance between a written result and its source outline.
 
-It looks only at the two chains of Bézier segments, as they are written, and knows nothing of how one was fitted
-to the other.
-
 Both contours are cut into the same number of *sections*, one after the other, so that section j of the result is
 paired with section j of the source and each is a piece of one cubic. Let A and B be a pair's polynomials, both over
 [0, 1]. Their difference at equal parameters is a cubic with Bézier points A_k - B_k, and lies in the convex hull of
@@ -11,12 +8,13 @@ numbers bounds the two-sided (Hausdorff) distance of the contours, and their Fr�
 for *every* way of cutting that runs once round both: hints and Newton's method only serve to make the bound sharp, and
 sections are halved until it is.
 
-Here any two stretches are paired, whatever lies between their ends. :mod:`.smooth.span_distance` pairs the spans of a
-curve whose vertices are on the outline: from better guesses and less sharply, as every round of a fit asks it again.
+:func:`certified_distance` pairs any two stretches, from coarse guesses. :func:`measure_spans` pairs the spans of a
+closed curve whose vertices are on the outline: from better guesses and no more sharply than is asked, as every round of
+a smooth fit measures its spans.
 
-Floating point: a Bézier point of a section is a convex combination, in three rounds, of points of size at most L, so
-that its error is below 16 units in the last place of L. ``ROUNDING`` times L, far more than that,
-is added to the bound.
+Floating point: a Bézier point of a section is a convex combination of convex combinations, three for the section and
+three for each halving, of points of size at most L. ``ROUNDING`` times L, more than ``DEEPEST`` such triples can cost,
+is added to every bound.
 """
 
 from __future__ import annotations
@@ -26,17 +24,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import jet, length
+from ..curves.cubics import extent, jet, length, nearest, nearest_place, section, split
 from ..types import FloatArray
 
-ROUNDING = 1e-14
+ROUNDING = 1e-13
 """Share of the largest coordinate added to the bound for floating point."""
 
-COARSE = 8
-"""Points a segment among which the nearest one is taken before Newton's method refines it."""
-
 DEEPEST = 14
-"""Most halvings of a section: a pair that still seems too far apart then is."""
+"""Maximum subdivision depth; pairs still above the limit there count as too far apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,196 +70,202 @@ def certified_distance(
         sharpness: halve sections until the bound exceeds the gaps seen by no more than this.
         limit: where the bound is above it, pair again with the roles exchanged, and take the better of the two.
     """
-    bounds, gaps = _pair_all(
-        np.ascontiguousarray(result), np.ascontiguousarray(source), np.ascontiguousarray(anchors), sharpness, limit
+    return Distance(
+        *pair_stretches(
+            np.ascontiguousarray(result), np.ascontiguousarray(source), np.ascontiguousarray(anchors), sharpness, limit
+        )
     )
-    return Distance(bounds + ROUNDING * max(extent(result), extent(source)), gaps)
 
 
 @compiled
-def extent(cubics: FloatArray) -> float:
-    """The largest coordinate of (m, 4, 2) Bézier points."""
-    most = 0.0
-    for b in cubics:
-        for k in range(4):
-            most = max(most, abs(b[k, 0]), abs(b[k, 1]))
-    return most
+def pair_stretches(
+    result: FloatArray, source: FloatArray, anchors: FloatArray, sharpness: float, limit: float
+) -> tuple[FloatArray, FloatArray]:
+    """Bounds and gaps between each anchor and the next; see :func:`certified_distance`.
+
+    A stretch is cut where segments of the one contour end, at the nearest points of the other.
+    """
+    n = len(anchors) - 1
+    bounds, gaps = np.empty(n), np.empty(n)
+    work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
+    rounding = ROUNDING * max(extent(result), extent(source))
+    for k in range(n):
+        bounds[k], gaps[k] = np.inf, 0.0
+        for exchanged in range(2):
+            one, other = (source, result) if exchanged else (result, source)
+            x, x_end = anchors[k, exchanged], anchors[k + 1, exchanged]
+            y, y_end = anchors[k, 1 - exchanged], anchors[k + 1, 1 - exchanged]
+            bound = gap = where = 0.0
+            last = False
+            while not last:
+                i = int(np.floor(x))
+                s = i % len(one)
+                last = x_end <= i + 1
+                cut, partner = x_end, y_end
+                if not last:
+                    cut = i + 1.0
+                    partner = nearest_place(other, y, y_end, one[s, 3, 0], one[s, 3, 1])
+                bound, gap, where = pair_cubic(
+                    one, s, x - i, cut - i, other, y, partner, True, -1.0, sharpness, bound, gap, where, work, marks
+                )
+                x, y = cut, partner
+            if bound + rounding < bounds[k]:
+                bounds[k], gaps[k] = bound + rounding, gap
+            if bounds[k] <= limit:
+                break
+    return bounds, gaps
 
 
-@compiled
-def apart(A: FloatArray, B: FloatArray) -> tuple[float, float, float]:
-    """The largest distance of the Bézier points (4, 2) of a pair, which bounds its own, and those of its two ends."""
-    first, last = length(A[0, 0] - B[0, 0], A[0, 1] - B[0, 1]), length(A[3, 0] - B[3, 0], A[3, 1] - B[3, 1])
-    most = max(first, last)
-    for k in (1, 2):
-        most = max(most, length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1]))
-    return most, first, last
-
-
-@compiled
-def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
-    """Bézier points (4, 2) of a cubic between two parameters, by blossoming."""
-    for c in range(2):
-        a, b, d, e = cubic[0, c], cubic[1, c], cubic[2, c], cubic[3, c]
-        for k in range(4):
-            x = x1 if k > 2 else x0
-            p, q, r = a + x * (b - a), b + x * (d - b), d + x * (e - d)
-            x = x1 if k > 1 else x0
-            p, q = p + x * (q - p), q + x * (r - q)
-            x = x1 if k > 0 else x0
-            out[k, c] = p + x * (q - p)
-
-
-@compiled
-def newton_step(at: float, slope: float, speed: float, bend: float, low: float, high: float) -> float:
-    """Newton's next estimate of a nearest point, in [low, high]; Gauss and Newton's where the distance is not convex.
+@compiled(internal=True)
+def pair_cubic(
+    cubics: FloatArray, i: int, x: float, x_end: float, outline: FloatArray, y: float, y_end: float, coarse: bool,
+    enough: float, sharpness: float, bound: float, gap: float, where: float, work: FloatArray, marks: FloatArray,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Distance of a section of one cubic from a stretch of a closed chain.
 
     Args:
-        slope, bend: half the first and second derivative of the squared distance. speed: the square of it.
+        cubics: (n, 4, 2), of which number i is measured from parameter x to x_end.
+        outline: (m, 4, 2); y, y_end: places on it.
+        coarse: search the cubic for the points nearest to the outline's joints; or else begin from a proportional
+            guess, and halve every pair once, so that a gap is seen between its ends.
+        enough: bounds up to this are not made sharper. Where a larger gap has been seen, nor are bounds that exceed
+            that by ``sharpness`` or less.
+        bound, gap, where: those of what came before: what is below them need not be known sharply.
+        work, marks: (2, DEEPEST + 2, 4, 2) and (DEEPEST + 2, 3) scratch arrays.
+
+    Returns:
+        The bound, without rounding; the largest distance seen between paired points; and its place on the outline.
     """
-    return min(max(at - slope / (bend if bend > 0.2 * speed else speed), low), high)
+    m = len(outline)
+    least = 0 if coarse else 1
+    last = False
+    while not last:
+        s = int(np.floor(y))
+        last = y_end <= s + 1
+        stop, cut = y_end, x_end
+        if not last:
+            stop = s + 1.0
+            px, py = outline[s % m, 3, 0], outline[s % m, 3, 1]
+            if coarse:
+                cut = nearest_place(cubics[i : i + 1], x, x_end, px, py)
+            else:
+                cut = nearest(cubics[i], x, x_end, x + (x_end - x) * (stop - y) / (y_end - y), px, py)
+        section(cubics[i], x, cut, work[0, 0])
+        section(outline[s % m], y - s, stop - s, work[1, 0])
+        # A stack of pairs; marks: first and last place on the outline, and depth.
+        marks[0, 0], marks[0, 1], marks[0, 2] = y, stop, 0.0
+        top = 0
+        while top >= 0:
+            A, B = work[0, top], work[1, top]
+            low, high, depth = marks[top, 0], marks[top, 1], marks[top, 2]
+            first, end = length(A[0, 0] - B[0, 0], A[0, 1] - B[0, 1]), length(A[3, 0] - B[3, 0], A[3, 1] - B[3, 1])
+            most = max(first, end)
+            for k in range(1, 3):
+                most = max(most, length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1]))
+            if first > gap:
+                gap, where = first, low
+            if end > gap:
+                gap, where = end, high
+            limit = max(enough, bound)
+            if gap > enough:
+                limit = max(limit, gap + sharpness)
+            if depth >= least and (most <= limit or depth >= DEEPEST):
+                bound = max(bound, most)
+                top -= 1
+                continue
+            split(A, 0.5, work[0, top + 1])
+            z = nearest(B, 0.0, 1.0, 0.5, A[0, 0], A[0, 1])
+            split(B, z, work[1, top + 1])
+            middle = low + z * (high - low)
+            marks[top, 0], marks[top, 2] = middle, depth + 1
+            top += 1
+            marks[top, 0], marks[top, 1], marks[top, 2] = low, middle, depth + 1
+        x, y = cut, stop
+    return bound, gap, where
 
 
-@compiled
-def nearest(cubics: FloatArray, s: int, low: float, high: float, guess: float, x: float, y: float) -> float:
-    """A parameter in [low, high] of cubic s near (x, y): Newton's method from a guess."""
-    at = guess
-    for _ in range(4):
-        px, py, dx, dy, ax, ay = jet(cubics, s, at)
-        speed = dx * dx + dy * dy
-        bend = speed + (px - x) * ax + (py - y) * ay
-        if speed <= 0:
-            break
-        before, at = at, newton_step(at, (px - x) * dx + (py - y) * dy, speed, bend, low, high)
-        if abs(at - before) < 1e-7:
-            break
-    return at
-
-
-@compiled
-def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
-    """The place between two places of a closed chain that is nearest (x, y), as far as coarse points tell."""
+@compiled(internal=True)
+def near_place(cubics: FloatArray, place: float, low: float, high: float, x: float, y: float) -> float:
+    """The place in [low, high] of a closed chain near which (x, y) has its nearest point, from one in between."""
     m = len(cubics)
-    if high <= low:
-        return low
-    best, at = np.inf, low
-    for s in range(int(np.floor(low)), int(np.ceil(high))):
-        a, b = max(low - s, 0.0), min(high - s, 1.0)
-        for k in range(COARSE + 1):
-            z = a + (b - a) * k / COARSE
+    best, at = np.inf, place
+    for step in range(2):
+        here = place
+        for _ in range(3):
+            s = int(np.floor(here))
+            if step == 1 and s == here:
+                s -= 1
+            a, b = max(low, float(s)), min(high, s + 1.0)
+            if b <= a:
+                break
+            z = nearest(cubics[s % m], a - s, b - s, here - s, x, y)
             px, py, _, _, _, _ = jet(cubics, s % m, z)
             d = (px - x) ** 2 + (py - y) ** 2
             if d < best:
                 best, at = d, s + z
-    s = min(int(np.floor(at)), int(np.ceil(high)) - 1)
-    z = nearest(cubics, s % m, max(low - s, 0.0), min(high - s, 1.0), at - s, x, y)
-    px, py, _, _, _, _ = jet(cubics, s % m, z)
-    return s + z if (px - x) ** 2 + (py - y) ** 2 <= best else at
+            end = b if step == 0 else a
+            if s + z != end or end in (low, high):
+                break
+            here = end
+        if place != np.floor(place):
+            break
+    return at
 
 
-@compiled
-def _pair_all(
-    result: FloatArray, source: FloatArray, anchors: FloatArray, sharpness: float, limit: float
-) -> tuple[FloatArray, FloatArray]:
-    """Bounds and gaps between each anchor and the next."""
-    n = len(anchors) - 1
-    bounds, gaps = np.zeros(n), np.zeros(n)
-    for k in range(n):
-        a, s = anchors[k]
-        a_end, s_end = anchors[k + 1]
-        bounds[k], gaps[k] = pair(result, a, a_end, source, s, s_end, sharpness, limit)
-    return bounds, gaps
+@compiled(internal=True)
+def measure_spans(
+    pieces: FloatArray, outline: FloatArray, places: FloatArray, enough: float, sharpness: float, bounds: FloatArray,
+    gaps: FloatArray, worst: FloatArray, ends: FloatArray,
+) -> None:  # fmt: skip
+    """Distance of every span of a closed curve from the stretch of outline between the points nearest to its ends.
 
-
-@compiled
-def pair(
-    result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float,
-    limit: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Bound and gap between two stretches; see :func:`certified_distance` for sharpness and limit."""
-    bound, gap = _pair(result, a, a_end, source, s, s_end, sharpness)
-    if bound > limit:
-        other, gap_there = _pair(source, s, s_end, result, a, a_end, sharpness)
-        if other < bound:
-            return other, gap_there
-    return bound, gap
-
-
-@compiled
-def _pair(
-    result: FloatArray, a: float, a_end: float, source: FloatArray, s: float, s_end: float, sharpness: float
-) -> tuple[float, float]:
-    """Bound and gap between two stretches, cut where segments of the first end, at the second's nearest points."""
-    r = len(result)
-    bound, gap = 0.0, 0.0
-    while True:
-        i = int(np.floor(a))
-        last = a_end <= i + 1
-        if last:
-            cut, partner = a_end, s_end
-        else:
-            cut = i + 1.0
-            partner = nearest_place(source, s, s_end, result[i % r, 3, 0], result[i % r, 3, 1])
-        bound, gap = _pair_segment(result, i % r, a - i, cut - i, source, s, partner, sharpness, bound, gap)
-        if last:
-            return bound, gap
-        a, s = cut, partner
-
-
-@compiled
-def _pair_segment(
-    result: FloatArray, i: int, x0: float, x_end: float, source: FloatArray, before: float, after: float,
-    sharpness: float, bound: float, gap: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Bound and gap between segment i of the result, from x0 to x_end, and the source from one place to another.
-
-    They begin with those of what came before: what is below them need not be known sharply.
+    Args:
+        pieces: (n, 4, 2) the curve's spans; the one after vertex i is number i. outline: (m, 4, 2).
+        places: (n,) the vertices on it, increasing, within a lap.
+        enough, sharpness: see :func:`pair_cubic`.
+        bounds, gaps, worst: (n,) receive certified bounds, gaps seen, and the places of these on the outline.
+        ends: (n + 1,) receives where each stretch of outline begins.
     """
-    m = len(source)
-    place = before
-    while True:
-        s = int(np.floor(place))
-        last = after <= s + 1
-        if last:
-            x1, end = x_end, after - s
-        else:
-            end = 1.0
-            x1 = nearest_place(result[i : i + 1], x0, x_end, source[s % m, 3, 0], source[s % m, 3, 1])
-        bound, gap = _sections(result[i], x0, x1, source[s % m], place - s, end, sharpness, bound, gap)
-        if last:
-            return bound, gap
-        x0, place = x1, s + 1.0
+    work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
+    n, m = len(places), len(outline)
+    rounding = ROUNDING * max(extent(pieces), extent(outline))
+    for i in range(n):
+        before = places[i - 1] if i > 0 else places[n - 1] - m
+        after = places[i + 1] if i + 1 < n else places[0] + m
+        low, high = (before + places[i]) / 2, (places[i] + after) / 2
+        ends[i] = near_place(outline, places[i], low, high, pieces[i, 0, 0], pieces[i, 0, 1])
+    ends[n] = ends[0] + m
+    for i in range(n):
+        bound, gaps[i], worst[i] = pair_cubic(
+            pieces, i, 0.0, 1.0, outline, ends[i], ends[i + 1], False, enough - rounding, sharpness, 0.0, 0.0,
+            (ends[i] + ends[i + 1]) / 2, work, marks,
+        )  # fmt: skip
+        bounds[i] = bound + rounding
 
 
 @compiled
-def _sections(
-    a: FloatArray, x0: float, x1: float, b: FloatArray, y0: float, y1: float, sharpness: float, bound: float, gap: float
+def sharpen_spans(
+    pieces: FloatArray, outline: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
 ) -> tuple[float, float]:
-    """Bound and gap between two pieces of cubics, halved until the bound is sharp or as often as is allowed.
-
-    They begin with those of what came before.
+    """Bound and gap of a whole contour, from what :func:`measure_spans` left, the first within ``sharpness`` of the
+    second.
     """
-    stack = np.empty((DEEPEST + 2, 5))
-    stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3], stack[0, 4] = x0, x1, y0, y1, 0.0
-    count = 1
-    A, B = np.empty((4, 2)), np.empty((4, 2))
-    whole = np.empty((1, 4, 2))
-    whole[0] = b
-    while count:
-        count -= 1
-        x0, x1, y0, y1, depth = stack[count]
-        section(a, x0, x1, A)
-        section(b, y0, y1, B)
-        most, first, last = apart(A, B)
-        gap = max(gap, max(first, last))
-        if most <= max(bound, gap + sharpness) or depth >= DEEPEST:
-            bound = max(bound, most)
-            continue
-        x = (x0 + x1) / 2
-        section(a, x, x, A)
-        y = nearest(whole, 0, y0, y1, (y0 + y1) / 2, A[0, 0], A[0, 1])
-        stack[count, 0], stack[count, 1], stack[count, 2], stack[count, 3], stack[count, 4] = x, x1, y, y1, depth + 1
-        count += 1
-        stack[count, 0], stack[count, 1], stack[count, 2], stack[count, 3], stack[count, 4] = x0, x, y0, y, depth + 1
-        count += 1
-    return bound, gap
+    work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
+    rounding = ROUNDING * max(extent(pieces), extent(outline))
+    left, bound, gap = bounds.copy(), 0.0, 0.0
+    for i in range(len(gaps)):
+        gap = max(gap, gaps[i])
+    while True:
+        i = len(left) - 1
+        for k in range(i):
+            if left[k] > left[i]:
+                i = k
+        enough = max(bound, gap + sharpness)
+        if left[i] <= enough:
+            return max(bound, left[i]), gap
+        sharper, seen, _ = pair_cubic(
+            pieces, i, 0.0, 1.0, outline, ends[i], ends[i + 1], False, enough - rounding, sharpness, 0.0, 0.0, 0.0,
+            work, marks,
+        )  # fmt: skip
+        gap, bound = max(gap, seen), max(bound, sharper + rounding)
+        left[i] = 0.0

@@ -113,7 +113,7 @@ def _convert_contours(
     """All contours through the mode that the options ask for; an error's ``contour`` is the index."""
     # Here and not above, as these bring the compiler with them: the package opens without.
     if options.corners == "sharp":
-        from .sharp.sharp_contours import convert_sharp
+        from .sharp.sharp_fit import convert_sharp
 
         return ContourResults(convert_sharp(Contours(contours), options, tolerance, em)).arrays
     if not options.is_fixed:

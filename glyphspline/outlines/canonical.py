@@ -1,4 +1,4 @@
-"""A start and a direction that belong to a contour's shape, so that how it is given makes no difference to its fit."""
+"""A start and a direction that belong to a contour's shape: its fit does not depend on how the font stores it."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from ..compiled import compiled
 from ..types import FloatArray
 
 
-@compiled
+@compiled(internal=True)
 def farthest_joint(joints: FloatArray) -> int:
     """Index of the joint (m, 2) farthest from the middle of all; of several, that farthest right, then up."""
     m = len(joints)
-    x, y = joints[:, 0].sum() / m, joints[:, 1].sum() / m
+    x = y = 0.0
+    for j in range(m):
+        x += joints[j, 0]
+        y += joints[j, 1]
+    x, y = x / m, y / m
     best, reached = 0, -1.0
     for j in range(m):
         reach = np.rint(np.hypot(joints[j, 0] - x, joints[j, 1] - y) * 1e6)
@@ -22,53 +26,26 @@ def farthest_joint(joints: FloatArray) -> int:
     return best
 
 
-@compiled
-def runs_backwards(cubics: FloatArray) -> bool:
-    """Whether to fit a chain of cubics (m, 4, 2) the other way round.
+@compiled(internal=True)
+def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
+    """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether that is not its own.
 
-    Told by the chords of its segments: the sum changes its sign with the direction, is the same from every start,
-    and knows no shift, turn or mirror.
+    The chords of its segments decide: the sum changes its sign with the direction, is the same from every start, and
+    does not change when the contour is shifted, turned or mirrored.
     """
     m = len(cubics)
-    h = np.hypot(cubics[:, 3, 0] - cubics[:, 0, 0], cubics[:, 3, 1] - cubics[:, 0, 1])
     total = 0.0
+    before = np.hypot(cubics[0, 3, 0] - cubics[0, 0, 0], cubics[0, 3, 1] - cubics[0, 0, 1])
     for j in range(m):
-        after = h[(j + 1) % m]
-        total += h[j] * after * (h[j] - after)
-    return total < 0
-
-
-@compiled
-def flip(cubics: FloatArray) -> FloatArray:
-    """The same chain of cubics run the other way, beginning at the same point."""
-    return cubics[::-1, ::-1].copy()
-
-
-@compiled
-def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
-    """A chain of cubics in the direction in which it is fitted, and whether that is not its own."""
-    flipped = runs_backwards(cubics)
-    return flip(cubics) if flipped else cubics, flipped
-
-
-@compiled
-def direction(cubic: FloatArray, at_end: bool, least: float) -> tuple[float, float, float]:
-    """Where a cubic (4, 2) goes at an end: a vector along it and its length, all 0 if there is none.
-
-    Handles of length ``least`` or less are passed over.
-    """
-    for j in range(1, 4):
-        if at_end:
-            x, y = cubic[3, 0] - cubic[3 - j, 0], cubic[3, 1] - cubic[3 - j, 1]
-        else:
-            x, y = cubic[j, 0] - cubic[0, 0], cubic[j, 1] - cubic[0, 1]
-        length = np.hypot(x, y)
-        if length > least:
-            return x, y, length
-    return 0.0, 0.0, 0.0
-
-
-@compiled
-def turn(ax: float, ay: float, bx: float, by: float) -> float:
-    """Angle between two directions, 0 to pi."""
-    return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+        k = (j + 1) % m
+        after = np.hypot(cubics[k, 3, 0] - cubics[k, 0, 0], cubics[k, 3, 1] - cubics[k, 0, 1])
+        total += before * after * (before - after)
+        before = after
+    if not total < 0:
+        return cubics, False
+    flipped = np.empty((m, 4, 2))
+    for j in range(m):
+        for k in range(4):
+            for axis in range(2):
+                flipped[j, k, axis] = cubics[m - 1 - j, 3 - k, axis]
+    return flipped, True

@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..curves.bezier import cross
-from ..curves.curvature import frames
+from ..curves.comb import end_curvatures
+from ..curves.cubics import turns
 from ..types import BoolArray, FloatArray
 from .outline import Contour
 from .sampling import CORNER_ANGLE
@@ -51,8 +51,5 @@ class Joins:
 def joins(contour: Contour) -> Joins:
     """Tangents and curvatures on the two sides of every join."""
     pieces = contour.cubics()
-    points, leaving, after = frames(pieces, np.zeros(len(pieces)))
-    _, arriving, before = frames(pieces, np.ones(len(pieces)))
-    arriving, before = np.roll(arriving, 1, axis=0), np.roll(before, 1)
-    turns = np.arctan2(cross(arriving, leaving), (arriving * leaving).sum(axis=1))
-    return Joins(points, turns, after - before)
+    curvature = end_curvatures(pieces)
+    return Joins(pieces[:, 0], turns(pieces, 0.0), curvature[:, 0] - np.roll(curvature[:, 1], 1))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
+from ..curves.cubics import bernstein, directions, length_table
 from ..types import BoolArray, FloatArray, IntArray
 
 TABLE = 32
@@ -20,17 +21,7 @@ TIE = 1e-6
 ROUNDS = 64
 """Rounds of grading after which a contour is refused: each halves, and no length is halved more often."""
 
-ONE = np.uint64(1)
-
-
-def _weights() -> FloatArray:
-    """(4, TABLE + 1) Bernstein polynomials at the places of the table."""
-    t = np.arange(TABLE + 1) / TABLE
-    s = 1.0 - t
-    return np.array([s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t])
-
-
-WEIGHTS = _weights()
+WEIGHTS = bernstein(TABLE)
 
 
 @compiled
@@ -56,7 +47,7 @@ def sampled(
     used = 0
     for k in range(contours):
         pieces = cubics[offsets[k] : offsets[k + 1]]
-        table = _arc_lengths(pieces)
+        table = length_table(pieces, WEIGHTS)
         corners = _corners(pieces, table, np.cos(corner_angle))
         if count > 0:
             at = _even(corners, table[-1], count, max_ratio)
@@ -75,50 +66,17 @@ def sampled(
 
 
 @compiled(internal=True)
-def _arc_lengths(pieces: FloatArray) -> FloatArray:
-    """(TABLE m + 1,) chord lengths summed along a contour."""
-    m = len(pieces)
-    table = np.empty(m * TABLE + 1)
-    xs, ys, chords = np.empty(TABLE + 1), np.empty(TABLE + 1), np.empty(TABLE)
-    table[0] = total = 0.0
-    for j in range(m):
-        ax, ay, bx, by = pieces[j, 0, 0], pieces[j, 0, 1], pieces[j, 1, 0], pieces[j, 1, 1]
-        cx, cy, dx, dy = pieces[j, 2, 0], pieces[j, 2, 1], pieces[j, 3, 0], pieces[j, 3, 1]
-        for i in range(np.uint64(TABLE + 1)):  # one kind of work a loop, and unsigned: such loops become SIMD
-            u, v, w, z = WEIGHTS[0, i], WEIGHTS[1, i], WEIGHTS[2, i], WEIGHTS[3, i]
-            xs[i] = u * ax + v * bx + w * cx + z * dx
-            ys[i] = u * ay + v * by + w * cy + z * dy
-        for i in range(np.uint64(TABLE)):
-            chords[i] = np.sqrt((xs[i + ONE] - xs[i]) ** 2 + (ys[i + ONE] - ys[i]) ** 2)
-        for i in range(np.uint64(TABLE)):
-            total += chords[i]
-            table[np.uint64(j * TABLE + 1) + i] = total
-    return table
-
-
-@compiled(internal=True)
-def _tangent(piece: FloatArray, backwards: bool) -> tuple[float, float]:
-    """Direction, of length 1, in which a cubic leaves its first point, or its last if backwards."""
-    for k in range(1, 4):
-        i, o = (3 - k, 3) if backwards else (k, 0)
-        dx, dy = piece[i, 0] - piece[o, 0], piece[i, 1] - piece[o, 1]
-        if abs(dx) + abs(dy) > 0.0:
-            size = np.sqrt(dx * dx + dy * dy)
-            return dx / size, dy / size
-    return 0.0, 0.0
-
-
-@compiled(internal=True)
 def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
     """Distances along a contour of the joints that turn by an angle whose cosine is ``turn`` or less."""
     m = len(pieces)
     corners, c = np.empty(m), 0
-    for j in range(m):
-        ax, ay = _tangent(pieces[j - 1], True)
-        bx, by = _tangent(pieces[j], False)
-        if -(ax * bx + ay * by) <= turn:
+    ax = ay = 0.0
+    for j in range(-1, m):
+        bx, by, x, y = directions(pieces, j, 0.0)
+        if j >= 0 and ax * bx + ay * by <= turn * np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by)):
             corners[c] = table[j * TABLE]
             c += 1
+        ax, ay = x, y
     return corners[:c]
 
 

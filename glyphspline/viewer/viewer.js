@@ -90,7 +90,7 @@
 
   const tell = () => {
     at("title").textContent = `${shown.unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("")} ${shown.glyph}`;
-    const total = shown.measures.reduce((sum, m) => sum + m.vertices, 0), bad = shown.measures.filter((m) => !m.converged).length;
+    const total = shown.measures.reduce((sum, m) => sum + m.vertices, 0), bad = shown.measures.filter((m) => m.converged === false).length;
     at("about").textContent = [`gid ${shown.gid}`, shown.unicodes, `${shown.measures.length} contours`, `${total} vertices`,
       ...(bad ? [`${bad} not converged`] : []), ...(state.sampling === "tolerance" ? shown.notes : [])].filter(Boolean).join(" · ");
     at("about").classList.toggle("bad", bad > 0);

@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 from fontTools.ufoLib import UFOWriter
 
+from ..curves.bezier import split
+from ..curves.cubics import turns
 from ..errors import GlyphsplineError
 from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.outline import Contour
@@ -30,6 +32,9 @@ BACKGROUND = "public.background"
 
 SMOOTH = 1e-3
 """Radians. A join turning by less is smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
+
+NO_HANDLE = 1e-9
+"""Handles up to this long, in font units, may be rounding's alone, and give no direction."""
 
 AT_END = 1e-3
 """An extremum as near to an end of its segment, as a share of it, is that end's own."""
@@ -140,16 +145,6 @@ def real_roots(power: list[float]) -> list[float]:
     return [q / a, c / q] if q else [q / a]
 
 
-def split(segment: FloatArray, t: float) -> tuple[FloatArray, FloatArray]:
-    """De Casteljau: both parts of a Bézier segment."""
-    left, right = [segment[0]], [segment[-1]]
-    while len(segment) > 1:
-        segment = (1 - t) * segment[:-1] + t * segment[1:]
-        left.append(segment[0])
-        right.append(segment[-1])
-    return np.array(left), np.array(right[::-1])
-
-
 def draw_curve(contour: Contour, digits: int, pen: Any) -> None:
     """A contour with a point pen, rounded, with smooth flags."""
     smooth = smooth_ends(contour)
@@ -166,22 +161,8 @@ def draw_curve(contour: Contour, digits: int, pen: Any) -> None:
 
 def smooth_ends(contour: Contour) -> list[bool]:
     """Whether the curve goes straight on at the beginning of each segment; between two lines none is smooth."""
-    segments = list(contour.segments())
-    arriving = [direction(segment[::-1]) for segment in segments]
-    leaving = [direction(segment) for segment in segments]
-    found = []
-    for j, out in enumerate(leaving):
-        back = -arriving[j - 1]
-        turn = abs(math.atan2(back[0] * out[1] - back[1] * out[0], float(back @ out)))
-        found.append(turn < SMOOTH and max(int(contour.degrees[j - 1]), int(contour.degrees[j])) > 1)
-    return found
-
-
-def direction(segment: FloatArray) -> FloatArray:
-    """Where a segment goes from its beginning: towards the first point that is not there."""
-    arms = segment[1:] - segment[0]
-    there = np.hypot(arms[:, 0], arms[:, 1]) > 1e-9
-    return arms[int(there.argmax())]
+    curved = np.maximum(contour.degrees, np.roll(contour.degrees, 1)) > 1
+    return ((np.abs(turns(contour.cubics(), NO_HANDLE)) < SMOOTH) & curved).tolist()
 
 
 def draw_polygon(polygon: FloatArray, digits: int, pen: Any) -> None:

@@ -1,26 +1,25 @@
 """Lines and arcs, all that a glyph is cut into: cutting its contours, cutting closer, and putting them together.
 
-Arcs of one span are all that most glyphs have. Their curve is said by their ends and end tangents; those of more spans
+Arcs of one span are all that most glyphs have. Their curve is given by their ends and end tangents; those of more spans
 get theirs from :func:`glyphspline.interpolate_many`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import bezier_points, bezier_weights
-from ...outlines.canonical import flip
-from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import contour_cubics
+from ...curves.cubics import raised, spline_beziers
+from ...outlines.contour_arrays import ContourArrays, offsets_of
 from ...types import BoolArray, FloatArray, IntArray
-from ..certified_distance import ROUNDING, extent, pair
+from ..certified_distance import certified_distance
 from .corners import find_joints
-from .segmentation import MOST_SPANS, cut, fit_between
-from .split_contours import Chains, Settings, laid_out
+from .segmentation import MOST_SPANS, Cut, cut_contour, fit_between
+from .split_contours import Settings, SplitContours
 
 FINEST = MOST_SPANS["best"]
 
@@ -29,10 +28,10 @@ class Pieces(NamedTuple):
     """Lines and arcs, contour after contour, in order.
 
     Attributes:
-        where: (P, 4) contour; first and last joint of its chain between which the piece runs; spans, 0 for a line.
+        where: (P, 4) contour; first and last joint of it between which the piece runs; spans, 0 for a line.
         starts: (P + 1,) where in ``vertices`` each begins.
         vertices: (V, 2) of each piece, both ends among them.
-        tangents: (P, 2, 2) end tangents of arcs, derivatives by chord length.
+        tangents: (P, 2, 2) end tangents of arcs, derivatives by chord length; unset for lines.
     """
 
     where: IntArray
@@ -41,151 +40,103 @@ class Pieces(NamedTuple):
     tangents: FloatArray
 
 
-@compiled
-def room(count: int) -> Pieces:
-    """Room for so many pieces."""
-    return Pieces(
-        np.empty((count, 4), dtype=np.int64),
-        np.zeros(count + 1, dtype=np.int64),
-        np.empty((count * (FINEST + 1), 2)),
-        np.zeros((count, 2, 2)),
+def cut_contours(contours: ContourArrays, settings: Settings) -> tuple[SplitContours, Pieces]:
+    """All contours cut, by :mod:`.segmentation`; stretches that it cannot fit stay as they are."""
+    parts, cubics, degrees, flips = [], [], [], []
+    for c in range(contours.num_contours):
+        own, kinds, flipped, found = cut_contour(contours, c, settings)
+        pieces = _fitted(c, found)
+        poor = (found.rows[:, 2] > 0) & (found.errors > settings.near)
+        if poor.any():
+            pieces = _replaced(pieces, poor, [_source(c, own, kinds, i, j) for i, j, _ in found.rows[poor].tolist()])
+        parts.append(_turned(pieces, len(own)) if flipped else pieces)
+        cubics.append(own[::-1, ::-1] if flipped else own)
+        degrees.append(kinds[::-1] if flipped else kinds)
+        flips.append(flipped)
+    split = SplitContours(
+        np.concatenate(cubics), np.concatenate(degrees), offsets_of(list(map(len, degrees))), np.array(flips)
     )
+    return split, _joined(parts)
 
 
-@compiled
-def _add(
-    pieces: Pieces, count: int, c: int, i: int, j: int, k: int, p: FloatArray, tangents: FloatArray, flip_m: int
-) -> int:
-    """Add a piece after ``count`` others; the number of pieces then.
-
-    Args:
-        c, i, j, k: contour, joints and spans. p: (max(k, 1) + 1, 2) or more rows. tangents: (2, 2).
-        flip_m: 0, or for a piece that runs the other way than its chain the number of the chain's segments.
-    """
-    n, at = max(k, 1), pieces.starts[count]
-    row, tau = pieces.where[count], pieces.tangents[count]
-    back = flip_m > 0
-    row[0], row[1], row[2], row[3] = c, flip_m - j if back else i, flip_m - i if back else j, k
-    for axis in range(2):
-        for r in range(n + 1):
-            pieces.vertices[at + r, axis] = p[n - r if back else r, axis]
-        for end in range(2):
-            tau[end, axis] = -tangents[1 - end, axis] if back else tangents[end, axis]
-    pieces.starts[count + 1] = at + n + 1
-    return count + 1
+def _pieces(where: IntArray, vertices: FloatArray, tangents: FloatArray) -> Pieces:
+    return Pieces(where, offsets_of(np.maximum(where[:, 3], 1) + 1), vertices, tangents)
 
 
-@compiled
-def _add_source(pieces: Pieces, count: int, c: int, cubics: FloatArray, degrees: IntArray, i: int, j: int) -> int:
-    """Add segments i to j - 1 of a chain as they are, as lines and arcs of one span."""
-    p, tangents = np.empty((2, 2)), np.empty((2, 2))
-    for s in range(i, j):
-        b = cubics[s]
-        factor = 3 / np.hypot(b[3, 0] - b[0, 0], b[3, 1] - b[0, 1])
-        for axis in range(2):
-            p[0, axis], p[1, axis] = b[0, axis], b[3, axis]
-            tangents[0, axis], tangents[1, axis] = (
-                (b[1, axis] - b[0, axis]) * factor,
-                (b[3, axis] - b[2, axis]) * factor,
-            )
-        count = _add(pieces, count, c, s, s + 1, 0 if degrees[s] == 1 else 1, p, tangents, 0)
-    return count
+def _fitted(c: int, found: Cut) -> Pieces:
+    """The pieces of contour c, in the direction in which it is fitted."""
+    where = np.empty((len(found.rows), 4), dtype=np.int64)
+    where[:, 0], where[:, 1:] = c, found.rows
+    used = np.arange(found.vertices.shape[1]) <= np.maximum(where[:, 3:], 1)
+    return _pieces(where, found.vertices[used], found.tangents)
 
 
-@compiled
-def cut_contours(flat: ContourArrays, settings: Settings) -> tuple[Chains, Pieces]:
-    """All contours made ready and cut, by :mod:`.segmentation`; stretches that it cannot fit stay as they are."""
-    C = len(flat.offsets) - 1
-    most = 2 * len(flat.degrees)
-    chains = Chains(
-        np.empty((most, 4, 2)), np.empty(most, dtype=np.int64), np.zeros(C + 1, dtype=np.int64),
-        np.zeros(C, dtype=np.bool_),
-    )  # fmt: skip
-    pieces, count = room(most), 0
+def _source(c: int, cubics: FloatArray, degrees: IntArray, i: int, j: int) -> Pieces:
+    """Segments i to j - 1 of a contour as they are, as lines and arcs of one span."""
+    b, joints = cubics[i:j], np.arange(i, j)
+    factor = 3 / np.hypot(b[:, 3, 0] - b[:, 0, 0], b[:, 3, 1] - b[:, 0, 1])
+    where = np.stack([np.full(j - i, c), joints, joints + 1, degrees[i:j] > 1], axis=1)
+    return _pieces(where, b[:, ::3].reshape(-1, 2), (b[:, 1::2] - b[:, ::2]) * factor[:, None, None])
+
+
+def _turned(pieces: Pieces, m: int) -> Pieces:
+    """Pieces of a contour of m segments as they are when it runs the other way."""
+    c, i, j, k = pieces.where[::-1].T
+    return _pieces(np.stack([c, m - j, m - i, k], axis=1), pieces.vertices[::-1], -pieces.tangents[::-1, ::-1])
+
+
+def _replaced(pieces: Pieces, poor: BoolArray, others: Sequence[Pieces]) -> Pieces:
+    """Pieces with others in the place of poor ones."""
     where, starts, vertices, tangents = pieces
-    for c in range(C):
-        own = flat.degrees[flat.offsets[c] : flat.offsets[c + 1]]
-        cubics, degrees, flipped, joints = laid_out(contour_cubics(flat, c), own, settings)
-        found = cut(
-            joints, settings.near, settings.margin, settings.residual, settings.rounds, settings.most, settings.stride
-        )
-        m, r = len(cubics), len(found.rows)
-        if flipped:
-            cubics, degrees = flip(cubics), degrees[::-1].copy()
-        for n in range(r):
-            q = r - 1 - n if flipped else n
-            i, j, k = found.rows[q]
-            if k == 0 or found.errors[q] <= settings.near:
-                count = _add(pieces, count, c, i, j, k, found.vertices[q], found.tangents[q], m if flipped else 0)
-            else:
-                i, j = (m - j, m - i) if flipped else (i, j)
-                count = _add_source(pieces, count, c, cubics, degrees, i, j)
-        at = chains.offsets[c]
-        for s in range(m):
-            chains.degrees[at + s] = degrees[s]
-            for corner in range(4):
-                for axis in range(2):
-                    chains.cubics[at + s, corner, axis] = cubics[s, corner, axis]
-        chains.offsets[c + 1], chains.flipped[c] = at + m, flipped
-    total = chains.offsets[C]
-    return Chains(chains.cubics[:total], chains.degrees[:total], chains.offsets, chains.flipped), Pieces(
-        where[:count], starts[: count + 1], vertices[: starts[count]], tangents[:count]
-    )
+    parts, done = [], 0
+    for q, other in zip([*np.flatnonzero(poor).tolist(), len(poor)], [*others, None], strict=True):
+        parts.append(Pieces(where[done:q], starts[done:q], vertices[starts[done] : starts[q]], tangents[done:q]))
+        parts += [other] if other else []
+        done = q + 1
+    return _joined(parts)
+
+
+def _joined(parts: Sequence[Pieces]) -> Pieces:
+    where, vertices, tangents = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3))
+    return _pieces(where, vertices, tangents)
 
 
 def cut_closer(
-    chains: Chains, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
-) -> Pieces:
+    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[int, float]], rounds: int,
+    settings: Settings,
+) -> Pieces:  # fmt: skip
     """Pieces with others in the place of poor ones: arcs fitted more closely, or else the source's own segments.
-
-    Few pieces are poor, so that this is the one part that is not compiled.
 
     Args:
         poor: (P,) which pieces have failed.
         tries: what is tried until it succeeds: how many spans to add, and the share of ``settings.near`` allowed.
         rounds: most Gauss-Newton steps.
     """
-    parts, done = [], 0
-    for q in np.flatnonzero(poor).tolist():
-        parts += [_part(pieces, done, q), _closer(chains, pieces.where[q], tries, rounds, settings)]
-        done = q + 1
-    parts.append(_part(pieces, done, len(poor)))
-    where, vertices, tangents = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3))
-    starts = np.concatenate([[0], np.cumsum(np.maximum(where[:, 3], 1) + 1)])
-    return Pieces(where, starts, vertices, tangents)
-
-
-def _part(pieces: Pieces, a: int, b: int) -> Pieces:
-    """Pieces a to b - 1."""
-    where, starts, vertices, tangents = pieces
-    return Pieces(where[a:b], starts[a : b + 1], vertices[starts[a] : starts[b]], tangents[a:b])
+    rows = pieces.where[poor].tolist()
+    return _replaced(pieces, poor, [_closer(contours, row, tries, rounds, settings) for row in rows])
 
 
 def _closer(
-    chains: Chains, row: IntArray, tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
-) -> Pieces:  # fmt: skip
-    """What takes the place of one piece."""
-    c, i, j, spans = row.tolist()
-    a, b = chains.offsets[c : c + 2].tolist()
-    cubics, degrees = chains.cubics[a:b], chains.degrees[a:b]
-    flipped = b - a if chains.flipped[c] else 0
-    i_there, j_there = (flipped - j, flipped - i) if flipped else (i, j)
-    there = (flip(cubics), degrees[::-1].copy()) if flipped else (cubics, degrees)
-    joints = find_joints(*there, settings.near, settings.angle, settings.line)
+    contours: SplitContours, row: Sequence[int], tries: Sequence[tuple[int, float]], rounds: int, settings: Settings
+) -> Pieces:
+    """What takes the place of the piece that was at a row of :attr:`Pieces.where`."""
+    c, i, j, spans = row
+    own = slice(*contours.offsets[c : c + 2].tolist())
+    cubics, degrees, flipped = contours.cubics[own], contours.degrees[own], bool(contours.flipped[c])
+    m = len(degrees)
+    if flipped:
+        cubics, degrees, i, j = cubics[::-1, ::-1].copy(), degrees[::-1].copy(), m - j, m - i
+    joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line)
+    new = _source(c, cubics, degrees, i, j)
     p, tangents = np.empty((FINEST + 1, 2)), np.empty((2, 2))
     for extra, share in tries:
         k, near = max(spans, 1) + extra, share * settings.near
         if k > FINEST:
             break
-        error = fit_between(
-            joints, i_there, j_there, k, near, settings.margin, settings.residual, rounds, p, tangents[0], tangents[1]
-        )
-        if error <= near:
-            new = room(1)
-            _add(new, 0, c, i_there, j_there, k, p, tangents, flipped)
-            return _part(new, 0, 1)
-    new = room(j - i)
-    return _part(new, 0, _add_source(new, 0, c, cubics, degrees, i, j))
+        if fit_between(joints, i, j, k, near, settings, rounds, p, tangents) <= near:
+            new = _pieces(np.array([[c, i, j, k]]), p[: k + 1], tangents[None])
+            break
+    return _turned(new, m) if flipped else new
 
 
 @compiled
@@ -200,15 +151,14 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     P = len(pieces.where)
     segments = pieces.starts[P] - P
     points, degrees = np.empty((3 * segments, 2)), np.empty(segments, dtype=np.int64)
-    offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
-    M, b = np.empty((FINEST, 4, 4)), np.empty((FINEST, 4, 2))
-    at = count = knot = control = 0
+    offsets, starts = np.empty(contours + 1, dtype=np.int64), np.empty(contours + 1, dtype=np.int64)
+    b = np.empty((FINEST, 4, 2))
+    at = count = knot = control = offsets[0] = starts[0] = 0
     for q in range(P):
-        c, k = pieces.where[q, 0], pieces.where[q, 3]
-        p, tau = pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]], pieces.tangents[q]
+        c, k, first = pieces.where[q, 0], pieces.where[q, 3], pieces.starts[q]
+        p, tau = pieces.vertices[first : pieces.starts[q + 1]], pieces.tangents[q]
         if k > 1:
-            bezier_weights(knots[knot : knot + k + 1], k, M)
-            bezier_points(M, controls[control : control + k + 3], k, b)
+            spline_beziers(controls[control : control + k + 3], knots[knot : knot + k + 1], False, b)
             knot, control = knot + k + 1, control + k + 3
         third = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
         for axis in range(2):
@@ -226,28 +176,23 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     return ContourArrays(points[:at], degrees, offsets, starts)
 
 
-@compiled
 def certify(
-    chains: Chains, pieces: Pieces, written: ContourArrays, sharpness: float, limit: float
+    contours: SplitContours, pieces: Pieces, written: ContourArrays, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Certified bound between each piece, as written, and its stretch of chain; and the largest gap seen.
+    """Certified bound between each piece, as written, and its stretch of contour; and the largest gap seen.
 
     Args:
         written: the contours of :func:`put_together`, rounded.
         sharpness, limit: see :func:`..certified_distance.certified_distance`.
     """
-    bounds, gaps = np.empty(len(pieces.where)), np.empty(len(pieces.where))
-    q = 0
-    for c in range(len(chains.offsets) - 1):
-        result = contour_cubics(written, c)
-        source = chains.cubics[chains.offsets[c] : chains.offsets[c + 1]]
-        rounding = ROUNDING * max(extent(result), extent(source))
-        at = 0.0
-        while q < len(bounds) and pieces.where[q, 0] == c:
-            _, i, j, k = pieces.where[q]
-            to = at + max(k, 1)
-            bound, gap = pair(result, at, to, source, float(i), float(j), sharpness, limit)
-            bounds[q], gaps[q] = bound + rounding, gap
-            at = to
-            q += 1
-    return bounds, gaps
+    found = []
+    ends = np.searchsorted(pieces.where[:, 0], np.arange(len(contours.flipped) + 1)).tolist()
+    for c, (a, b) in enumerate(pairwise(ends)):
+        own = pieces.where[a:b]
+        anchors = np.zeros((len(own) + 1, 2))
+        np.cumsum(np.maximum(own[:, 3], 1), out=anchors[1:, 0])
+        anchors[1:, 1] = own[:, 2]
+        part = written.part(c, c + 1)
+        source = contours.cubics[contours.offsets[c] : contours.offsets[c + 1]]
+        found.append(certified_distance(raised(part.points, part.degrees), source, anchors, sharpness, limit))
+    return np.concatenate([one.bounds for one in found]), np.concatenate([one.gaps for one in found])

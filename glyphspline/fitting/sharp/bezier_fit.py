@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
+from ...curves.cubics import length, newton_step
 from ...types import FloatArray
 from .spline_fit import HOPELESS, SLIDE
 
@@ -41,7 +41,10 @@ def fit_cubic(
     chord = length(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
     if chord == 0:
         return np.inf
-    x, e, weight = np.zeros(n), np.empty(n), np.ones(n)
+    x, e, weight = np.empty(n), np.empty(n), np.empty(n)
+    x[0] = 0.0
+    for j in range(n):
+        weight[j] = 1.0
     for j in range(1, n):
         x[j] = x[j - 1] + length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
     reach = x[n - 1]
@@ -63,12 +66,18 @@ def fit_cubic(
         if best <= tolerance or best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance or m == rounds - 1:
             break
         if m >= 1:
-            _sharpen(weight, e, error)
+            # Weights grow with the error, their mean staying 1: least squares turn towards the least maximum.
+            total = 0.0
+            for j in range(1, n - 1):
+                weight[j] *= 0.1 + e[j] / error
+                total += weight[j]
+            for j in range(1, n - 1):
+                weight[j] *= (n - 2) / total
         _step(Q, c, x, weight, d0, free0, d1, free1, chord, handles, A, g)
     return best
 
 
-@compiled
+@compiled(internal=True)
 def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArray) -> None:
     """The cubic by powers of its parameter, about its first end: row k goes with the power k + 1."""
     last = len(Q) - 1
@@ -78,7 +87,7 @@ def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArra
         c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
 
 
-@compiled
+@compiled(internal=True)
 def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
     """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
     ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
@@ -94,7 +103,7 @@ def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> floa
             if speed <= 0:
                 break
             bend = speed + px * (6 * cx * t + 2 * bx) + py * (6 * cy * t + 2 * by)
-            new = min(max(t - (px * dx + py * dy) / (bend if bend > 0.2 * speed else speed), low), 1.0)
+            new = newton_step(t, px * dx + py * dy, speed, bend, low, 1.0)
             move = abs(new - t)
             t = new
             if move < 1e-3:
@@ -105,18 +114,7 @@ def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> floa
     return worst
 
 
-@compiled
-def _sharpen(weight: FloatArray, e: FloatArray, error: float) -> None:
-    """Weights that grow with the error, their mean staying 1: least squares turn towards the least maximum."""
-    total = 0.0
-    for j in range(1, len(e) - 1):
-        weight[j] *= 0.1 + e[j] / error
-        total += weight[j]
-    for j in range(1, len(e) - 1):
-        weight[j] *= (len(e) - 2) / total
-
-
-@compiled
+@compiled(internal=True)
 def _step(
     Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
@@ -158,25 +156,30 @@ def _step(
     A[3, 0] = A[2, 1]
     for r in range(4):
         A[r, r] += 2.5e-5 * total
-    if not free0:
-        _keep_direction(A, 0, d0, 1e8 * max(total, 1.0))
-    if not free1:
-        _keep_direction(A, 2, d1, 1e8 * max(total, 1.0))
+    huge = 1e8 * max(total, 1.0)
+    for end in range(2):
+        if not (free1 if end else free0):
+            x_there, y_there = (d1[0], d1[1]) if end else (d0[0], d0[1])
+            r = 2 * end  # motion across the direction is dear
+            A[r, r] += huge * y_there * y_there
+            A[r + 1, r] -= huge * x_there * y_there
+            A[r + 1, r + 1] += huge * x_there * x_there
     _solve(A, g)
-    # The last handle runs from the inner point to the end, so that it moves the other way.
-    _set_handle(handles[:2], g[0] / chord, g[1] / chord, d0, free0)
-    _set_handle(handles[2:], -g[2] / chord, -g[3] / chord, d1, free1)
+    for end in range(2):
+        # The last handle runs from the inner point to the end, so that it moves the other way.
+        sign = -1.0 if end else 1.0
+        dx, dy = (d1[0], d1[1]) if end else (d0[0], d0[1])
+        _set_handle(
+            handles[2 * end : 2 * end + 2],
+            sign * g[2 * end] / chord,
+            sign * g[2 * end + 1] / chord,
+            dx,
+            dy,
+            free1 if end else free0,
+        )
 
 
-@compiled
-def _keep_direction(A: FloatArray, r: int, d: FloatArray, huge: float) -> None:
-    """Make motion across d dear."""
-    A[r, r] += huge * d[1] * d[1]
-    A[r + 1, r] -= huge * d[0] * d[1]
-    A[r + 1, r + 1] += huge * d[0] * d[0]
-
-
-@compiled
+@compiled(internal=True)
 def _solve(A: FloatArray, g: FloatArray) -> None:
     """Cholesky of the lower half of A in place; g becomes the solution."""
     n = len(g)
@@ -195,8 +198,8 @@ def _solve(A: FloatArray, g: FloatArray) -> None:
         g[r] /= A[r, r]
 
 
-@compiled
-def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: bool) -> None:
+@compiled(internal=True)
+def _set_handle(handle: FloatArray, x: float, y: float, dx: float, dy: float, free: bool) -> None:
     """Move a handle; it stays on its old side, and its tangent between SHORTEST and LONGEST."""
     old = length(handle[0], handle[1])
     x, y = handle[0] + x, handle[1] + y
@@ -205,5 +208,5 @@ def _set_handle(handle: FloatArray, x: float, y: float, d: FloatArray, free: boo
     if x * handle[0] + y * handle[1] <= 0.1 * old * new:
         x, y, new, size = handle[0], handle[1], old, max(old / 2, SHORTEST / 3)
     elif not free:
-        x, y, new = d[0], d[1], 1.0
+        x, y, new = dx, dy, 1.0
     handle[0], handle[1] = x / new * size, y / new * size

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet
-from ...outlines.canonical import direction, turn
+from ...curves.cubics import directions, jet, turns
 from ...types import BoolArray, FloatArray, IntArray
 
 NO_HANDLE = 1e-9
@@ -44,31 +43,6 @@ class Joints(NamedTuple):
 
 
 @compiled
-def unit_tangent(cubic: FloatArray, at_end: bool) -> tuple[float, float]:
-    """Direction of travel at an end of a cubic, whatever handles have no length."""
-    x, y, length = direction(cubic, at_end, NO_HANDLE)
-    return (x / length, y / length) if length > 0 else (1.0, 0.0)
-
-
-@compiled
-def _steps(cubic: FloatArray, straight: bool, tolerance: float) -> int:
-    """Samples a segment needs: the outline between two of them is straight to a seventh of the tolerance."""
-    length = 0.0
-    bend = 0.0
-    for j in range(3):
-        length += np.hypot(cubic[j + 1, 0] - cubic[j, 0], cubic[j + 1, 1] - cubic[j, 1])
-    for j in range(1, 3):
-        bend = max(
-            bend,
-            np.hypot(
-                cubic[j + 1, 0] - 2 * cubic[j, 0] + cubic[j - 1, 0], cubic[j + 1, 1] - 2 * cubic[j, 1] + cubic[j - 1, 1]
-            ),
-        )
-    wanted = max(length / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
-    return int(min(max(np.ceil(wanted), 2.0 if straight else 3.0), 40.0))
-
-
-@compiled
 def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: float, shortest_line: float) -> Joints:
     """Sample a contour and classify its joints.
 
@@ -79,74 +53,73 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
         shortest_line: straight lines at least this long stay lines.
     """
     m = len(cubics)
-    first = np.zeros(m + 1, dtype=np.int64)
+    first = np.empty(m + 1, dtype=np.int64)
+    first[0] = 0
     for j in range(m):
-        first[j + 1] = first[j] + _steps(cubics[j], degrees[j] == 1, tolerance)
+        first[j + 1] = first[j] + samples_of(cubics, j, degrees[j] == 1, tolerance)
     N = first[m] + 1
-    samples, density = np.empty((N, 2)), np.zeros(N)
-    corner, hard = np.zeros(m + 1, dtype=np.bool_), np.zeros(m + 1, dtype=np.bool_)
-    arriving, leaving, line = np.empty((m + 1, 2)), np.empty((m + 1, 2)), np.zeros(m, dtype=np.bool_)
+    samples, density = np.empty((N, 2)), np.empty(N)
+    corner, hard, line = np.empty(m + 1, np.bool_), np.empty(m + 1, np.bool_), np.empty(m, np.bool_)
+    arriving, leaving = np.empty((m + 1, 2)), np.empty((m + 1, 2))
+    density[0], least = 0.0, 1 / (500 * tolerance)
     for j in range(m):
         chord = np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
         line[j] = degrees[j] == 1 and chord >= shortest_line
-        leaving[j] = unit_tangent(cubics[j], False)
-        arriving[j + 1] = unit_tangent(cubics[j], True)
-        _sample_segment(cubics, j, first[j], first[j + 1] - first[j], tolerance, samples, density)
-    samples[N - 1] = cubics[0, 0]
-    leaving[m], arriving[0] = leaving[0], arriving[m]
+        ax, ay, bx, by = directions(cubics, j, NO_HANDLE)
+        if ax == ay == 0.0:
+            ax = bx = 1.0
+        size, size_there = np.hypot(ax, ay), np.hypot(bx, by)
+        leaving[j, 0], leaving[j, 1] = ax / size, ay / size
+        arriving[j + 1, 0], arriving[j + 1, 1] = bx / size_there, by / size_there
+        n = first[j + 1] - first[j]
+        for i in range(n):
+            at = first[j] + i
+            samples[at, 0], samples[at, 1], _, _, _, _ = jet(cubics, j, i / n)
+            # The density of vertices wanted goes with the root of the curvature.
+            _, _, dx, dy, ax, ay = jet(cubics, j, (i + 0.5) / n)
+            speed = np.hypot(dx, dy)
+            curvature = abs(dx * ay - dy * ax) / max(speed, 1e-9) ** 3
+            density[at + 1] = speed / n * np.sqrt(min(curvature, 1 / (4 * tolerance)) + least)
+    samples[N - 1, 0], samples[N - 1, 1] = cubics[0, 0, 0], cubics[0, 0, 1]
+    arriving[0, 0], arriving[0, 1] = arriving[m, 0], arriving[m, 1]
+    bends = turns(cubics, NO_HANDLE)
     for j in range(m):
-        bend = turn(arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1])
+        bend = abs(bends[j])
         corner[j] = bend >= angle
         hard[j] = (corner[j] and shows(samples, first[j], tolerance, angle)) or line[j] or line[j - 1]
         density[first[j]] += np.sqrt(bend * 4 * tolerance)
         if corner[j]:
             continue
+        ax, ay, bx, by = arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1]
+        x, y = ax + bx, ay + by
         if line[j] or line[j - 1]:
-            if bend < SMOOTH_KINK:
-                if line[j]:
-                    arriving[j] = leaving[j]
-                else:
-                    leaving[j] = arriving[j]
+            if not bend < SMOOTH_KINK:
+                continue
+            x, y = (bx, by) if line[j] else (ax, ay)
         else:
-            x, y = arriving[j, 0] + leaving[j, 0], arriving[j, 1] + leaving[j, 1]
-            arriving[j] = x / np.hypot(x, y), y / np.hypot(x, y)
-            leaving[j] = arriving[j]
-    corner[m], hard[m], arriving[m], leaving[m] = corner[0], hard[0], arriving[0], leaving[0]
+            size = np.hypot(x, y)
+            x, y = x / size, y / size
+        arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1] = x, y, x, y
+    corner[m], hard[m] = corner[0], hard[0]
+    for axis in range(2):
+        arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
     for j in range(1, N):
         density[j] += density[j - 1]
     return Joints(samples, first, density, corner, hard, arriving, leaving, line)
 
 
-@compiled
-def begun_at(joints: Joints, k: int) -> Joints:
-    """The joints of the same contour begun at joint k."""
-    m, last = len(joints.line), len(joints.samples) - 1
-    s, turned = joints.first[k], (np.arange(m + 1) + k) % m
-    return Joints(
-        np.concatenate((joints.samples[s:last], joints.samples[: s + 1])),
-        np.concatenate((joints.first[k:m] - s, joints.first[: k + 1] + (last - s))),
-        np.concatenate((joints.density[s:last], joints.density[: s + 1] + joints.density[last])),
-        joints.corner[turned],
-        joints.hard[turned],
-        joints.arriving[turned],
-        joints.leaving[turned],
-        joints.line[turned[:m]],
-    )
-
-
-@compiled
-def _sample_segment(
-    cubics: FloatArray, j: int, at: int, n: int, tolerance: float, samples: FloatArray, density: FloatArray
-) -> None:
-    """Write samples at..at + n - 1; the density of vertices wanted goes with the root of the curvature."""
-    least = 1 / (500 * tolerance)
-    for i in range(n):
-        x, y, dx, dy, ax, ay = jet(cubics, j, i / n)
-        samples[at + i] = x, y
-        _, _, dx, dy, ax, ay = jet(cubics, j, (i + 0.5) / n)
-        speed = np.hypot(dx, dy)
-        curvature = abs(dx * ay - dy * ax) / max(speed, 1e-9) ** 3
-        density[at + i + 1] = speed / n * np.sqrt(min(curvature, 1 / (4 * tolerance)) + least)
+@compiled(internal=True)
+def samples_of(cubics: FloatArray, j: int, straight: bool, tolerance: float) -> int:
+    """Samples that segment j needs: the outline between two of them is straight to a seventh of the tolerance."""
+    length = bend = 0.0
+    for k in range(3):
+        length += np.hypot(cubics[j, k + 1, 0] - cubics[j, k, 0], cubics[j, k + 1, 1] - cubics[j, k, 1])
+    for k in range(1, 3):
+        x = cubics[j, k + 1, 0] - 2 * cubics[j, k, 0] + cubics[j, k - 1, 0]
+        y = cubics[j, k + 1, 1] - 2 * cubics[j, k, 1] + cubics[j, k - 1, 1]
+        bend = max(bend, np.hypot(x, y))
+    wanted = max(length / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
+    return int(min(max(np.ceil(wanted), 2.0 if straight else 3.0), 40.0))
 
 
 REACH, HEIGHT = 6.0, 2.0
@@ -157,31 +130,31 @@ something and stays within the tolerance; but never between lines that stay line
 """
 
 
-@compiled
+@compiled(internal=True)
 def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     """Whether a corner is one at the scale of the tolerance too, and not the zigzag of a ragged outline.
 
     The outline is looked at from a few tolerances before the corner to as many after it: the corner has to stand out
     from their chord, and its two sides have to turn by the corner angle.
     """
-    reach = REACH * tolerance
     N = len(samples) - 1
     ends = np.empty((2, 2))
     for side in range(2):
         step = 1 if side else -1
-        left, i = reach, at
+        left, i = REACH * tolerance, at
         while True:
-            a, b = samples[i % N], samples[(i + step) % N]
-            d = np.hypot(b[0] - a[0], b[1] - a[1])
+            a, b = i % N, (i + step) % N
+            x, y = samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]
+            d = np.hypot(x, y)
             if d >= left or abs(i + step - at) >= N // 2:
                 share = min(left / d, 1.0) if d > 0 else 1.0
-                ends[side] = a + share * (b - a)
+                ends[side, 0], ends[side, 1] = samples[a, 0] + share * x, samples[a, 1] + share * y
                 break
             left -= d
             i += step
-    p = samples[at % N]
-    ax, ay = p[0] - ends[0, 0], p[1] - ends[0, 1]
-    bx, by = ends[1, 0] - p[0], ends[1, 1] - p[1]
-    chord = np.hypot(ax + bx, ay + by)
-    height = abs(ax * by - ay * bx) / max(chord, 1e-9)
-    return turn(ax, ay, bx, by) >= angle and height >= HEIGHT * tolerance
+    x, y = samples[at % N, 0], samples[at % N, 1]
+    ax, ay = x - ends[0, 0], y - ends[0, 1]
+    bx, by = ends[1, 0] - x, ends[1, 1] - y
+    across = ax * by - ay * bx
+    height = abs(across) / max(np.hypot(ax + bx, ay + by), 1e-9)
+    return abs(np.arctan2(across, ax * bx + ay * by)) >= angle and height >= HEIGHT * tolerance

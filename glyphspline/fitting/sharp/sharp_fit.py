@@ -1,12 +1,12 @@
 """The sharp mode: contours cut at their corners and straight lines, with clamped splines of few vertices in between.
 
-A glyph goes through in a few compiled calls, all of its contours at once: :mod:`.assembly` cuts them and puts them
-together again, and this file sees to it that the result is within the tolerance.
+:mod:`.assembly` cuts the contours of a glyph and puts them together again; this file makes sure that the result is
+within the tolerance, measures it, and fits contours again whose results cross themselves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +16,17 @@ from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays
+from ...outlines.outline import Contour, Contours
 from ...types import FloatArray, IntArray
+from ..measures import Survey, certified_rate, check_coordinates, survey
 from ..options import Options
+from ..results import ContourResult, Measures
 from .assembly import Pieces, certify, cut_closer, cut_contours, put_together
 from .segmentation import MOST_SPANS
-from .split_contours import Chains, Settings
+from .split_contours import Settings, SplitContours
+
+CLOSER = (1.0, 0.5, 0.25)
+"""Shares of the tolerance tried until a result has no self-crossings of its own."""
 
 LONG_LINE = 0.02
 """Share of the em from which straight lines stay lines."""
@@ -42,6 +48,88 @@ TRIES = ((0, 0.8), (1, 0.9), (2, 0.9))
 
 In the end the source's own segments take their place.
 """
+
+
+def convert_sharp(contours: Sequence[Contour], options: Options, tolerance: float, em: float) -> list[ContourResult]:
+    """Fit and measure contours; ``tolerance`` and ``em`` are in font units.
+
+    Results that cross themselves where their source did not are fitted again more closely, and flagged if that is no
+    cure.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
+    """
+    if not contours:
+        return []
+    check_coordinates(Contours(contours).arrays)
+    results: dict[int, ContourResult] = {}
+    left = list(range(len(contours)))
+    for share in CLOSER:
+        if not left:
+            break
+        own = _contour_results([contours[c] for c in left], options, tolerance, share, em)
+        results |= zip(left, own, strict=True)
+        left = [c for c in left if results[c].measures.new_crossings]
+    return [results[c] for c in range(len(contours))]
+
+
+def _contour_results(
+    contours: Sequence[Contour], options: Options, tolerance: float, share: float, em: float
+) -> list[ContourResult]:
+    """Contours fitted to within a share of the tolerance, and measured."""
+    source = Contours(contours).arrays
+    fit = fit_sharp(source, options, share * tolerance, em)
+    _, starts, vertices, _ = fit.pieces
+    # Where two pieces meet, the vertex belongs to the second one.
+    polygons = np.delete(vertices, starts[1:] - 1, axis=0)
+    offsets = starts[fit.offsets] - fit.offsets
+    curves = Contours(fit.curve)
+    measures = _measures(fit, survey(fit.curve, source, polygons, offsets), tolerance)
+    return [
+        ContourResult(contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c), curves[c], measures[c])
+        for c, contour in enumerate(contours)
+    ]
+
+
+def _measures(fit: SharpFit, found: Survey, tolerance: float) -> list[Measures]:
+    """All that is known of each contour's result. Of several arcs the worst counts, and the most iterations.
+
+    Arcs of one span are plain cubics, in which nothing is iterated.
+    """
+    spans, first = fit.pieces.where[:, 3], fit.offsets[:-1]
+    segments = np.add.reduceat(np.maximum(spans, 1), first)
+    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4, 2), first)
+    bound, gap = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
+    arcs: list[list[Interpolation]] = [[] for _ in first]
+    for q, arc in fit.splines.items():
+        arcs[fit.pieces.where[q, 0]].append(arc)
+    rows = [values.tolist() for values in (segments, numbers, bound, gap, *found)]
+    results = []
+    for own, segment, number, top, seen, length, change, energy, curvature, beyond, after, before in zip(
+        arcs, *rows, strict=True
+    ):
+        results.append(
+            Measures(
+                vertices=segment,
+                segments=segment,
+                numbers=number,
+                iterations=max((arc.iterations for arc in own), default=None),
+                residual=max((arc.max_error for arc in own), default=None),
+                converged=all(arc.converged for arc in own) if own else None,
+                rate_bound=max((certified_rate(arc) for arc in own), default=None),
+                fallbacks=sum(arc.fallbacks for arc in own),
+                deviation=seen,
+                deviation_bound=top,
+                within_tolerance=top <= tolerance,
+                length=length,
+                area_change=change,
+                bending_energy=energy,
+                max_curvature=curvature,
+                overshoot=beyond,
+                new_crossings=max(after - before, 0),
+            )
+        )
+    return results
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,24 +191,24 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
         residual=options.solver_tolerance, rounds=ROUNDS[options.effort], most=MOST_SPANS[options.effort],
         stride=STRIDE[options.effort],
     )  # fmt: skip
-    chains, pieces = cut_contours(contours, settings)
-    fit = _certified(chains, pieces, options, tolerance)
+    split, pieces = cut_contours(contours, settings)
+    fit = _certified(split, pieces, options, tolerance)
     for attempt in range(len(TRIES) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        pieces = cut_closer(chains, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
-        fit = _certified(chains, pieces, options, tolerance)
+        pieces = cut_closer(split, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
+        fit = _certified(split, pieces, options, tolerance)
     return fit
 
 
-def _certified(chains: Chains, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
+def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
     """The pieces with curves put through them, measured against the source."""
-    count = len(chains.offsets) - 1
+    count = len(split.flipped)
     splines = _interpolated(pieces, options)
     curve = put_together(pieces, count, *_splines(splines.values()))
     written = curve._replace(points=np.round(curve.points, options.precision) + 0.0)
-    bounds, gaps = certify(chains, pieces, written, SHARPNESS * tolerance, tolerance)
+    bounds, gaps = certify(split, pieces, written, SHARPNESS * tolerance, tolerance)
     offsets = np.searchsorted(pieces.where[:, 0], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curve, bounds, gaps)
 
@@ -136,7 +224,7 @@ def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     """The arcs of more than one span, in order.
 
-    The one free vertex of two spans peaks at 1/2, for which Lemma 2 has no interval: see arcs.PEAK_SHARE.
+    Lemma 2 has no interval for the one free vertex of two spans: see :data:`.clamped_arc.PEAK_SHARE`.
     """
     where, starts, vertices, tangents = pieces
     spans = where[:, 3]

@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet, length, solve_arc
+from ...curves.cubics import jet, length, newton_step
 from ...types import FloatArray, IntArray
+from .clamped_arc import solve_arc
 
 SLIDE = 0.001
 """Weight of motion along the curve against motion across it: enough to keep the equations regular."""
@@ -23,23 +24,48 @@ BAND = 8
 """Neighbouring control points are at most 3 apart, so unknowns at most 7."""
 
 
-@compiled
+@compiled(internal=True)
 def project(
     Q: FloatArray, n: int, b: FloatArray, k: int, known: bool, span: IntArray, x: FloatArray, e: FloatArray
 ) -> float:  # fmt: skip
     """Pair samples Q[:n] of the outline with points of the curve, in order; the largest distance.
 
     ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends. If
-    ``known``, they hold the feet on a curve near this one, to begin from.
+    ``known``, they hold the feet on a curve near this one, to begin from. A foot is the nearest point after the one
+    before, by Newton's method over the pieces.
     """
-    s, at = 0, 0.0
     worst = 0.0
     for j in range(n):
-        if j == n - 1:
-            s, at = k - 1, 1.0
-        elif j > 0:
-            later = known and (span[j] > s or (span[j] == s and x[j] > at))
-            s, at = _next_foot(Q[j, 0], Q[j, 1], b, k, s, at, span[j] if later else s, x[j] if later else at)
+        s, at = (k - 1, 1.0) if j > 0 else (0 * k, 0.0)
+        if 0 < j < n - 1:
+            s0, at0 = span[j - 1], x[j - 1]
+            later = known and (span[j] > s0 or (span[j] == s0 and x[j] > at0))
+            s, at = (span[j], x[j]) if later else (s0, at0)
+            for _ in range(12):
+                cx, cy, dx, dy, ax, ay = jet(b, s, at)
+                speed = dx * dx + dy * dy
+                slope = (cx - Q[j, 0]) * dx + (cy - Q[j, 1]) * dy
+                bend = speed + (cx - Q[j, 0]) * ax + (cy - Q[j, 1]) * ay
+                if speed <= 0:
+                    at = min(at + 0.01, 1.0)
+                    continue
+                new = newton_step(at, slope, speed, bend, at - 0.5, at + 0.5)
+                if new > 1.0:
+                    if s + 1 < k:
+                        s, at = s + 1, min(new - 1, 0.5)
+                        continue
+                    new = 1.0
+                elif new < 0.0:
+                    if s > s0:
+                        s, at = s - 1, max(1 + new, 0.5)
+                        continue
+                    new = 0.0
+                moved = abs(new - at)
+                at = new
+                if moved < 1e-4:
+                    break
+            if s < s0 or (s == s0 and at < at0):
+                s, at = s0, at0
         cx, cy, _, _, _, _ = jet(b, s, at)
         span[j], x[j] = s, at
         e[j] = length(Q[j, 0] - cx, Q[j, 1] - cy)
@@ -47,41 +73,7 @@ def project(
     return worst
 
 
-@compiled
-def _next_foot(
-    qx: float, qy: float, b: FloatArray, k: int, s0: int, at0: float, s: int, at: float
-) -> tuple[int, float]:  # fmt: skip
-    """The nearest point after (s0, at0), by Newton's method over the pieces from (s, at)."""
-    for _ in range(12):
-        cx, cy, dx, dy, ax, ay = jet(b, s, at)
-        speed = dx * dx + dy * dy
-        slope = (cx - qx) * dx + (cy - qy) * dy
-        bend = speed + (cx - qx) * ax + (cy - qy) * ay
-        if speed <= 0:
-            at = min(at + 0.01, 1.0)
-            continue
-        move = -slope / (bend if bend > 0.2 * speed else speed)
-        new = at + min(max(move, -0.5), 0.5)
-        if new > 1.0:
-            if s + 1 < k:
-                s, at = s + 1, min((new - 1) * 1.0, 0.5)
-                continue
-            new = 1.0
-        elif new < 0.0:
-            if s > s0:
-                s, at = s - 1, max(1 + new, 0.5)
-                continue
-            new = 0.0
-        if abs(new - at) < 1e-4:
-            at = new
-            break
-        at = new
-    if s < s0 or (s == s0 and at < at0):
-        return s0, at0
-    return s, at
-
-
-@compiled
+@compiled(internal=True)
 def _normal_equations(
     Q: FloatArray,
     n: int,
@@ -124,7 +116,7 @@ def _normal_equations(
                     A[r, q + 1 - r + BAND - 1] += both * xy
 
 
-@compiled
+@compiled(internal=True)
 def solve_banded(A: FloatArray, rhs: FloatArray, size: int) -> None:
     """Cholesky of the banded matrix in place; rhs becomes the solution."""
     for r in range(size):
@@ -146,7 +138,7 @@ def solve_banded(A: FloatArray, rhs: FloatArray, size: int) -> None:
         rhs[r] /= A[r, BAND - 1]
 
 
-@compiled
+@compiled(internal=True)
 def gauss_newton(
     Q: FloatArray,
     n: int,
@@ -165,8 +157,10 @@ def gauss_newton(
 ) -> None:
     """Steps (2 (k + 3),) of all control points into ``rhs``; the ends stay, fixed tangents keep their direction."""
     size = 2 * (k + 3)
-    A[:size] = 0.0
-    rhs[:size] = 0.0
+    for r in range(size):
+        rhs[r] = 0.0
+        for c in range(BAND):
+            A[r, c] = 0.0
     _normal_equations(Q, n, weight, b, M, k, span, x, A, rhs)
     total = 0.0
     for j in range(n):
@@ -175,9 +169,11 @@ def gauss_newton(
     for r in range(size):
         A[r, BAND - 1] += damping
     huge = 1e8 * max(total, 1.0)
-    for r in (0, 1, size - 2, size - 1):
-        A[r, BAND - 1] += huge
-    for r, v, free in ((2, start, free0), (size - 4, end, free1)):
+    for last in range(2):
+        r, v, free = (size - 4, end, free1) if last else (2, start, free0)
+        corner = size - 2 if last else 0
+        A[corner, BAND - 1] += huge
+        A[corner + 1, BAND - 1] += huge
         if not free:
             l2 = v[0] * v[0] + v[1] * v[1]
             A[r, BAND - 1] += huge * v[1] * v[1] / l2
@@ -186,26 +182,29 @@ def gauss_newton(
     solve_banded(A, rhs, size)
 
 
-@compiled
+@compiled(internal=True)
 def place_vertices(Q: FloatArray, D: FloatArray, n: int, k: int, p: FloatArray) -> None:
     """Vertices p[: k + 1] on the outline at equal steps of the density's integral D."""
     j = 0
-    p[0] = Q[0]
     for i in range(1, k):
         goal = D[0] + (D[n - 1] - D[0]) * i / k
         while j < n - 2 and D[j + 1] < goal:
             j += 1
         share = (goal - D[j]) / max(D[j + 1] - D[j], 1e-300)
-        p[i] = (1 - share) * Q[j] + share * Q[j + 1]
-    p[k] = Q[n - 1]
+        for axis in range(2):
+            p[i, axis] = (1 - share) * Q[j, axis] + share * Q[j + 1, axis]
+    for axis in range(2):
+        p[0, axis], p[k, axis] = Q[0, axis], Q[n - 1, axis]
 
 
-@compiled
+@compiled(internal=True)
 def respace(
     b: FloatArray, u: FloatArray, k: int, e: FloatArray, span: IntArray, n: int, p: FloatArray, most: float
 ) -> None:
     """Move inner vertices along the curve so that spans with large errors shrink (error grows like h⁴)."""
-    worst = np.full(k, 1e-3 * most)
+    worst = np.empty(k)
+    for s in range(k):
+        worst[s] = 1e-3 * most
     for j in range(n):
         worst[span[j]] = max(worst[span[j]], e[j])
     mean = 0.0
@@ -225,8 +224,8 @@ def respace(
         p[i, 0], p[i, 1], _, _, _, _ = jet(b, s, (at - u[s]) / (u[s + 1] - u[s]))
 
 
-@compiled
-def graded(p: FloatArray, k: int, ratio: float) -> bool:
+@compiled(internal=True)
+def _is_graded(p: FloatArray, k: int, ratio: float) -> bool:
     """Whether adjacent chords stay within a ratio of each other."""
     before = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1])
     for i in range(1, k):
@@ -237,7 +236,7 @@ def graded(p: FloatArray, k: int, ratio: float) -> bool:
     return True
 
 
-@compiled
+@compiled(internal=True)
 def _advance(
     p: FloatArray,
     k: int,
@@ -267,19 +266,20 @@ def _advance(
     _set_tangent(end, 3 * bx / h1, 3 * by / h1)
 
 
-@compiled
+@compiled(internal=True)
 def _set_tangent(v: FloatArray, x: float, y: float) -> None:
     """A new end tangent, kept on the old one's side and between 0.1 and 4 in length."""
     old = np.hypot(v[0], v[1])
     new = np.hypot(x, y)
     if x * v[0] + y * v[1] <= 0.1 * old * new:
-        v *= max(0.5, 0.1 / old)
+        factor = max(0.5, 0.1 / old)
+        v[0], v[1] = factor * v[0], factor * v[1]
         return
     length = min(max(new, 0.1), 4.0)
     v[0], v[1] = x / new * length, y / new * length
 
 
-@compiled
+@compiled(internal=True)
 def fit_arc(
     Q: FloatArray,
     D: FloatArray,
@@ -310,29 +310,34 @@ def fit_arc(
         The largest distance of a sample from the best fit; infinite if there is none.
     """
     n = len(Q)
-    u, M, P, b, t = np.empty(k + 1), np.empty((k, 4, 4)), np.empty((k + 3, 2)), np.empty((k, 4, 2)), np.zeros(k + 1)
+    u, M, P, b, t = np.empty(k + 1), np.empty((k, 4, 4)), np.empty((k + 3, 2)), np.empty((k, 4, 2)), np.empty(k + 1)
     A, step = np.empty((2 * (k + 3), BAND)), np.empty(2 * (k + 3))
-    span, x, e, weight = np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.ones(n)
-    q, v0, v1 = np.empty((k + 1, 2)), d0.copy(), d1.copy()
+    span, x, e, weight = np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.empty(n)
+    q, v0, v1 = np.empty((k + 1, 2)), np.empty(2), np.empty(2)
+    v0[0], v0[1], v1[0], v1[1] = d0[0], d0[1], d1[0], d1[1]
+    for j in range(n):
+        weight[j] = 1.0
     place_vertices(Q, D, n, k, q)
-    best, known = np.inf, False
+    best, since = np.inf, 0  # rounds since feet were last forgotten
     for m in range(rounds):
         left = solve_arc(q, k, v0, v1, margin, residual, u, M, P, b, t)
         if not left < 1.0:
             break
-        error = project(Q, n, b, k, known, span, x, e)
-        known = True
-        if error < best and graded(q, k, 4.0):
+        error = project(Q, n, b, k, since > 0, span, x, e)
+        since += 1
+        if error < best and _is_graded(q, k, 4.0):
             best = error
-            p[: k + 1] = q
-            start[:], end[:] = v0, v1
+            for axis in range(2):
+                start[axis], end[axis] = v0[axis], v1[axis]
+                for i in range(k + 1):
+                    p[i, axis] = q[i, axis]
             if best <= tolerance:
                 break
         if best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance:
             break
         if m in (2, 5):
             respace(b, u, k, e, span, n, q, error)
-            known = False
+            since = 0
             if m == 2:
                 continue
         if m >= 1:

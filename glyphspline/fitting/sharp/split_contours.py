@@ -1,4 +1,4 @@
-"""The contours of a glyph as the sharp mode takes them up: chains of cubics, each begun and directed by its shape.
+"""The contours of a glyph as the sharp mode takes them: cubics from a hard joint on, with their joints classified.
 
 :mod:`..smooth.canonical_contours` has those of the smooth mode.
 """
@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import split
 from ...outlines.canonical import directed, farthest_joint
 from ...outlines.segments import lasting
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import Joints, begun_at, find_joints
+from .corners import Joints, find_joints
 
 
 class Settings(NamedTuple):
@@ -36,10 +37,10 @@ class Settings(NamedTuple):
     stride: int
 
 
-class Chains(NamedTuple):
-    """Contours made ready to be cut: segments of no length dropped, the first joint a hard one if there is any.
+class SplitContours(NamedTuple):
+    """Contours ready to be cut: segments of no length dropped, the first joint a hard one if there is any.
 
-    They keep their own direction, in which lines and arcs are put together, and have no use for lengths.
+    They keep their own direction, in which lines and arcs are put together.
 
     Attributes:
         cubics: (M, 4, 2) and degrees: (M,) of all, in their own direction; offsets: (C + 1,) where each begins.
@@ -52,57 +53,52 @@ class Chains(NamedTuple):
     flipped: BoolArray
 
 
-@compiled
+@compiled(internal=True)
 def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
     """The segments that have a length, those that end where they begin cut in two: an arc needs two ends."""
     those = lasting(cubics)
     found, kept = np.empty((2 * len(those), 4, 2)), np.empty(2 * len(those), dtype=np.int64)
     count = 0
-    for j in those:
-        b = cubics[j]
-        parts = 2 if b[0, 0] == b[3, 0] and b[0, 1] == b[3, 1] else 1
-        if parts == 2:
-            _halve(b, found[count], found[count + 1])
-        else:
-            found[count] = b
-        kept[count : count + parts] = degrees[j]
-        count += parts
-    return found[:count].copy(), kept[:count].copy()
+    for n in range(len(those)):
+        j = those[n]
+        closed = cubics[j, 0, 0] == cubics[j, 3, 0] and cubics[j, 0, 1] == cubics[j, 3, 1]
+        last = count + 1 if closed else count
+        for k in range(4):
+            found[last, k, 0], found[last, k, 1] = cubics[j, k, 0], cubics[j, k, 1]
+        if closed:
+            split(found[last], 0.5, found[count])
+        kept[count] = kept[last] = degrees[j]
+        count = last + 1
+    return found[:count], kept[:count]
 
 
-@compiled
-def _halve(cubic: FloatArray, first: FloatArray, second: FloatArray) -> None:
-    for axis in range(2):
-        p, q, r, s = cubic[0, axis], cubic[1, axis], cubic[2, axis], cubic[3, axis]
-        pq, qr, rs = (p + q) / 2, (q + r) / 2, (r + s) / 2
-        left, right = (pq + qr) / 2, (qr + rs) / 2
-        middle = (left + right) / 2
-        first[0, axis], first[1, axis], first[2, axis], first[3, axis] = p, pq, left, middle
-        second[0, axis], second[1, axis], second[2, axis], second[3, axis] = middle, right, rs, s
-
-
-@compiled
-def first_joint(joints: Joints) -> int:
-    """A hard joint to begin at, or else that farthest from the middle: the same whatever the contour's first point."""
-    m = len(joints.line)
-    for j in range(m):
-        if joints.hard[j]:
-            return j
-    return farthest_joint(joints.samples[joints.first[:m]])
-
-
-@compiled
+@compiled(internal=True)
 def laid_out(
     cubics: FloatArray, degrees: IntArray, settings: Settings
 ) -> tuple[FloatArray, IntArray, bool, Joints]:  # fmt: skip
-    """A contour as it is fitted: its chain, whether that runs the other way, and its joints."""
-    cubics, degrees = with_ends(cubics, degrees)
-    cubics, flipped = directed(cubics)
+    """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
+
+    It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first point.
+    """
+    given, kept = with_ends(cubics, degrees)
+    chain, flipped = directed(given)
+    m = len(chain)
     if flipped:
-        degrees = degrees[::-1].copy()
-    joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line)
-    k = first_joint(joints)
-    if k > 0:
-        cubics, degrees = np.concatenate((cubics[k:], cubics[:k])), np.concatenate((degrees[k:], degrees[:k]))
-        joints = begun_at(joints, k)
-    return cubics, degrees, flipped, joints
+        for j in range(m // 2):
+            kept[j], kept[m - 1 - j] = kept[m - 1 - j], kept[j]
+    joints = find_joints(chain, kept, settings.near, settings.angle, settings.line)
+    k = 0
+    while k < m and not joints.hard[k]:
+        k += 1
+    if k == m:
+        k = farthest_joint(chain[:, 0])
+    if k == 0:
+        return chain, kept, flipped, joints
+    turned, own = np.empty((m, 4, 2)), np.empty(m, dtype=np.int64)
+    for j in range(m):
+        own[j] = kept[(j + k) % m]
+        for c in range(4):
+            turned[j, c, 0], turned[j, c, 1] = chain[(j + k) % m, c, 0], chain[(j + k) % m, c, 1]
+    joints = find_joints(turned, own, settings.near, settings.angle, settings.line)
+    joints.density[len(joints.density) - 1] += joints.density[0]  # the turn at the last joint, which is the first again
+    return turned, own, flipped, joints

@@ -1,7 +1,4 @@
-"""All contours of a glyph as one array of cubics, each begun and run as its shape has it, with lengths along them.
-
-A *place* j + x on a contour is local parameter x of its segment j; places wrap at its number of segments.
-"""
+"""All contours of a glyph as one array of cubics, each from its canonical start and in its canonical direction."""
 
 from __future__ import annotations
 
@@ -10,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet
-from ...outlines.canonical import directed, direction, farthest_joint, turn
+from ...curves.cubics import bernstein, jet, length_table, turns
+from ...outlines.canonical import directed, farthest_joint
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import contour_cubics, lasting
 from ...types import BoolArray, FloatArray, IntArray
@@ -19,9 +16,11 @@ from ...types import BoolArray, FloatArray, IntArray
 TABLE = 16
 """Steps a segment in the table of lengths. It only decides where vertices fall along the outline."""
 
+WEIGHTS = bernstein(TABLE)
 
-class Chains(NamedTuple):
-    """The contours of a glyph, in the direction in which they are fitted: a closed curve is turned back as a whole.
+
+class CanonicalContours(NamedTuple):
+    """The contours of a glyph in the direction in which they are fitted: a closed curve is turned back as a whole.
 
     They begin at the joint farthest out, corner or not: such a curve ends nowhere.
 
@@ -40,51 +39,38 @@ class Chains(NamedTuple):
 
 
 @compiled
-def chains_of(flat: ContourArrays) -> Chains:
-    """The chains of contours end to end."""
-    count = len(flat.offsets) - 1
-    cubics = np.empty((len(flat.degrees), 4, 2))
-    offsets, flipped = np.zeros(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+def canonical_contours(contours: ContourArrays) -> CanonicalContours:
+    """Contours end to end as the smooth mode fits them; segments of no length are left out."""
+    count = len(contours.offsets) - 1
+    most = len(contours.degrees)
+    cubics, angles, lengths = np.empty((most, 4, 2)), np.empty(most), np.empty((most, TABLE + 1))
+    offsets, flipped = np.empty(count + 1, dtype=np.int64), np.empty(count, dtype=np.bool_)
+    at = offsets[0] = 0
     for k in range(count):
-        given = contour_cubics(flat, k)
-        chain, flipped[k] = directed(given[lasting(given)])
-        m = len(chain)
-        first = farthest_joint(chain[:, 0])
-        offsets[k + 1] = offsets[k] + m
+        given = contour_cubics(contours, k)
+        kept = lasting(given)
+        m = len(kept)
         for j in range(m):
-            cubics[offsets[k] + j] = chain[(first + j) % m]
-    cubics = cubics[: offsets[count]]
-    turns, lengths = np.empty(len(cubics)), np.empty((len(cubics), TABLE + 1))
-    for k in range(count):
-        part = cubics[offsets[k] : offsets[k + 1]]
-        _turns(part, turns[offsets[k] :])
-        _lengths(part, lengths[offsets[k] :])
-    return Chains(cubics, offsets, flipped, turns, lengths)
+            for c in range(4):
+                given[j, c, 0], given[j, c, 1] = given[kept[j], c, 0], given[kept[j], c, 1]
+        chain, flipped[k] = directed(given[:m])
+        first = farthest_joint(chain[:, 0])
+        own = cubics[at : at + m]
+        for j in range(m):
+            for c in range(4):
+                for axis in range(2):
+                    own[j, c, axis] = chain[(first + j) % m, c, axis]
+        turned, table = turns(own, 0.0), length_table(own, WEIGHTS)
+        for j in range(m):
+            angles[at + j] = abs(turned[j])
+            for c in range(TABLE + 1):
+                lengths[at + j, c] = table[j * TABLE + c]
+        at += m
+        offsets[k + 1] = at
+    return CanonicalContours(cubics[:at], offsets, flipped, angles[:at], lengths[:at])
 
 
-@compiled
-def _turns(cubics: FloatArray, turns: FloatArray) -> None:
-    """Into ``turns``; at whatever scale, so that no handle is too short."""
-    for j in range(len(cubics)):
-        ax, ay, _ = direction(cubics[j - 1], True, 0.0)
-        bx, by, _ = direction(cubics[j], False, 0.0)
-        turns[j] = turn(ax, ay, bx, by)
-
-
-@compiled
-def _lengths(cubics: FloatArray, lengths: FloatArray) -> None:
-    total = 0.0
-    for j in range(len(cubics)):
-        x, y = cubics[j, 0]
-        lengths[j, 0] = total
-        for k in range(1, TABLE + 1):
-            px, py, _, _, _, _ = jet(cubics, j, k / TABLE)
-            total += np.sqrt((px - x) ** 2 + (py - y) ** 2)
-            lengths[j, k] = total
-            x, y = px, py
-
-
-@compiled
+@compiled(internal=True)
 def length_at(lengths: FloatArray, place: float) -> float:
     """Distance along a contour from its first point; ``place`` may be laps ahead."""
     m = len(lengths)
@@ -95,29 +81,28 @@ def length_at(lengths: FloatArray, place: float) -> float:
     return j // m * lengths[m - 1, TABLE] + row[k] + (x - k) * (row[min(k + 1, TABLE)] - row[k])
 
 
-@compiled
+@compiled(internal=True)
 def place_at(lengths: FloatArray, distance: float) -> float:
     """The inverse of :func:`length_at`."""
     m = len(lengths)
     total = lengths[m - 1, TABLE]
     lap = np.floor(distance / total)
     d = distance - lap * total
-    low, high = 0, m - 1
-    while low < high:
+    low, high = 0, m * TABLE - 1
+    while low < high:  # the last of all entries that are not beyond d, but for the very last
         middle = (low + high + 1) // 2
-        if lengths[middle, 0] <= d:
+        if lengths[middle // TABLE, middle % TABLE] <= d:
             low = middle
         else:
             high = middle - 1
-    row = lengths[low]
-    k = min(max(int(np.searchsorted(row, d, side="right")) - 1, 0), TABLE - 1)
-    step = row[k + 1] - row[k]
-    x = (k + (min(max((d - row[k]) / step, 0.0), 1.0) if step > 0 else 0.0)) / TABLE
-    return lap * m + low + x
+    j, k = low // TABLE, low % TABLE
+    step = lengths[j, k + 1] - lengths[j, k]
+    x = (k + (min(max((d - lengths[j, k]) / step, 0.0), 1.0) if step > 0 else 0.0)) / TABLE
+    return lap * m + j + x
 
 
-@compiled
-def vertices(cubics: FloatArray, places: FloatArray) -> FloatArray:
+@compiled(internal=True)
+def points_at(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(n, 2) the points at places of a contour, all in its first lap."""
     points = np.empty((len(places), 2))
     for i in range(len(places)):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.sorting import in_order
 from ...types import BoolArray, FloatArray, IntArray
-from .canonical_contours import TABLE, length_at, place_at, vertices
+from .canonical_contours import TABLE, length_at, place_at, points_at
 
 MOST_VERTICES = 2000
 """A contour's polygon grows no larger than this by refinement."""
@@ -22,7 +23,7 @@ MARGIN = 0.3
 """Share of a span at either end where it is not divided."""
 
 
-@compiled
+@compiled(internal=True)
 def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(n,) length along the contour at which each place lies, and to the next one."""
     n = len(places)
@@ -35,7 +36,7 @@ def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, Float
     return at, h
 
 
-@compiled
+@compiled(internal=True)
 def with_more(
     lengths: FloatArray, places: FloatArray, errors: FloatArray, worst: FloatArray, near: float
 ) -> FloatArray:
@@ -65,20 +66,20 @@ def with_more(
                 share = min(max(share, MARGIN), 1 - MARGIN)
             new[count] = place_at(lengths, at[i] + share * h[i]) % m
             count += 1
-    return np.sort(new[:count])
+    return in_order(new[:count])
 
 
-@compiled
+@compiled(internal=True)
 def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: float) -> FloatArray:
     """The places with chords cut where they are more than ``ratio`` times a neighbour, until none is.
 
-    Up to a ratio of 4 this is what certifies convergence before the interpolation is run (Theorem 2).
+    Up to a ratio of 4 this certifies convergence before the interpolation is run (Theorem 2).
     """
     total = lengths[-1, TABLE]
     while True:
         n = len(places)
-        chords = _chords(vertices(cubics, places))
-        if n > MOST_VERTICES or not _uneven(chords, ratio):
+        chords, even = chords_of(points_at(cubics, places), ratio)
+        if n > MOST_VERTICES or even:
             return places
         at, h = spans_of(lengths, places)
         new = np.empty(2 * n)
@@ -94,33 +95,28 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
                 count += 1
         if count == n:
             return places
-        places = np.sort(new[:count])
+        places = in_order(new[:count])
 
 
-@compiled
-def _uneven(chords: FloatArray, ratio: float) -> bool:
-    for i in range(len(chords)):
-        a, b = chords[i - 1], chords[i]
-        if a > ratio * b or b > ratio * a:
-            return True
-    return False
-
-
-@compiled
-def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
-    """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
-    even = np.ones(len(offsets) - 1, dtype=np.bool_)
-    for k in range(len(offsets) - 1):
-        even[k] = not _uneven(_chords(points[offsets[k] : offsets[k + 1]]), ratio)
-    return even
-
-
-@compiled
-def _chords(points: FloatArray) -> FloatArray:
-    """(n,) distance from each vertex to the next, the last to the first."""
+@compiled(internal=True)
+def chords_of(points: FloatArray, ratio: float) -> tuple[FloatArray, bool]:
+    """(n,) distance from each vertex to the next, the last to the first; whether adjacent ones are within a ratio."""
     n = len(points)
     chords = np.empty(n)
     for i in range(n):
         j = (i + 1) % n
         chords[i] = np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
-    return chords
+    even = True
+    for i in range(n):
+        a, b = chords[i - 1], chords[i]
+        even = even and not (a > ratio * b or b > ratio * a)
+    return chords, even
+
+
+@compiled
+def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
+    """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
+    even = np.empty(len(offsets) - 1, dtype=np.bool_)
+    for k in range(len(offsets) - 1):
+        _, even[k] = chords_of(points[offsets[k] : offsets[k + 1]], ratio)
+    return even

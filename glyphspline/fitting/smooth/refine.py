@@ -15,8 +15,8 @@ from ...interpolation.batched import BatchedInterpolation
 from ...types import FloatArray, IntArray
 from ..options import Options
 from ..policy import interpolated
-from . import steps as rounds
-from .canonical_contours import Chains
+from . import steps
+from .canonical_contours import CanonicalContours
 
 ROUNDS = 80
 """Rounds before giving up."""
@@ -45,7 +45,7 @@ class Round:
         which: (k,) numbers of the contours.
         places, offsets, points: ragged vertices. found: the curves through them.
         pieces: ragged (n, 4, 2), the curves as Béziers; written: the same, rounded as they are written.
-        bounds, gaps, worst, ends: ragged, of the spans; see :func:`.steps.examined`.
+        measured: their distances from the outline.
         most: (k,) the largest bound of each contour.
     """
 
@@ -56,10 +56,7 @@ class Round:
     found: BatchedInterpolation
     pieces: FloatArray
     written: FloatArray
-    bounds: FloatArray
-    gaps: FloatArray
-    worst: FloatArray
-    ends: FloatArray
+    measured: steps.Measured
     most: FloatArray
 
     def part(self, values: FloatArray, i: int) -> FloatArray:
@@ -71,18 +68,20 @@ Kept = dict[int, tuple[Round, int]]
 """By contour: a round, and which part of it."""
 
 
-def refined(chains: Chains, which: IntArray, options: Options, near: FloatArray, early: int | None = None) -> Kept:
+def refined(
+    contours: CanonicalContours, which: IntArray, options: Options, near: FloatArray, early: int | None = None
+) -> Kept:
     """Fit contours.
 
     Args:
-        chains: all contours. which: numbers of those to fit.
+        contours: of a glyph. which: numbers of those to fit.
         near: (K,) by contour, how near the written curve has to be, in font units.
         early: in place of EARLY.
 
     Returns:
         The round with the fewest vertices that are near enough; if none is, that with the smallest bound.
     """
-    search = _Search(chains, options, near)
+    search = _Search(contours, options, near)
     search.refine(which, EARLY[options.effort] if early is None else early)
     if THINNINGS[options.effort]:
         search.thin(which)
@@ -92,34 +91,35 @@ def refined(chains: Chains, which: IntArray, options: Options, near: FloatArray,
 class _Search:
     """The search for the vertices of a glyph's contours."""
 
-    def __init__(self, chains: Chains, options: Options, near: FloatArray) -> None:
-        self.chains, self.options, self.near = chains, options, near
+    def __init__(self, contours: CanonicalContours, options: Options, near: FloatArray) -> None:
+        self.contours, self.options, self.near = contours, options, near
         self.angle = float(np.radians(options.corner_angle))
         self.kept: Kept = {}
 
     def refine(self, which: IntArray, early: int) -> None:
         """Begin with what is known of the outline; add vertices, and take out others, until all contours pass."""
-        chains, options, near = self.chains, self.options, self.near
+        contours, options, near = self.contours, self.options, self.near
         left = np.full(len(near), PRUNINGS[options.effort])
         passed = np.zeros(len(near), dtype=np.bool_)
         every = np.ones(len(near), dtype=np.bool_)
-        places, offsets = rounds.first_places(chains, which, self.angle, options.max_ratio, near, options.variant)
+        places, offsets = steps.first_places(contours, which, self.angle, options.max_ratio, near, options.variant)
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
             which, places, offsets = done.which, done.places, done.offsets
             passed[which] = done.most <= near[which]
             fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
-            which, places, offsets = rounds.changed(
-                chains, which, places, offsets, done.points, done.bounds, done.gaps, done.worst, near, ~passed, fewer,
-                self.angle, options.max_ratio, POWERS[turn % len(POWERS)],
+            which, places, offsets = steps.changed(
+                contours, which, places, offsets, done.points, done.measured.bounds,
+                done.measured.gaps, done.measured.worst, near, ~passed, fewer, self.angle, options.max_ratio,
+                POWERS[turn % len(POWERS)],
             )  # fmt: skip
             if len(which) == 0:
                 break
 
     def thin(self, which: IntArray) -> None:
         """Take out vertices of the contours that passed, as long as they still do."""
-        chains, near = self.chains, self.near
+        contours, near = self.contours, self.near
         which = np.array([k for k in which.tolist() if _passes(self.kept[k], near[k])], dtype=np.int64)
         if len(which) == 0:
             return
@@ -127,11 +127,11 @@ class _Search:
         places = [found.part(found.places, i) for found, i in parts]
         done = self.attempt(which, np.concatenate(places), np.cumsum([0] + [len(part) for part in places]))
         keep = np.ones(len(done.places), dtype=np.bool_)
-        good = rounds.Good(done.places, done.offsets, done.points, done.gaps, keep, ~keep)
+        good = steps.Good(done.places, done.offsets, done.points, done.measured.gaps, keep, ~keep)
         for _ in range(THINNINGS[self.options.effort]):
-            which, good = rounds.thinned(
-                chains, near, self.angle, self.options.max_ratio, THIN_POWER, done.which, done.places, done.offsets,
-                done.points, done.bounds, done.gaps, good,
+            which, good = steps.thinned(
+                contours, near, self.angle, self.options.max_ratio, THIN_POWER, done.which, done.places, done.offsets,
+                done.points, done.measured.bounds, done.measured.gaps, good,
             )  # fmt: skip
             if len(which) == 0:
                 break
@@ -140,8 +140,8 @@ class _Search:
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
         """Interpolate contours through their points at places, measure, and keep what is better than before."""
-        chains, options = self.chains, self.options
-        points = rounds.polygons(chains, which, places, offsets)
+        contours, options = self.contours, self.options
+        points = steps.polygons(contours, which, places, offsets)
         try:
             found = interpolated(points, offsets, options)
         except GlyphsplineError as error:
@@ -150,10 +150,10 @@ class _Search:
         if found.whole[:, 1].sum() < len(places):  # duplicates were merged
             kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
             return self.attempt(which, places[np.concatenate(kept)], np.cumsum([0] + [len(part) for part in kept]))
-        pieces, written = rounds.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
-        bounds, gaps, worst, ends = rounds.examined(chains, which, places, offsets, written, self.near)
-        most = np.maximum.reduceat(bounds, offsets[:-1])
-        done = Round(which, places, offsets, points, found, pieces, written, bounds, gaps, worst, ends, most)
+        pieces, written = steps.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
+        measured = steps.measured(contours, which, places, offsets, written, self.near)
+        most = np.maximum.reduceat(measured.bounds, offsets[:-1])
+        done = Round(which, places, offsets, points, found, pieces, written, measured, most)
         for i, k in enumerate(which.tolist()):
             if k not in self.kept or _better((done, i), self.kept[k], self.near[k]):
                 self.kept[k] = done, i

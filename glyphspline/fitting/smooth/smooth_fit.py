@@ -9,12 +9,11 @@ import numpy as np
 from ...interpolation.result import reversed_interpolation, turned
 from ...outlines.outline import Contour, Contours
 from ...types import FloatArray, IntArray
-from ..certified_distance import certified_distance
+from ..certified_distance import certified_distance, sharpen_spans
 from ..measures import check_coordinates
 from ..options import Options
 from ..results import ContourResult, Measures
-from . import steps as rounds
-from .canonical_contours import Chains, chains_of
+from .canonical_contours import CanonicalContours, canonical_contours
 from .forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT, forms
 from .refine import Round, refined
 
@@ -44,18 +43,18 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
         return []
     given = Contours(contours).arrays
     check_coordinates(given)
-    chains = chains_of(given)
-    source = forms(chains.cubics, chains.offsets, NO_POLYGONS, chains.offsets)
+    canonical = canonical_contours(given)
+    source = forms(canonical.cubics, canonical.offsets, NO_POLYGONS, canonical.offsets)
     near = np.full(len(contours), tolerance)
     results: dict[int, ContourResult] = {}
     left = np.arange(len(contours))
     for share, early in ((1.0, None), *AGAIN):
         near[left] = share * tolerance
-        kept = refined(chains, left, options, near, early)
-        own = _measured(chains, left, [kept[k] for k in left.tolist()], source, tolerance)
+        kept = refined(canonical, left, options, near, early)
+        own = _measured(canonical, left, [kept[k] for k in left.tolist()], source, tolerance)
         for k, measures in zip(left.tolist(), own, strict=True):
             if k not in results or _rank(measures) < _rank(results[k].measures):
-                results[k] = _result(contours[k], *kept[k], bool(chains.flipped[k]), measures)
+                results[k] = _result(contours[k], *kept[k], bool(canonical.flipped[k]), measures)
         left = left[[bool(measures.new_crossings) for measures in own]]
         if len(left) == 0:
             break
@@ -78,20 +77,24 @@ def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Mea
 
 
 def _measured(
-    chains: Chains, which: IntArray, kept: Sequence[tuple[Round, int]], source: FloatArray, tolerance: float
+    canonical: CanonicalContours,
+    which: IntArray,
+    kept: Sequence[tuple[Round, int]],
+    source: FloatArray,
+    tolerance: float,
 ) -> list[Measures]:
     """All that is known of some contours' results."""
     parts = [found.part(found.pieces, i) for found, i in kept]
     offsets = np.cumsum([0] + [len(part) for part in parts])
     polygons = np.concatenate([found.part(found.points, i) for found, i in kept])
     form = forms(np.concatenate(parts), offsets, polygons, offsets)
-    change = np.where(chains.flipped[which], -1, 1) * (form[:, AREA] - source[which, AREA])
+    change = np.where(canonical.flipped[which], -1, 1) * (form[:, AREA] - source[which, AREA])
     crossings = np.maximum(form[:, CROSSINGS] - source[which, CROSSINGS], 0).astype(int).tolist()
     results = []
     for k, (found, i), row, difference, crossed in zip(
         which.tolist(), kept, form.tolist(), change.tolist(), crossings, strict=True
     ):
-        bound, gap = _certificate(chains, k, found, i, tolerance)
+        bound, gap = _certificate(canonical, k, found, i, tolerance)
         _, n, iterations, fallbacks, _ = found.found.whole[i].tolist()
         residual = float(found.found.residuals[found.found.residual_offsets[i + 1] - 1])
         results.append(
@@ -118,17 +121,18 @@ def _measured(
     return results
 
 
-def _certificate(chains: Chains, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
+def _certificate(
+    canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float
+) -> tuple[float, float]:  # fmt: skip
     """Certified bound, and distance seen, of part i of a round from contour k."""
-    written, start = found.part(found.written, i), found.offsets[i] + i
-    ends = found.ends[start : start + len(written) + 1]
-    bound, gap = rounds.certificate(
-        chains, k, written, found.part(found.bounds, i), found.part(found.gaps, i), ends, SHARPNESS * tolerance
-    )
+    measured, start = found.measured, found.offsets[i] + i
+    written, outline = found.part(found.written, i), canonical.cubics[slice(*canonical.offsets[k : k + 2])]
+    ends = measured.ends[start : start + len(written) + 1]
+    bounds, gaps = found.part(measured.bounds, i), found.part(measured.gaps, i)
+    bound, gap = sharpen_spans(written, outline, bounds, gaps, ends, SHARPNESS * tolerance)
     if bound <= tolerance:
         return bound, gap
     # Pairing the other way round too is slow, and only seldom better.
     anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
-    outline = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
     other = certified_distance(written, outline, anchors, SHARPNESS * tolerance, tolerance)
     return (other.bound, other.measured) if other.bound < bound else (bound, gap)

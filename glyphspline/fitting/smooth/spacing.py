@@ -19,6 +19,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet
+from ...curves.sorting import in_order
 from ...types import FloatArray, IntArray
 from .canonical_contours import TABLE
 
@@ -44,7 +45,7 @@ FEWEST = 4
 """Vertices a contour has at least."""
 
 
-@compiled
+@compiled(internal=True)
 def seeds(
     cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float,
     variant: int,
@@ -52,7 +53,7 @@ def seeds(
     """Places of the first vertices of a contour, increasing.
 
     Args:
-        cubics: (m, 4, 2). lengths, turns: as :class:`.canonical_contours.Chains` has them.
+        cubics: (m, 4, 2). lengths, turns: as :class:`.canonical_contours.CanonicalContours` has them.
         corner_angle: turn in radians from which a joint is a vertex. ratio: at most, of adjacent chords.
         near: distance allowed, in font units.
     """
@@ -61,33 +62,55 @@ def seeds(
         factor, at_corner = min(factor, GROWTH_3), AT_CORNER_3
     growth = np.log(factor)
     first = growth / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
-    field = _bounds(cubics, lengths, turns, first / at_corner, near)
-    corners = np.flatnonzero(turns >= corner_angle)
-    if len(corners) == 0:
-        corners = np.zeros(1, dtype=np.int64)
+    field = bounds_of(cubics, lengths, turns, first / at_corner, near)
     m, total = len(cubics), lengths[-1, TABLE]
-    for k in range(len(corners)):
-        a, b = corners[k], corners[(k + 1) % len(corners)]
+    corners, count = np.empty(m, dtype=np.int64), 0
+    for j in range(m):
+        if turns[j] >= corner_angle:
+            corners[count] = j
+            count += 1
+    if count == 0:
+        corners[0], count = 0, 1
+    for k in range(count):
+        a, b = corners[k], corners[(k + 1) % count]
         reach = lengths[b, 0] - lengths[a, 0] + (total if b <= a else 0.0)
         for j in (a, b):
             field[j * TABLE] = min(field[j * TABLE], first * reach)
-    field[m * TABLE] = field[0] = min(field[0], field[m * TABLE])
-    _limit_growth(field, lengths, growth)
-    return _laid(field, lengths, corners)
+    n = m * TABLE
+    field[n] = field[0] = min(field[0], field[n])
+    for _ in range(2):  # lower it until it nowhere grows faster than ``growth`` a unit of length, round the contour
+        for i in range(n):
+            j, k = i // TABLE, i % TABLE
+            field[i + 1] = min(field[i + 1], field[i] + growth * (lengths[j, k + 1] - lengths[j, k]))
+        field[0] = field[n]
+        for i in range(n - 1, -1, -1):
+            j, k = i // TABLE, i % TABLE
+            field[i] = min(field[i], field[i + 1] + growth * (lengths[j, k + 1] - lengths[j, k]))
+        field[n] = field[0]
+    return laid(field, lengths, corners[:count])
 
 
-@compiled
-def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float) -> FloatArray:
+@compiled(internal=True)
+def bounds_of(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float) -> FloatArray:
     """The field at all entries of ``lengths`` in turn, (m TABLE + 1,), before its growth is limited."""
     m = len(cubics)
-    field = np.full(m * TABLE + 1, lengths[-1, TABLE] / FEWEST)
-    curvature = np.zeros((m, TABLE + 1))
+    field, curvature = np.empty(m * TABLE + 1), np.empty((m, TABLE + 1))
+    for i in range(m * TABLE + 1):
+        field[i] = lengths[-1, TABLE] / FEWEST
     for j in range(m):
-        kappa = curvature[j]
-        if not _curvatures(cubics, j, kappa):
-            continue
-        s = lengths[j]
+        kappa, s = curvature[j], lengths[j]
+        ax, ay = cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1]
+        off = 0.0
+        for k in range(1, 3):
+            off = max(off, abs(ax * (cubics[j, k, 1] - cubics[j, 0, 1]) - ay * (cubics[j, k, 0] - cubics[j, 0, 0])))
+        straight = off <= 1e-9 * (ax * ax + ay * ay)
         for k in range(TABLE + 1):
+            kappa[k] = 0.0
+            if not straight:
+                _, _, dx, dy, bx, by = jet(cubics, j, k / TABLE)
+                speed = np.sqrt(dx * dx + dy * dy)
+                kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
+        for k in range(0 if straight else TABLE + 1):
             c = min(max(k, 1), TABLE - 1)
             before, after = s[c] - s[c - 1], s[c + 1] - s[c]
             change = 0.0
@@ -109,81 +132,39 @@ def _bounds(cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corne
     return field
 
 
-@compiled
-def _curvatures(cubics: FloatArray, j: int, kappa: FloatArray) -> bool:
-    """Signed curvature of segment j at even parameters; False if it is straight."""
-    c = cubics[j]
-    ax, ay = c[3, 0] - c[0, 0], c[3, 1] - c[0, 1]
-    off = 0.0
-    for k in (1, 2):
-        off = max(off, abs(ax * (c[k, 1] - c[0, 1]) - ay * (c[k, 0] - c[0, 0])))
-    if off <= 1e-9 * (ax * ax + ay * ay):
-        return False
-    for k in range(TABLE + 1):
-        _, _, dx, dy, bx, by = jet(cubics, j, k / TABLE)
-        speed = np.sqrt(dx * dx + dy * dy)
-        kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
-    return True
-
-
-@compiled
-def _limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None:
-    """Lower the field until it nowhere grows faster than ``growth`` a unit of length, round the contour."""
-    n = len(field) - 1
-    for _ in range(2):
-        for i in range(n):
-            j, k = i // TABLE, i % TABLE
-            field[i + 1] = min(field[i + 1], field[i] + growth * (lengths[j, k + 1] - lengths[j, k]))
-        field[0] = field[n]
-        for i in range(n - 1, -1, -1):
-            j, k = i // TABLE, i % TABLE
-            field[i] = min(field[i], field[i + 1] + growth * (lengths[j, k + 1] - lengths[j, k]))
-        field[n] = field[0]
-
-
-@compiled
-def _parts(a: float, b: float, length: float) -> float:
-    """Integral of 1/field over a stretch on which the field goes linearly from a to b."""
-    return length * np.log(b / a) / (b - a) if abs(b - a) > 1e-6 * a else length / a
-
-
-@compiled
-def _laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
+@compiled(internal=True)
+def laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
     """Places at the corners and, evenly by the field, between them."""
-    m = len(lengths)
-    n = m * TABLE
-    steps = np.empty(n)
+    n, c = len(lengths) * TABLE, len(corners)
+    steps = np.empty(n)  # the integral of 1/field, which goes linearly from one entry to the next
     for i in range(n):
         j, k = i // TABLE, i % TABLE
-        steps[i] = _parts(field[i], field[i + 1], lengths[j, k + 1] - lengths[j, k])
-    counts = np.empty(len(corners), dtype=np.int64)
-    wholes = np.zeros(len(corners))
-    for k in range(len(corners)):
+        a, b, h = field[i], field[i + 1], lengths[j, k + 1] - lengths[j, k]
+        steps[i] = h * np.log(b / a) / (b - a) if abs(b - a) > 1e-6 * a else h / a
+    counts, wholes, total = np.empty(c, dtype=np.int64), np.empty(c), 0
+    for k in range(c):
         first = corners[k] * TABLE
-        stop = corners[(k + 1) % len(corners)] * TABLE
+        stop = corners[(k + 1) % c] * TABLE
+        wholes[k] = 0.0
         for i in range(first, stop if stop > first else stop + n):
             wholes[k] += steps[i % n]
         counts[k] = max(int(np.ceil(wholes[k] - SPARE)), 1)
-    while counts.sum() < FEWEST:
-        counts *= 2
-    places = np.empty(counts.sum())
-    at = 0
-    for k in range(len(corners)):
-        i, passed = corners[k] * TABLE, 0.0
+        total += counts[k]
+    times = 1
+    while times * total < FEWEST:
+        times *= 2
+    places, at = np.empty(times * total), 0
+    for k in range(c):
+        i, passed, parts = corners[k] * TABLE, 0.0, times * counts[k]
         places[at] = corners[k]
         at += 1
-        for part in range(1, counts[k]):
-            goal = wholes[k] * part / counts[k]
+        for part in range(1, parts):
+            goal = wholes[k] * part / parts
             while passed + steps[i % n] < goal:
                 passed += steps[i % n]
                 i += 1
-            share = _share(field[i % n], field[i % n + 1], (goal - passed) / steps[i % n])
+            a, b, x = field[i % n], field[i % n + 1], (goal - passed) / steps[i % n]
+            share = a * ((b / a) ** x - 1) / (b - a) if abs(b - a) > 1e-6 * a else x
             places[at] = (i % n + share) / TABLE
             at += 1
-    return np.sort(places)
-
-
-@compiled
-def _share(a: float, b: float, x: float) -> float:
-    """Share of a stretch's length at which the integral of 1/field has come to the share x of the whole."""
-    return a * ((b / a) ** x - 1) / (b - a) if abs(b - a) > 1e-6 * a else x
+    return in_order(places[:at])

@@ -1,4 +1,7 @@
-"""The steps of a fit for all contours of a glyph that are not done yet, on ragged arrays."""
+"""The steps of a smooth fit for all contours of a glyph that are not done yet, on ragged arrays.
+
+Part i of a ragged array belongs to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import spline_beziers
 from ...types import BoolArray, FloatArray, IntArray
-from .canonical_contours import Chains, vertices
+from ..certified_distance import measure_spans
+from .canonical_contours import CanonicalContours, points_at
 from .insertion import MOST_VERTICES, graded, with_more
 from .pruning import put_back, sparse
 from .spacing import seeds
-from .span_distance import check, sharpened
 
 ROUGHLY = 0.1
 """While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
@@ -20,38 +24,43 @@ ROUGHLY = 0.1
 
 @compiled
 def first_places(
-    chains: Chains, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
+    contours: CanonicalContours, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
 ) -> tuple[FloatArray, IntArray]:
     """Ragged places to begin with, of the contours ``which``."""
-    parts = [np.empty(0)]
-    for k in which:
-        a, b = chains.offsets[k], chains.offsets[k + 1]
-        cubics, lengths = chains.cubics[a:b], chains.lengths[a:b]
-        some = seeds(cubics, lengths, chains.turns[a:b], corner_angle, ratio, near[k], variant)
-        parts.append(graded(cubics, lengths, some, ratio))
-    return _joined(parts)
+    offsets, values = np.empty(len(which) + 1, dtype=np.int64), np.empty(1024)
+    offsets[0] = 0
+    for i in range(len(which)):
+        a, b = contours.offsets[which[i]], contours.offsets[which[i] + 1]
+        cubics, lengths = contours.cubics[a:b], contours.lengths[a:b]
+        some = seeds(cubics, lengths, contours.turns[a:b], corner_angle, ratio, near[which[i]], variant)
+        part = graded(cubics, lengths, some, ratio)
+        values = appended(values, offsets[i], part)
+        offsets[i + 1] = offsets[i] + len(part)
+    return values[: offsets[-1]], offsets
+
+
+@compiled(internal=True)
+def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
+    """An array of which the first ``count`` values are in use, or a larger one, with more after these."""
+    if count + len(part) > len(values):
+        larger = np.empty(2 * (count + len(part)))
+        for i in range(count):
+            larger[i] = values[i]
+        values = larger
+    for i in range(len(part)):
+        values[count + i] = part[i]
+    return values
 
 
 @compiled
-def _joined(parts: list[FloatArray]) -> tuple[FloatArray, IntArray]:
-    """All but the first of some arrays as one, and where each begins."""
-    offsets = np.zeros(len(parts), dtype=np.int64)
-    for k in range(1, len(parts)):
-        offsets[k] = offsets[k - 1] + len(parts[k])
-    values = np.empty(offsets[-1])
-    for k in range(1, len(parts)):
-        values[offsets[k - 1] : offsets[k]] = parts[k]
-    return values, offsets
-
-
-@compiled
-def polygons(chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
-    """Ragged points of the outline at the places."""
+def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
+    """Ragged points (n, 2) of the outline at the places."""
     points = np.empty((len(places), 2))
     for i in range(len(which)):
-        k = which[i]
-        cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
-        points[offsets[i] : offsets[i + 1]] = vertices(cubics, places[offsets[i] : offsets[i + 1]])
+        a, b = offsets[i], offsets[i + 1]
+        own = points_at(contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]], places[a:b])
+        for j in range(b - a):
+            points[a + j, 0], points[a + j, 1] = own[j, 0], own[j, 1]
     return points
 
 
@@ -61,70 +70,57 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
 
     Knots of part k begin at ``offsets[k] + k``.
     """
-    pieces = np.empty((len(controls), 4, 2))
+    pieces, written = np.empty((len(controls), 4, 2)), np.empty((len(controls), 4, 2))
     for k in range(len(offsets) - 1):
-        a, n = offsets[k], offsets[k + 1] - offsets[k]
-        u = knots[a + k :]
-        for i in range(n):
-            j = (i + 1) % n
-            before = u[i] - u[i - 1] if i > 0 else u[n] - u[n - 1]
-            here = u[i + 1] - u[i]
-            after = u[j + 1] - u[j]
-            whole = before + here + after
-            for c in range(2):
-                p, q = controls[a + i, c], controls[a + j, c]
-                pieces[a + i, 1, c] = p + before / whole * (q - p)
-                pieces[a + i, 2, c] = p + (before + here) / whole * (q - p)
-        for i in range(n):
-            j = i - 1 if i > 0 else n - 1
-            before = u[j + 1] - u[j]
-            share = before / (before + u[i + 1] - u[i])
-            for c in range(2):
-                p, q = pieces[a + j, 2, c], pieces[a + i, 1, c]
-                pieces[a + i, 0, c] = pieces[a + j, 3, c] = p + share * (q - p)
-    written = np.empty_like(pieces)
+        a, b = offsets[k], offsets[k + 1]
+        spline_beziers(controls[a:b], knots[a + k : b + k + 1], True, pieces[a:b])
     for i in range(len(pieces)):
         for j in range(4):
-            for c in range(2):
-                written[i, j, c] = np.rint(pieces[i, j, c] * unit) / unit
+            for axis in range(2):
+                written[i, j, axis] = np.rint(pieces[i, j, axis] * unit) / unit
     return pieces, written
 
 
-@compiled
-def examined(
-    chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray, near: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Ragged bounds, gaps, worst places and stretches of all spans; see :func:`.span_distance.check`.
+class Measured(NamedTuple):
+    """How far closed curves are from their outlines; ragged, a row a span.
 
-    Stretches of part i begin at ``offsets[i] + i``.
+    Attributes:
+        bounds, gaps, worst, ends: see :func:`..certified_distance.measure_spans`; ends of part i begin at
+            ``offsets[i] + i``.
+    """
+
+    bounds: FloatArray
+    gaps: FloatArray
+    worst: FloatArray
+    ends: FloatArray
+
+
+@compiled
+def measured(
+    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray,
+    near: FloatArray,
+) -> Measured:  # fmt: skip
+    """The distances of closed curves with vertices at ``places`` from their contours.
+
+    Args:
+        pieces: (n, 4, 2) the curves as they are written. near: (K,) by contour, the distance allowed.
     """
     n = len(places)
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
-        cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
-        check(
-            pieces[a:b], cubics, places[a:b], near[k], ROUGHLY * near[k], bounds[a:b], gaps[a:b], worst[a:b],
-            ends[a + i :],
+        measure_spans(
+            pieces[a:b], contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], places[a:b], near[k],
+            ROUGHLY * near[k], bounds[a:b], gaps[a:b], worst[a:b], ends[a + i : b + i + 1],
         )  # fmt: skip
-    return bounds, gaps, worst, ends
-
-
-@compiled
-def _corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> BoolArray:
-    """(n,) which vertices of a contour are at corners."""
-    corners = np.zeros(len(places), dtype=np.bool_)
-    for v in range(len(places)):
-        j = int(places[v])
-        corners[v] = places[v] == j and turns[j] >= corner_angle
-    return corners
+    return Measured(bounds, gaps, worst, ends)
 
 
 @compiled
 def changed(
-    chains: Chains, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray,
-    gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray, corner_angle: float,
-    ratio: float, power: float,
+    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
+    bounds: FloatArray, gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray,
+    corner_angle: float, ratio: float, power: float,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours that change, and their ragged places.
 
@@ -133,35 +129,37 @@ def changed(
             seem not to be needed. Of all contours, by their numbers in ``which``.
         power: of a span's length with which its error is taken to grow.
     """
-    parts, those = [np.empty(0)], np.empty(len(which), dtype=np.int64)
+    those, new = np.empty(len(which), dtype=np.int64), np.empty(len(which) + 1, dtype=np.int64)
+    values, needed = np.empty(len(places) + 1024), np.empty(len(places), dtype=np.bool_)
+    for i in range(len(places)):
+        needed[i] = False
+    count = new[0] = 0
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
-        s, t = chains.offsets[k], chains.offsets[k + 1]
-        cubics, lengths, turns = chains.cubics[s:t], chains.lengths[s:t], chains.turns[s:t]
-        here, bound, at = places[a:b], bounds[a:b], worst[a:b]
+        s, t = contours.offsets[k], contours.offsets[k + 1]
+        cubics, lengths, turns = contours.cubics[s:t], contours.lengths[s:t], contours.turns[s:t]
+        here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
+        n = b - a
         if fewer[k]:
-            corners = _corners(here, turns, corner_angle)
-            keep = sparse(points[a:b], corners, np.zeros(b - a, dtype=np.bool_), gaps[a:b], near[k], ratio, power)
-            here, bound, at = here[keep], bound[keep], at[keep]
+            keep = sparse(points[a:b], here, turns, corner_angle, needed[a:b], gaps[a:b], near[k], ratio, power)
+            n = 0
+            for j in range(b - a):
+                if keep[j]:
+                    here[n], bound[n], at[n] = here[j], bound[j], at[j]
+                    n += 1
+            here = here[:n]
         if more[k]:
-            here = with_more(lengths, here, bound, at, near[k])
-        if len(here) != b - a or (here != places[a:b]).any():
+            here = with_more(lengths, here, bound[:n], at[:n], near[k])
+        same = len(here) == b - a
+        for j in range(len(here)):
+            same = same and here[j] == places[a + j]
+        if not same:
             here = graded(cubics, lengths, here, ratio)
             if len(here) <= MOST_VERTICES:
-                those[len(parts) - 1] = k
-                parts.append(here)
-    values, new = _joined(parts)
-    return those[: len(parts) - 1].copy(), values, new
-
-
-@compiled
-def certificate(
-    chains: Chains, k: int, written: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray,
-    sharpness: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Bound and gap of contour k as it is written; see :func:`.span_distance.sharpened`."""
-    cubics = chains.cubics[chains.offsets[k] : chains.offsets[k + 1]]
-    return sharpened(written, cubics, bounds, gaps, ends, sharpness)
+                values = appended(values, new[count], here)
+                those[count], new[count + 1] = k, new[count] + len(here)
+                count += 1
+    return those[:count], values[: new[count]], new[: count + 1]
 
 
 class Good(NamedTuple):
@@ -182,7 +180,7 @@ class Good(NamedTuple):
 
 @compiled
 def thinned(
-    chains: Chains, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
+    contours: CanonicalContours, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
     places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, good: Good,
 ) -> tuple[IntArray, Good]:  # fmt: skip
     """What to try next, to find the vertices that are needed.
@@ -214,8 +212,8 @@ def thinned(
             needed = needed | (back & ~keep)
             keep = back
         if keep.all():
-            corners = _corners(here, chains.turns[chains.offsets[k] : chains.offsets[k + 1]], corner_angle)
-            keep = sparse(p, corners, needed, e, near[k], ratio, power)
+            turns = contours.turns[contours.offsets[k] : contours.offsets[k + 1]]
+            keep = sparse(p, here, turns, corner_angle, needed, e, near[k], ratio, power)
         if keep.all():
             continue
         those[count] = k
