@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -9,12 +11,13 @@ import glyphspline as gs
 from glyphspline.curves.crossings import overshoot, self_crossings
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
+from glyphspline.fitting.measures import geometric_columns
 from glyphspline.fitting.policy import interpolated
 from glyphspline.fitting.smooth import steps
 from glyphspline.fitting.smooth.canonical_contours import canonical_contours
-from glyphspline.fitting.smooth.forms import forms
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
 from glyphspline.interpolation.result import turned
+from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
 
 from .polygons import circle_contour, random_polygon, square_contour
@@ -50,15 +53,26 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     assert bound <= bounds.max() + 1e-9
 
 
+def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
+    return convert_smooth(Contours(contours).arrays, options, tolerance).contour_results()
+
+
 def test_measures_are_those_that_look_at_every_piece() -> None:
     polygons = [random_polygon(n, seed) for n in (5, 12, 40) for seed in range(3)]
-    pieces = [gs.interpolate(p, fallback="peak").spline.to_bezier() for p in polygons]
-    offsets = np.cumsum([0] + [len(p) for p in pieces])
-    found = forms(np.concatenate(pieces), offsets, np.concatenate(polygons), offsets)
-    for row, curve, polygon in zip(found, pieces, polygons, strict=True):
-        expected = [*shape(curve), overshoot(curve, polygon), self_crossings(curve)]
-        np.testing.assert_allclose(row, expected, rtol=1e-8, atol=1e-8)
-    assert found[:, -1].sum() > 100
+    curves = [gs.Contour.from_segments(gs.interpolate(p, fallback="peak").spline.to_bezier()) for p in polygons]
+    source = [circle_contour(10) for _ in curves]
+    found = geometric_columns(
+        Contours(curves).arrays, Contours(source).arrays, polylines(polygons, [True] * len(polygons))
+    )
+    for k, (curve, polygon) in enumerate(zip(curves, polygons, strict=True)):
+        whole = shape(curve.cubics())
+        assert found["length"][k] == pytest.approx(whole.length)
+        assert found["bending_energy"][k] == pytest.approx(whole.bending_energy)
+        assert found["max_curvature"][k] == pytest.approx(whole.max_curvature)
+        assert found["area_change"][k] == pytest.approx(whole.area - shape(source[k].cubics()).area, abs=1e-8)
+        assert found["overshoot"][k] == pytest.approx(overshoot(curve.cubics(), polygon), abs=1e-8)
+        assert found["new_crossings"][k] == self_crossings(curve.cubics())
+    assert sum(found["new_crossings"]) > 100
 
 
 def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
@@ -69,7 +83,7 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
         842,-68 826.5,-83.5 811,-99"""
     degrees = [2, 2, 2, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 2, 2, 2, 2, 2, 2, 2, 1, 2, 1, 2, 2]
     contour = gs.Contour(np.array([p.split(",") for p in points.split()], dtype=float), np.array(degrees))
-    measures = convert_smooth([contour], gs.Options(), 1.0)[0].measures
+    measures = smoothed([contour], gs.Options(), 1.0)[0].measures
     assert measures.within_tolerance
     assert measures.deviation_bound is not None
     assert measures.deviation_bound <= 1
@@ -95,7 +109,7 @@ def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon()
     for seed in range(6):
         contour = wobbly(100, seed)
         flips.add(bool(canonical_contours(Contours([contour]).arrays).flipped[0]))
-        result = convert_smooth([contour], gs.Options(), 1.0)[0]
+        result = smoothed([contour], gs.Options(), 1.0)[0]
         (arc,) = result.interpolations
         plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)
         np.testing.assert_allclose(arc.spline.control_points, plain.spline.control_points, atol=1e-6)
@@ -114,7 +128,7 @@ def test_segments_of_no_length_and_all_variants_are_taken() -> None:
     circle = circle_contour(100)
     doubled = gs.Contour(np.concatenate([circle.points[:1], circle.points]), np.array([1, 3, 3, 3, 3]))
     for variant in range(5):
-        measures = convert_smooth([doubled], gs.Options(variant=variant), 1.0)[0].measures
+        measures = smoothed([doubled], gs.Options(variant=variant), 1.0)[0].measures
         assert measures.within_tolerance
         assert measures.vertices < 16
 
@@ -122,7 +136,7 @@ def test_segments_of_no_length_and_all_variants_are_taken() -> None:
 def test_best_takes_no_more_vertices_than_fast() -> None:
     contours = [wobbly(200, seed) for seed in range(4)]
     fast, best = (
-        sum(r.measures.vertices for r in convert_smooth(contours, gs.Options(effort=effort), 0.5))
+        sum(r.measures.vertices for r in smoothed(contours, gs.Options(effort=effort), 0.5))
         for effort in ("fast", "best")
     )
     assert best <= fast

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
-from ..outlines.outline import Contours, Outline
+from ..outlines.outline import Outline
 from ..types import BoolArray
 from .options import Options
-from .results import ContourResults, ConvertedContours, GlyphResult, MeasureColumns
+from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns
 
 DEFAULTS = Options()
 
@@ -112,14 +112,16 @@ def _convert_contours(
 ) -> ConvertedContours:  # fmt: skip
     """All contours through the mode that the options ask for; an error's ``contour`` is the index."""
     # Here and not above, as these bring the compiler with them: the package opens without.
+    if contours.num_contours == 0:
+        return NOTHING
     if options.corners == "sharp":
         from .sharp.sharp_fit import convert_sharp
 
-        return ContourResults(convert_sharp(Contours(contours), options, tolerance, em)).arrays
+        return convert_sharp(contours, options, tolerance, em)
     if not options.is_fixed:
         from .smooth.smooth_fit import convert_smooth
 
-        return ContourResults(convert_smooth(Contours(contours), options, tolerance)).arrays
+        return convert_smooth(contours, options, tolerance)
     from .fixed_sampling import convert_fixed
 
     return convert_fixed(contours, options, tolerance)

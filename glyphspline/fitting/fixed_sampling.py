@@ -16,7 +16,7 @@ from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
 from .certified_distance import certified_distance
-from .measures import check_coordinates, geometric_columns, solved_columns
+from .measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from .options import Options
 from .policy import interpolated
 from .results import ConvertedContours
@@ -77,7 +77,7 @@ def through_polygons(
     closed = np.ones(len(counts), dtype=np.bool_)
     curves = ContourArrays(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3), ends, 3 * ends)
     polygons = Polylines(points, ends, closed)
-    measures: dict[str, Sequence[Any]] = solved_columns(found)
+    measures: dict[str, Sequence[Any]] = solved_columns([(found, np.arange(len(counts)))])
     if options.measure:
         if places is not None:
             measures |= _distances(contours, written, places, ends, found.results(), tolerance)
@@ -113,8 +113,7 @@ def _distances(
         distance = certified_distance(written[i:j], cubics[a:b], anchors, SHARPNESS * tolerance, tolerance)
         bounds.append(distance.bound)
         gaps.append(distance.measured)
-    within = [bound <= tolerance for bound in bounds]
-    return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
+    return distance_columns(gaps, bounds, tolerance)
 
 
 def _anchors(places: FloatArray, arc: Interpolation, segments: int) -> FloatArray:

@@ -41,20 +41,31 @@ def check_coordinates(contours: ContourArrays) -> None:
                 raise error.locate(contour=k) from None
 
 
-def solved_columns(found: BatchedInterpolation) -> Columns:
-    """What the interpolation itself knows of closed curves, one a contour: the measures of ``results.SOLVED``."""
-    counts, iterations, fallbacks = found.whole[:, 1:4].T
-    residuals = found.residuals[found.residual_offsets[1:] - 1]
+def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Columns:
+    """What the interpolation itself knows of closed curves, one a contour: the measures of ``results.SOLVED``.
+
+    Args:
+        parts: in the order of the contours, results of a batch, and the numbers in it of the polygons chosen.
+    """
+    counts, iterations, fallbacks = np.concatenate([found.whole[which, 1:4] for found, which in parts]).T
+    residuals = np.concatenate([found.residuals[found.residual_offsets[which + 1] - 1] for found, which in parts])
+    tolerances = np.concatenate([found.tolerances[which] for found, which in parts])
     return {
         "vertices": counts.tolist(),
         "segments": counts.tolist(),
         "numbers": (2 * counts).tolist(),
         "iterations": iterations.tolist(),
         "residual": residuals.tolist(),
-        "converged": (residuals < found.tolerances).tolist(),
-        "rate_bound": found.rates.tolist(),
+        "converged": (residuals < tolerances).tolist(),
+        "rate_bound": np.concatenate([found.rates[which] for found, which in parts]).tolist(),
         "fallbacks": fallbacks.tolist(),
     }
+
+
+def distance_columns(gaps: Sequence[float], bounds: Sequence[float], tolerance: float) -> Columns:
+    """Distances seen, and certified bounds of them, against the tolerance, all in font units."""
+    within = [bound <= tolerance for bound in bounds]
+    return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 
 def certified_rate(arc: Interpolation) -> float:

@@ -11,6 +11,8 @@ import numpy as np
 
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import (
+    NO_CONTOURS,
+    NO_POLYLINES,
     ContourArrays,
     Polylines,
     joined,
@@ -104,9 +106,12 @@ class ConvertedContours:
     arc_offsets: IntArray
     measures: MeasureColumns
 
+    def __len__(self) -> int:
+        return self.source.num_contours
+
     def part(self, first: int, last: int) -> ConvertedContours:
         """The contours from ``first`` up to ``last``, as views."""
-        if first == 0 and last == self.source.num_contours:
+        if first == 0 and last == len(self):
             return self
         a, b = int(self.arc_offsets[first]), int(self.arc_offsets[last])
         return ConvertedContours(
@@ -136,6 +141,34 @@ class ConvertedContours:
             )
             for source, (i, j), (a, b), curve, row in each
         ]
+
+
+def assembled(chosen: Sequence[tuple[ConvertedContours, int]]) -> ConvertedContours:
+    """One of each contour's results: contour c's is number ``chosen[c][1]`` of ``chosen[c][0]``."""
+    first = chosen[0][0] if chosen else NOTHING
+    if all(found is first and k == c for c, (found, k) in enumerate(chosen)) and len(chosen) == len(first):
+        return first
+    return concatenated([found.part(k, k + 1) for found, k in chosen])
+
+
+def concatenated(parts: Sequence[ConvertedContours]) -> ConvertedContours:
+    """Several results end to end."""
+    names = {name: None for part in parts for name in part.measures}
+    return ConvertedContours(
+        joined([part.source for part in parts]),
+        joined([part.curves for part in parts]),
+        joined_polylines([part.polygons for part in parts]),
+        Views(sum(len(part.arcs) for part in parts), lambda: [arc for part in parts for arc in part.arcs]),
+        joined_polylines([part.controls for part in parts]),
+        joined_offsets([part.arc_offsets for part in parts]),
+        {name: [x for part in parts for x in part.measures.get(name, [None] * len(part))] for name in names},
+    )
+
+
+NOTHING = ConvertedContours(
+    NO_CONTOURS, NO_CONTOURS, NO_POLYLINES, (), NO_POLYLINES, np.zeros(1, dtype=np.int64), {}
+)  # fmt: skip
+"""Results of no contours."""
 
 
 class ContourResults(Views[ContourResult]):
@@ -224,15 +257,4 @@ def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArr
     parts = [own for own in contours if isinstance(own, ContourResults)]
     if parts and all(own.batch is parts[0].batch and own.first == a for own, a in zip(parts, offsets, strict=False)):
         return parts[0].batch.part(0, parts[-1].last), offsets
-    arrays = [own.arrays for own in parts]
-    arcs = [arc for own in arrays for arc in own.arcs]
-    columns = {name: None for own in arrays for name in own.measures}
-    measures = {
-        name: [value for own in arrays for value in own.measures.get(name, [None] * own.source.num_contours)]
-        for name in columns
-    }
-    return ConvertedContours(
-        joined([own.source for own in arrays]), joined([own.curves for own in arrays]),
-        joined_polylines([own.polygons for own in arrays]), arcs, joined_polylines([own.controls for own in arrays]),
-        joined_offsets([own.arc_offsets for own in arrays]), measures,
-    ), offsets  # fmt: skip
+    return concatenated([own.arrays for own in parts]), offsets

@@ -59,16 +59,27 @@ class Polylines(NamedTuple):
         return Polylines(self.points[offsets[0] : offsets[-1]], offsets - offsets[0], self.closed[first:last])
 
 
+def offsets_of(lengths: Sequence[int] | IntArray) -> IntArray:
+    """(C + 1,) where each of C parts begins that lie end to end, and their total length."""
+    offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
+    np.cumsum(lengths, out=offsets[1:])
+    return offsets
+
+
 def polylines(parts: Sequence[FloatArray], closed: Sequence[bool] | BoolArray) -> Polylines:
     """Polygons (n, 2) end to end."""
     points = np.concatenate([np.empty((0, 2)), *parts])
     return Polylines(points, offsets_of([len(part) for part in parts]), np.array(closed, dtype=np.bool_))
 
 
-NONE = ContourArrays(
+NO_CONTOURS = ContourArrays(
     np.empty((0, 2)), np.empty(0, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
 )
 """No contours."""
+
+
+NO_POLYLINES = polylines([], [])
+"""No polygons."""
 
 
 def joined(parts: Sequence[ContourArrays]) -> ContourArrays:
@@ -76,7 +87,7 @@ def joined(parts: Sequence[ContourArrays]) -> ContourArrays:
     if len(parts) == 1:
         return parts[0]
     if not parts:
-        return NONE
+        return NO_CONTOURS
     return ContourArrays(
         np.concatenate([part.points for part in parts]),
         np.concatenate([part.degrees for part in parts]),
@@ -87,8 +98,8 @@ def joined(parts: Sequence[ContourArrays]) -> ContourArrays:
 
 def joined_polylines(parts: Sequence[Polylines]) -> Polylines:
     """The polylines of several arrays end to end."""
-    if len(parts) == 1:
-        return parts[0]
+    if len(parts) < 2:
+        return parts[0] if parts else NO_POLYLINES
     points, closed = (np.concatenate([part[k] for part in parts]) for k in (0, 2))
     return Polylines(points, joined_offsets([part.offsets for part in parts]), closed)
 
@@ -97,10 +108,3 @@ def joined_offsets(parts: Sequence[IntArray]) -> IntArray:
     """Offsets (C + 1,) of arrays end to end, from those of each."""
     ends = np.cumsum([0, *(int(part[-1]) for part in parts)])
     return np.concatenate([[0], *(part[1:] + end for part, end in zip(parts, ends, strict=False))]).astype(np.int64)
-
-
-def offsets_of(lengths: Sequence[int] | IntArray) -> IntArray:
-    """(C + 1,) where each of C parts begins that lie end to end, and their total length."""
-    offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
-    np.cumsum(lengths, out=offsets[1:])
-    return offsets

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..curves.bezier import evaluate
 from ..types import FloatArray, IntArray, Views
-from .contour_arrays import NONE, ContourArrays, offsets_of
+from .contour_arrays import NO_CONTOURS, ContourArrays, offsets_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ def _views(contours: ContourArrays) -> list[Contour]:
 
 def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:
     if not contours:
-        return NONE
+        return NO_CONTOURS
     return ContourArrays(
         np.concatenate([contour.points for contour in contours]),
         np.concatenate([contour.degrees for contour in contours]),

@@ -6,7 +6,7 @@ within the tolerance, measures it, and fits contours again whose results cross t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,12 +15,11 @@ from ...curves.bspline import Spline
 from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import ContourArrays
-from ...outlines.outline import Contour, Contours
-from ...types import FloatArray, IntArray
-from ..measures import Survey, certified_rate, check_coordinates, survey
+from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ...types import FloatArray, IntArray, Views
+from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
-from ..results import ContourResult, Measures
+from ..results import ConvertedContours, assembled
 from .assembly import Pieces, certify, cut_closer, cut_contours, put_together
 from .segmentation import MOST_SPANS
 from .split_contours import Settings, SplitContours
@@ -50,86 +49,94 @@ In the end the source's own segments take their place.
 """
 
 
-def convert_sharp(contours: Sequence[Contour], options: Options, tolerance: float, em: float) -> list[ContourResult]:
+def convert_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> ConvertedContours:
     """Fit and measure contours; ``tolerance`` and ``em`` are in font units.
 
     Results that cross themselves where their source did not are fitted again more closely, and flagged if that is no
     cure.
 
     Raises:
-        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
-    if not contours:
-        return []
-    check_coordinates(Contours(contours).arrays)
-    results: dict[int, ContourResult] = {}
-    left = list(range(len(contours)))
+    check_coordinates(contours)
+    found: dict[int, tuple[ConvertedContours, int]] = {}
+    left = list(range(contours.num_contours))
     for share in CLOSER:
         if not left:
             break
-        own = _contour_results([contours[c] for c in left], options, tolerance, share, em)
-        results |= zip(left, own, strict=True)
-        left = [c for c in left if results[c].measures.new_crossings]
-    return [results[c] for c in range(len(contours))]
+        try:
+            own = _converted(contours.chosen(left), options, tolerance, share, em)
+        except PolygonError as error:
+            error.contour = None if error.contour is None else left[error.contour]
+            raise
+        found |= {c: (own, k) for k, c in enumerate(left)}
+        left = [c for k, c in enumerate(left) if own.measures["new_crossings"][k]]
+    return assembled([found[c] for c in range(contours.num_contours)])
 
 
-def _contour_results(
-    contours: Sequence[Contour], options: Options, tolerance: float, share: float, em: float
-) -> list[ContourResult]:
+def _converted(
+    source: ContourArrays, options: Options, tolerance: float, share: float, em: float
+) -> ConvertedContours:  # fmt: skip
     """Contours fitted to within a share of the tolerance, and measured."""
-    source = Contours(contours).arrays
     fit = fit_sharp(source, options, share * tolerance, em)
-    _, starts, vertices, _ = fit.pieces
+    where, starts, vertices, _ = fit.pieces
     # Where two pieces meet, the vertex belongs to the second one.
-    polygons = np.delete(vertices, starts[1:] - 1, axis=0)
-    offsets = starts[fit.offsets] - fit.offsets
-    curves = Contours(fit.curve)
-    measures = _measures(fit, survey(fit.curve, source, polygons, offsets), tolerance)
-    return [
-        ContourResult(contour, polygons[offsets[c] : offsets[c + 1]], fit.interpolations(c), curves[c], measures[c])
-        for c, contour in enumerate(contours)
-    ]
+    corners = np.delete(vertices, starts[1:] - 1, axis=0)
+    polygons = Polylines(corners, starts[fit.offsets] - fit.offsets, np.ones(source.num_contours, dtype=np.bool_))
+    first = fit.offsets[:-1]
+    bounds, gaps = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
+    arcs = np.flatnonzero(where[:, 3] > 0)
+    return ConvertedContours(
+        source,
+        fit.curve,
+        polygons,
+        Views(len(arcs), lambda: [fit.interpolation(q) for q in arcs.tolist()]),
+        _control_polygons(fit, arcs),
+        np.searchsorted(arcs, fit.offsets),
+        _solved_columns(fit)
+        | distance_columns(gaps.tolist(), bounds.tolist(), tolerance)
+        | geometric_columns(fit.curve, source, polygons),
+    )
 
 
-def _measures(fit: SharpFit, found: Survey, tolerance: float) -> list[Measures]:
-    """All that is known of each contour's result. Of several arcs the worst counts, and the most iterations.
-
-    Arcs of one span are plain cubics, in which nothing is iterated.
-    """
+def _solved_columns(fit: SharpFit) -> Columns:
+    """Of several arcs the worst counts, and the most iterations. In arcs of one span nothing is iterated."""
     spans, first = fit.pieces.where[:, 3], fit.offsets[:-1]
     segments = np.add.reduceat(np.maximum(spans, 1), first)
     numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4, 2), first)
-    bound, gap = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
     arcs: list[list[Interpolation]] = [[] for _ in first]
     for q, arc in fit.splines.items():
         arcs[fit.pieces.where[q, 0]].append(arc)
-    rows = [values.tolist() for values in (segments, numbers, bound, gap, *found)]
-    results = []
-    for own, segment, number, top, seen, length, change, energy, curvature, beyond, after, before in zip(
-        arcs, *rows, strict=True
-    ):
-        results.append(
-            Measures(
-                vertices=segment,
-                segments=segment,
-                numbers=number,
-                iterations=max((arc.iterations for arc in own), default=None),
-                residual=max((arc.max_error for arc in own), default=None),
-                converged=all(arc.converged for arc in own) if own else None,
-                rate_bound=max((certified_rate(arc) for arc in own), default=None),
-                fallbacks=sum(arc.fallbacks for arc in own),
-                deviation=seen,
-                deviation_bound=top,
-                within_tolerance=top <= tolerance,
-                length=length,
-                area_change=change,
-                bending_energy=energy,
-                max_curvature=curvature,
-                overshoot=beyond,
-                new_crossings=max(after - before, 0),
-            )
-        )
-    return results
+    return {
+        "vertices": segments.tolist(),
+        "segments": segments.tolist(),
+        "numbers": numbers.tolist(),
+        "iterations": [max((arc.iterations for arc in own), default=None) for own in arcs],
+        "residual": [max((arc.max_error for arc in own), default=None) for own in arcs],
+        "converged": [all(arc.converged for arc in own) if own else None for own in arcs],
+        "rate_bound": [max((certified_rate(arc) for arc in own), default=None) for own in arcs],
+        "fallbacks": [sum(arc.fallbacks for arc in own) if own else None for own in arcs],
+    }
+
+
+def _control_polygons(fit: SharpFit, arcs: IntArray) -> Polylines:
+    """The control polygons of the arcs."""
+    spans = fit.pieces.where[arcs, 3]
+    offsets = offsets_of(np.where(spans == 1, 4, spans + 3))
+    points = np.empty((offsets[-1], 2))
+    single = arcs[spans == 1]
+    points[offsets[:-1][spans == 1][:, None] + np.arange(4)] = _single_spans(fit.pieces, single)
+    for k, q in enumerate(arcs.tolist()):
+        if spans[k] > 1:
+            points[offsets[k] : offsets[k + 1]] = fit.splines[q].spline.control_points
+    return Polylines(points, offsets, np.zeros(len(arcs), dtype=np.bool_))
+
+
+def _single_spans(pieces: Pieces, which: IntArray) -> FloatArray:
+    """(k, 4, 2) control points of the arcs ``which``, of one span each."""
+    p0, p1 = pieces.vertices[pieces.starts[which]], pieces.vertices[pieces.starts[which] + 1]
+    chord, tangents = np.hypot(*(p1 - p0).T)[:, None], pieces.tangents[which]
+    return np.stack([p0, p0 + chord / 3 * tangents[:, 0], p1 - chord / 3 * tangents[:, 1], p1], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,32 +158,23 @@ class SharpFit:
     bounds: FloatArray
     gaps: FloatArray
 
-    def interpolations(self, c: int) -> tuple[Interpolation, ...]:
-        """The arcs of contour c."""
-        first, last = self.offsets[c : c + 2].tolist()
-        spans = self.pieces.where[first:last, 3].tolist()
-        return tuple(
-            self.splines[q] if k > 1 else _single_span(self.pieces, q) for q, k in enumerate(spans, first) if k
+    def interpolation(self, q: int) -> Interpolation:
+        """Arc q; one of a single span interpolates its two ends as it is."""
+        if q in self.splines:
+            return self.splines[q]
+        controls = _single_spans(self.pieces, np.array([q]))[0]
+        knots = np.array([0.0, np.hypot(*(controls[3] - controls[0]))])
+        return Interpolation(
+            spline=Spline.trusted(controls, knots, 3, False),
+            parameters=knots,
+            intervals=np.stack([knots, knots], axis=1),
+            iterations=0,
+            residuals=np.zeros(1),
+            converged=True,
+            fallbacks=0,
+            rate_bound=0.0,
+            merged=np.empty(0, dtype=np.int64),
         )
-
-
-def _single_span(pieces: Pieces, q: int) -> Interpolation:
-    """Piece q, an arc of one span, as an interpolation: nothing is left to iterate there."""
-    (p0, p1), (tangent0, tangent1) = pieces.vertices[pieces.starts[q] :][:2], pieces.tangents[q]
-    chord = np.hypot(*(p1 - p0))
-    knots = np.array([0.0, chord])
-    controls = np.array([p0, p0 + chord / 3 * tangent0, p1 - chord / 3 * tangent1, p1])
-    return Interpolation(
-        spline=Spline.trusted(controls, knots, 3, False),
-        parameters=knots,
-        intervals=np.stack([knots, knots], axis=1),
-        iterations=0,
-        residuals=np.zeros(1),
-        converged=True,
-        fallbacks=0,
-        rate_bound=0.0,
-        merged=np.empty(0, dtype=np.int64),
-    )
 
 
 def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:

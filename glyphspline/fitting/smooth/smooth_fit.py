@@ -1,4 +1,4 @@
-"""A glyph's contours through the smooth mode: fitted and measured together, and those again that cross themselves."""
+"""The smooth mode: one closed curve a contour, and those contours again whose curves cross themselves."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...interpolation.result import reversed_interpolation, turned
-from ...outlines.outline import Contour, Contours
-from ...types import FloatArray, IntArray
+from ...interpolation.result import Interpolation, reversed_interpolation, turned
+from ...outlines.contour_arrays import ContourArrays, polylines
+from ...types import FloatArray, Views
 from ..certified_distance import certified_distance, sharpen_spans
-from ..measures import check_coordinates
+from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from ..options import Options
-from ..results import ContourResult, Measures
+from ..results import ConvertedContours, assembled
 from .canonical_contours import CanonicalContours, canonical_contours
-from .forms import AREA, CROSSINGS, CURVATURE, ENERGY, LENGTH, OVERSHOOT, forms
 from .refine import Round, refined
 
 SHARPNESS = 0.02
@@ -26,10 +25,8 @@ AGAIN = ((1.0, 3), (0.5, 3), (0.25, 3))
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
 """
 
-NO_POLYGONS = np.empty((0, 2))
 
-
-def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: float) -> list[ContourResult]:
+def convert_smooth(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
     """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
 
     Results that cross themselves where their source did not are fitted again, with fewer vertices and more closely; the
@@ -37,88 +34,73 @@ def convert_smooth(contours: Sequence[Contour], options: Options, tolerance: flo
     some.
 
     Raises:
-        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index in the list.
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
-    if not contours:
-        return []
-    given = Contours(contours).arrays
-    check_coordinates(given)
-    canonical = canonical_contours(given)
-    source = forms(canonical.cubics, canonical.offsets, NO_POLYGONS, canonical.offsets)
-    near = np.full(len(contours), tolerance)
-    results: dict[int, ContourResult] = {}
-    left = np.arange(len(contours))
+    check_coordinates(contours)
+    canonical = canonical_contours(contours)
+    near = np.full(contours.num_contours, tolerance)
+    best: dict[int, tuple[ConvertedContours, int]] = {}
+    left = np.arange(contours.num_contours)
     for share, early in ((1.0, None), *AGAIN):
-        near[left] = share * tolerance
-        kept = refined(canonical, left, options, near, early)
-        own = _measured(canonical, left, [kept[k] for k in left.tolist()], source, tolerance)
-        for k, measures in zip(left.tolist(), own, strict=True):
-            if k not in results or _rank(measures) < _rank(results[k].measures):
-                results[k] = _result(contours[k], *kept[k], bool(canonical.flipped[k]), measures)
-        left = left[[bool(measures.new_crossings) for measures in own]]
         if len(left) == 0:
             break
-    return [results[k] for k in range(len(contours))]
+        near[left] = share * tolerance
+        kept = refined(canonical, left, options, near, early)
+        own = _converted(contours, canonical, left.tolist(), [kept[k] for k in left.tolist()], tolerance)
+        for j, k in enumerate(left.tolist()):
+            if k not in best or _rank(own, j) < _rank(*best[k]):
+                best[k] = own, j
+        left = left[np.array(own.measures["new_crossings"]) > 0]
+    return assembled([best[k] for k in range(contours.num_contours)])
 
 
-def _rank(measures: Measures) -> tuple[bool, int]:
+def _rank(found: ConvertedContours, k: int) -> tuple[bool, int]:
     """The lower, the better: within the tolerance before all, then few crossings."""
-    return not measures.within_tolerance, measures.new_crossings or 0
+    return not found.measures["within_tolerance"][k], found.measures["new_crossings"][k]
 
 
-def _result(contour: Contour, found: Round, i: int, flipped: bool, measures: Measures) -> ContourResult:
-    """Part i of a round, in the direction in which the contour was given."""
-    points, pieces = found.part(found.points, i), found.part(found.pieces, i)
-    if flipped:
-        points, pieces = turned(points), pieces[::-1, ::-1]
-    curve = Contour(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3))
-    result = reversed_interpolation(found.found[i]) if flipped else found.found[i]
-    return ContourResult(contour, points, (result,), curve, measures)
-
-
-def _measured(
+def _converted(
+    contours: ContourArrays,
     canonical: CanonicalContours,
-    which: IntArray,
+    which: list[int],
     kept: Sequence[tuple[Round, int]],
-    source: FloatArray,
     tolerance: float,
-) -> list[Measures]:
-    """All that is known of some contours' results."""
-    parts = [found.part(found.pieces, i) for found, i in kept]
-    offsets = np.cumsum([0] + [len(part) for part in parts])
-    polygons = np.concatenate([found.part(found.points, i) for found, i in kept])
-    form = forms(np.concatenate(parts), offsets, polygons, offsets)
-    change = np.where(canonical.flipped[which], -1, 1) * (form[:, AREA] - source[which, AREA])
-    crossings = np.maximum(form[:, CROSSINGS] - source[which, CROSSINGS], 0).astype(int).tolist()
-    results = []
-    for k, (found, i), row, difference, crossed in zip(
-        which.tolist(), kept, form.tolist(), change.tolist(), crossings, strict=True
-    ):
-        bound, gap = _certificate(canonical, k, found, i, tolerance)
-        _, n, iterations, fallbacks, _ = found.found.whole[i].tolist()
-        residual = float(found.found.residuals[found.found.residual_offsets[i + 1] - 1])
-        results.append(
-            Measures(
-                vertices=n,
-                segments=n,
-                numbers=2 * n,
-                iterations=iterations,
-                residual=residual,
-                converged=residual < float(found.found.tolerances[i]),
-                rate_bound=float(found.found.rates[i]),
-                fallbacks=fallbacks,
-                deviation=gap,
-                deviation_bound=bound,
-                within_tolerance=bound <= tolerance,
-                overshoot=row[OVERSHOOT],
-                length=row[LENGTH],
-                area_change=difference,
-                bending_energy=row[ENERGY],
-                max_curvature=row[CURVATURE],
-                new_crossings=crossed,
-            )
-        )
-    return results
+) -> ConvertedContours:
+    """Results for some contours from their rounds, measured as they are fitted, in the direction they were given."""
+    flipped = canonical.flipped[which].tolist()
+    points = [found.part(found.points, i) for found, i in kept]
+    pieces = [found.part(found.pieces, i) for found, i in kept]
+    controls = [found.part(found.found.controls, i) for found, i in kept]
+    parts = [canonical.cubics[slice(*canonical.offsets[k : k + 2])] for k in which]
+    polygons, closed = polylines(points, [True] * len(points)), [True] * len(points)
+    geometry = geometric_columns(_end_to_end(pieces), _end_to_end(parts), polygons)
+    changes = zip(geometry["area_change"], flipped, strict=True)
+    geometry["area_change"] = [-change if back else change for change, back in changes]
+    distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in zip(which, kept, strict=True)]
+    bounds, gaps = [bound for bound, _ in distances], [gap for _, gap in distances]
+
+    def arcs() -> list[Interpolation]:
+        each = zip(kept, flipped, strict=True)
+        return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
+
+    return ConvertedContours(
+        contours.chosen(which),
+        _end_to_end([part[::-1, ::-1] if back else part for part, back in zip(pieces, flipped, strict=True)]),
+        polylines([turned(part) if back else part for part, back in zip(points, flipped, strict=True)], closed),
+        Views(len(which), arcs),
+        polylines([turned(part) if back else part for part, back in zip(controls, flipped, strict=True)], closed),
+        np.arange(len(which) + 1),
+        solved_columns([(found.found, np.array([i])) for found, i in kept])
+        | distance_columns(gaps, bounds, tolerance)
+        | geometry,
+    )
+
+
+def _end_to_end(cubics: Sequence[FloatArray]) -> ContourArrays:
+    """Closed chains of cubics (m, 4, 2) as contours."""
+    offsets = np.cumsum([0, *map(len, cubics)])
+    points = np.concatenate([part[:, :3].reshape(-1, 2) for part in cubics])
+    return ContourArrays(points, np.full(offsets[-1], 3), offsets, 3 * offsets)
 
 
 def _certificate(
