@@ -60,3 +60,14 @@ def test_crossings_and_overshoot_are_those_that_every_chord_gives() -> None:
         if len(polygon) >= 3:
             assert overshoot(cubics, polygon) == pytest.approx(farthest_from_hull(points, polygon), abs=1e-9)
     assert counted > 20
+
+
+def test_a_point_in_line_with_a_far_side_of_the_hull_is_not_outside() -> None:
+    """Vertices on straight sides lie outside of the lines of others by rounding alone."""
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        corners = rng.normal(0, 300, (3, 2))
+        share = np.linspace(0, 1, 60, endpoint=False)[:, None]
+        polygon = np.concatenate([(1 - share) * corners[k] + share * corners[(k + 1) % 3] for k in range(3)])
+        lines = np.stack([polygon + w / 3 * (np.roll(polygon, -1, axis=0) - polygon) for w in range(4)], axis=1)
+        assert overshoot(lines, polygon) < 1e-9

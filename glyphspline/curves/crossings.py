@@ -134,18 +134,21 @@ def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, po
 def outside(hull: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a convex polygon, 0 within."""
     n = len(hull)
-    nearest, found = np.inf, False
+    seen = n < 3
     for k in range(n):
-        ax, ay = hull[k, 0], hull[k, 1]
-        dx, dy = hull[k + 1 if k + 1 < n else 0, 0] - ax, hull[k + 1 if k + 1 < n else 0, 1] - ay
-        # The nearest point lies on a side that is seen from outside.
-        if n < 3 or dx * (y - ay) - dy * (x - ax) < 0:
-            found = True
-            square = dx * dx + dy * dy
-            along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
-            along = min(max(along, 0.0), 1.0)
-            nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
-    return np.sqrt(nearest) if found else 0.0
+        ax, ay, bx, by = hull[k - 1, 0], hull[k - 1, 1], hull[k, 0], hull[k, 1]
+        seen = seen or side(ax, ay, bx, by, x, y) < 0
+    if not seen:
+        return 0.0
+    nearest = np.inf  # of all sides: rounding shows a point of the hull the outside of a side far away, in line with it
+    for k in range(n):
+        ax, ay = hull[k - 1, 0], hull[k - 1, 1]
+        dx, dy = hull[k, 0] - ax, hull[k, 1] - ay
+        square = dx * dx + dy * dy
+        along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
+        along = min(max(along, 0.0), 1.0)
+        nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
+    return np.sqrt(nearest)
 
 
 @compiled(internal=True)
