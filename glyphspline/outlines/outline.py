@@ -97,7 +97,7 @@ class Contours(Views[Contour]):
     def __init__(self, contours: Iterable[Contour] | ContourArrays = ()) -> None:
         if isinstance(contours, ContourArrays):
             self.arrays = contours
-            super().__init__(contours.num_contours, lambda: _views(contours))
+            super().__init__(len(contours.offsets) - 1, lambda: _views(contours))
         else:
             given = tuple(contours)
             self.arrays = _end_to_end(given)

@@ -127,22 +127,21 @@ def _contours(
         expected: (k,) the number of contours of each glyph, or ``UNUSUAL``, or ``UNCOUNTED``.
 
     Returns:
-        Points (N, 2) and degrees (m,) of all contours. Offsets and starts as in :class:`ContourArrays`, from 0 on in
-        each glyph: those of glyph g are in ``[firsts[g] + g : firsts[g + 1] + g + 1]``. (k + 1,) firsts, the number of
-        contours before each glyph. (k,) whether the careful reader has to read a glyph.
+        Points, degrees, offsets and starts as in :class:`ContourArrays`; offsets and starts count from 0 in each glyph,
+        and are one more than contours in each. (k + 1, 3) the contours, segments and points before each glyph. (k,)
+        whether the careful reader has to read a glyph.
     """
     count = len(expected)
     room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
     points, degrees = np.empty((room, 2)), np.empty(room, dtype=np.int64)
-    offsets, starts = np.zeros(room + count, dtype=np.int64), np.zeros(room + count, dtype=np.int64)
-    firsts, unusual = np.zeros(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
-    first_segment, first_point = 0, 0
+    offsets, starts = np.empty(room + count, dtype=np.int64), np.empty(room + count, dtype=np.int64)
+    before, unusual = np.zeros((count + 1, 3), dtype=np.int64), np.zeros(count, dtype=np.bool_)
     for g in range(count):
         at, stop = places[g], places[g + 1]
         odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
-        c = firsts[g] + g
+        first, first_m, first_p = before[g]
+        c, m, p = first + g, first_m, first_p
         offsets[c] = starts[c] = 0
-        m, p = first_segment, first_point
         begin = p
         drawing = False
         sx = sy = x = y = 0.0
@@ -165,7 +164,7 @@ def _contours(
                             odd = False
                             break
                     c += 1
-                    offsets[c], starts[c] = m - first_segment, p - first_point
+                    offsets[c], starts[c] = m - first_m, p - first_p
                     begin = p
                 if at >= stop:
                     break
@@ -185,13 +184,12 @@ def _contours(
                     x, y = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
                 m, p = m + 1, p + kind
             at += 1 + 2 * kind
-        found = c - firsts[g] - g
-        if odd or (expected[g] >= 0 and found != expected[g]):
-            unusual[g] = True
-            found, m, p = 0, first_segment, first_point
-        firsts[g + 1] = firsts[g] + found
-        first_segment, first_point = m, p
-    return points, degrees, offsets, starts, firsts, unusual
+        found = c - g - first
+        unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
+        before[g + 1] = before[g]
+        if not unusual[g]:
+            before[g + 1, 0], before[g + 1, 1], before[g + 1, 2] = first + found, m, p
+    return points, degrees, offsets, starts, before, unusual
 
 
 @compiled
@@ -303,23 +301,19 @@ class BulkReader:
         return found
 
     def _as_many_as_fit(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
-        gids = [gid for _, gid, _ in heads]
+        advance = self._hb.font.get_glyph_h_advance
         with self._lock:
-            places, expected = self._draw(gids)
-            points, degrees, offsets, starts, firsts, unusual = _contours(self._buffer, places, expected)
+            places, expected = self._draw([gid for _, gid, _ in heads])
+            points, degrees, offsets, starts, before, unusual = _contours(self._buffer, places, expected)
         found: list[OutlineOrError] = []
-        point = segment = 0
-        spans = pairwise(firsts.tolist())
-        for g, (head, (a, b), strange) in enumerate(zip(heads, spans, unusual.tolist(), strict=False)):
-            if strange:
+        spans = pairwise(before.tolist())
+        for g, (head, odd, ((c, m, p), (d, n, q))) in enumerate(zip(heads, unusual.tolist(), spans, strict=False)):
+            if odd:
                 found.append(self._read_carefully(Head(*head), metrics))
                 continue
             name, gid, unicodes = head
-            o, s = offsets[a + g : b + g + 1], starts[a + g : b + g + 1]
-            m, p = segment + int(o[-1]), point + int(s[-1])
-            contours = Contours(ContourArrays(points[point:p], degrees[segment:m], o, s))
-            found.append(Outline(name, gid, unicodes, self._hb.advance(gid), contours, metrics))
-            segment, point = m, p
+            own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
+            found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics))
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:
@@ -329,23 +323,21 @@ class BulkReader:
             (k + 1,) where in the buffer each of the k glyphs drawn begins, and the end; (k,) expected numbers of
             contours. k is at least 1; a glyph alone that does not fit ends at the capacity.
         """
-        buffer, font, functions, pointer = self._buffer, self._hb.font, _functions(), self._pointer
         expected = self._expected(gids)
-        buffer[USED] = FIRST
-        places = [FIRST]
+        draw, functions, used = self._hb.font.draw_glyph, _functions(), memoryview(self._buffer)
+        used[USED] = FIRST
+        places: list[float] = [FIRST]
         for gid, count in zip(gids, expected.tolist(), strict=True):
             if count > 0 or count == UNCOUNTED:
-                font.draw_glyph(gid, functions, pointer)
-            used = int(buffer[USED])
-            if used == BUFFER_SIZE and len(places) > 1:
+                draw(gid, functions, self._pointer)
+            if used[USED] == BUFFER_SIZE and len(places) > 1:
                 break
-            places.append(used)
-        drawn = len(places) - 1
+            places.append(used[USED])
+        expected = expected[: len(places) - 1]
         if not self._hb.has_records:
-            for k, gid in enumerate(gids[:drawn]):
-                if not self._hb.is_whole(gid):
-                    expected[k] = UNUSUAL
-        return np.array(places, dtype=np.int64), expected[:drawn]
+            is_whole = self._hb.is_whole
+            expected[[not is_whole(gid) for gid in gids[: len(expected)]]] = UNUSUAL
+        return np.array(places, dtype=np.int64), expected
 
     def _expected(self, gids: Sequence[int]) -> IntArray:
         if self._records is None:
