@@ -196,6 +196,26 @@ def loops(path: Path) -> None:
     (path.parent / "composed.ttf").rename(path)
 
 
+def short_table(path: Path) -> None:
+    """A table ``loca`` that leads beyond the end of ``glyf``."""
+    data = bytearray((FONTS / "edge-cases.ttf").read_bytes())
+    tables = TTFont(FONTS / "edge-cases.ttf").reader.tables
+    at = tables["loca"].offset + tables["loca"].length - 2
+    data[at : at + 2] = b"\xff\xff"
+    path.write_bytes(data)
+
+
+def test_a_broken_glyph_has_the_same_error_whenever_it_is_read(tmp_path: Path) -> None:
+    cut_record(tmp_path / "cut.ttf")
+    short_table(tmp_path / "short.ttf")
+    for file in ("cut.ttf", "short.ttf"):
+        font = open_font(tmp_path / file)
+        once, again = (font.outlines(font.glyph_names, errors="return") for _ in range(2))
+        assert any(isinstance(found, GlyphsplineError) for found in once)
+        for found, expected in zip(again, once, strict=True):
+            assert_same(found, expected)
+
+
 @pytest.mark.parametrize(("damage", "broken"), [(cut_record, 1), (cut_char_string, 1), (loops, 3)])
 def test_a_broken_glyph_costs_itself_alone(damage: Callable[[Path], None], broken: int, tmp_path: Path) -> None:
     damage(tmp_path / "broken.font")

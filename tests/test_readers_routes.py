@@ -49,7 +49,7 @@ def routes(
     if "glyf" in tables:
         records = GlyphRecords(tables.reader["glyf"], tables["loca"].locations, tables.getGlyphOrder())
     harfbuzz = HarfBuzz(hb.Blob(data), face_index, location)
-    return tables, harfbuzz, records, FontTools(tables, harfbuzz.normalized)
+    return tables, harfbuzz, records, FontTools(data, face_index, harfbuzz.normalized)
 
 
 def from_leftmost(contour: Contour) -> FloatArray:

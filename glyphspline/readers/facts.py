@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,10 +13,13 @@ from ..outlines.outline import Outline
 from .open import open_source
 from .opentype.font import Font
 from .pens import ContourPen
-from .source import Source
+from .source import OutlineOrError, Source
 
 OVERLAP = 1e-5
 """Of a square em: overlaps of less area are rounding."""
+
+BATCH = 200
+"""Glyphs read at once: a few megabytes of outlines."""
 
 
 def file_facts(
@@ -47,10 +50,8 @@ def source_facts(source: Source) -> dict[str, Any]:
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
     can_tell = find_spec("pathops") is not None
-    for name in source.glyph_names:
-        try:
-            outline = source.outline(name)
-        except GlyphsplineError:
+    for name, outline in outlines_of(source):
+        if isinstance(outline, GlyphsplineError):
             broken.append(name)
             continue
         contours += len(outline.contours)
@@ -82,6 +83,13 @@ def source_facts(source: Source) -> dict[str, Any]:
         "degenerate": degenerate,
         "overlaps": overlapping if can_tell else None,
     }  # fmt: skip
+
+
+def outlines_of(source: Source) -> Iterator[tuple[str, OutlineOrError]]:
+    """Every glyph of a source, read in batches."""
+    for first in range(0, len(source.glyph_names), BATCH):
+        names = source.glyph_names[first : first + BATCH]
+        yield from zip(names, source.outlines(names, errors="return"), strict=True)
 
 
 def overlaps(outline: Outline) -> bool:

@@ -287,7 +287,8 @@ class BulkReader:
     @cached_property
     def _careful(self) -> CarefulReader:
         data = self._data or self._path.read_bytes()
-        return CarefulReader(self._path, self._hb, TTFont(BytesIO(data), fontNumber=self._face_index, lazy=True))
+        tables = TTFont(BytesIO(data), fontNumber=self._face_index, lazy=True)
+        return CarefulReader(self._path, self._hb, tables, data, self._face_index)
 
     def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
         """Read glyphs; an error takes the place of the glyph that it concerns.

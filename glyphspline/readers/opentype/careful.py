@@ -20,13 +20,13 @@ class CarefulReader:
         hb: the face in HarfBuzz.
     """
 
-    def __init__(self, path: Path, face: HarfBuzz, tables: TTFont) -> None:
+    def __init__(self, path: Path, face: HarfBuzz, tables: TTFont, data: bytes, face_index: int) -> None:
         self.hb = face
         self._path = path
-        self._fonttools = FontTools(tables, face.normalized)
         self._records = None
         if "glyf" in tables and "loca" in tables and "VARC" not in tables:
             self._records = GlyphRecords(tables.reader["glyf"], tables["loca"].locations, tables.getGlyphOrder())
+        self._fonttools = FontTools(data, face_index, face.normalized)
 
     def outline(self, head: Head, metrics: FontMetrics) -> Outline:
         """Read a glyph.

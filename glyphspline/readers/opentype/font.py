@@ -76,7 +76,7 @@ class Font(Source):
         face = HarfBuzz(hb.Blob(plain), face_index, self.location)
         if self.location:
             self.metrics = FontMetrics(self.metrics.units_per_em, *face.extents())
-        self._careful = CarefulReader(path, face, tables)
+        self._careful = CarefulReader(path, face, tables, plain, face_index)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from io import BytesIO
 from typing import Any
 
 from fontTools.misc.roundTools import otRound
@@ -14,10 +15,19 @@ from ..pens import ContourPen
 
 
 class FontTools:
-    """Outlines at a location in normalised coordinates."""
+    """Outlines at a location in normalised coordinates.
 
-    def __init__(self, tables: TTFont, normalized: Mapping[str, float]) -> None:
-        self._tables, self._normalized = tables, normalized
+    Args:
+        data: the file's bytes without compression. face_index: which face of a collection.
+        normalized: axis tag to normalised coordinate; empty at the default.
+    """
+
+    def __init__(self, data: bytes, face_index: int, normalized: Mapping[str, float]) -> None:
+        self._data, self._face_index, self._normalized = data, face_index, normalized
+
+    @cached_property
+    def _tables(self) -> TTFont:
+        return TTFont(BytesIO(self._data), fontNumber=self._face_index, lazy=True)
 
     @cached_property
     def _glyphs(self) -> Any:
@@ -30,11 +40,24 @@ class FontTools:
 
     def draw(self, name: str) -> tuple[ContourPen, float]:
         """Draw the contours of a glyph; also its advance. fontTools' exceptions pass through."""
-        pen = ContourPen(self._glyphs, name)
-        glyph = self._glyphs[name]
-        glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
-        pen.finish()
-        return pen, float(otRound(glyph.width))  # read last: drawing applies the variations of the width
+        try:
+            pen = ContourPen(self._glyphs, name)
+            glyph = self._glyphs[name]
+            glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
+            pen.finish()
+            return pen, float(otRound(glyph.width))  # read last: drawing applies the variations of the width
+        except Exception:
+            self._forget()
+            raise
+
+    def _forget(self) -> None:
+        """Open the tables again for the next glyph.
+
+        After an exception fontTools keeps tables and glyphs that are read in part. The next reading of the same glyph
+        would not find the fault.
+        """
+        for name in ("_tables", "_glyphs", "_static_glyf"):
+            self.__dict__.pop(name, None)
 
     def _shift(self, name: str) -> float:
         """How far a composite glyph moves to its left side bearing.
