@@ -1,4 +1,4 @@
-"""Files in, outlines out."""
+"""Readers: files to outlines."""
 
 from .open import AnySource, open_source
 from .opentype.font import Font, open_font

@@ -1,4 +1,4 @@
-"""What a file of glyphs holds, as plain data."""
+"""The facts of a file of glyphs as plain data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .pens import ContourPen
 from .source import OutlineOrError, Source
 
 OVERLAP = 1e-5
-"""Of a square em: overlaps of less area are rounding."""
+"""Share of a square em below which the area of an overlap counts as rounding."""
 
 BATCH = 200
 """Glyphs read at once: a few megabytes of outlines."""
@@ -25,7 +25,7 @@ BATCH = 200
 def file_facts(
     path: str | Path, face_index: int | None = None, location: Mapping[str, float] | str | None = None
 ) -> dict[str, Any]:
-    """The file's format and what each of its faces holds, or the one that is asked for; every glyph is drawn.
+    """The file's format, and the facts of each face or of the one requested. Every glyph is drawn.
 
     Raises:
         FontError: as in :func:`open_source`.
@@ -42,14 +42,14 @@ def file_facts(
 
 
 def source_facts(source: Source) -> dict[str, Any]:
-    """One face: names, metrics, axes, instances, numbers, and glyphs worth knowing about by name.
+    """The facts of one face: names, metrics, axes, instances, counts, and the names of unusual glyphs.
 
-    ``overlaps`` are glyphs whose contours overlap or cross themselves, so that parts are filled twice; null where
-    skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` have contours that enclose nothing.
+    ``overlaps`` are glyphs with contours that overlap or cross themselves; parts of them are filled twice. It is null
+    if skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` glyphs have contours that enclose nothing.
     """
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
-    can_tell = find_spec("pathops") is not None
+    has_pathops = find_spec("pathops") is not None
     for name, outline in outlines_of(source):
         if isinstance(outline, GlyphsplineError):
             broken.append(name)
@@ -58,7 +58,7 @@ def source_facts(source: Source) -> dict[str, Any]:
         segments += sum(len(contour) for contour in outline.contours)
         if any("encloses nothing" in note for note in outline.notes):
             degenerate.append(name)
-        if can_tell and overlaps(outline):
+        if has_pathops and overlaps(outline):
             overlapping.append(name)
     font = source if isinstance(source, Font) else None
     return {
@@ -81,7 +81,7 @@ def source_facts(source: Source) -> dict[str, Any]:
         "broken_glyphs": len(broken),
         "broken": broken,
         "degenerate": degenerate,
-        "overlaps": overlapping if can_tell else None,
+        "overlaps": overlapping if has_pathops else None,
     }  # fmt: skip
 
 
@@ -93,7 +93,7 @@ def outlines_of(source: Source) -> Iterator[tuple[str, OutlineOrError]]:
 
 
 def overlaps(outline: Outline) -> bool:
-    """Whether any part of a glyph is filled twice over, or inside out: its area then differs from its contours' sum."""
+    """Whether any part of a glyph is filled twice or inside out: its area then differs from the sum over contours."""
     import pathops
 
     if not outline.contours:
@@ -103,7 +103,7 @@ def overlaps(outline: Outline) -> bool:
     try:
         path.simplify(fix_winding=True)
     except pathops.PathOpsError:
-        return False  # Skia cannot tell
+        return False  # Skia fails on the glyph
     united = ContourPen()
     path.draw(united)
     united.finish()

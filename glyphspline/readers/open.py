@@ -1,4 +1,4 @@
-"""One way in for every kind of source: a look at what a path holds decides who reads it."""
+"""Opening of every kind of source; the content of a path decides which reader it gets."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ AnySource: TypeAlias = Font | Ufo | SvgDrawings
 
 STDIN = "-"
 LARGEST_INPUT = 1 << 29
-"""Bytes taken from standard input."""
+"""Limit of bytes from standard input."""
 
 _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def open_source(path: str | Path, face_index: int = 0, location: Mapping[str, float] | str | None = None) -> AnySource:
-    """Open whatever holds glyphs: a font file, a UFO, an SVG drawing or a folder of them.
+    """Open a font file, a UFO, an SVG drawing or a folder of drawings.
 
-    What it is is told from its content, not its name.
+    The content of the path decides, not its name.
 
     Args:
         path: file or folder; ``"-"`` is a font or drawing on standard input.
         face_index, location: as in :func:`open_font`; only fonts have them.
 
     Raises:
-        FontError: nothing that can be read, or a face or location asked of what has none.
+        FontError: the path cannot be read, or it has no such face or location.
     """
     path = standard_input() if str(path) == STDIN else Path(path)
     if path.is_dir():
@@ -64,10 +64,10 @@ def _single(
 
 @cache
 def standard_input() -> Path:
-    """What comes on standard input, in a file that is there as long as this process: workers open it too.
+    """Copy standard input to a file that exists as long as this process; workers open it too.
 
     Raises:
-        FontError: nothing comes, or too much.
+        FontError: standard input is empty or too large.
     """
     data = sys.stdin.buffer.read(LARGEST_INPUT + 1)
     if not data or len(data) > LARGEST_INPUT:

@@ -1,4 +1,4 @@
-"""The pen that a font draws on to become contours."""
+"""The pen that turns the drawing operations of a glyph into contours."""
 
 # The names of a pen's methods are fontTools' own.
 # ruff: noqa: N802, N815
@@ -17,26 +17,27 @@ from ..types import FloatArray
 
 Point: TypeAlias = tuple[float, float]
 
-# Points nearer than this, in font units, are one: it absorbs the rounding of variation deltas and transforms, in
-# single precision at that, which would otherwise leave closing segments of length 1e-4, and is far below any grid.
 COINCIDENT = 1e-3
+"""Distance in font units below which points coincide.
 
-# A few hundred bytes of nested components can ask for 2^64 copies. No real glyph comes near these.
-MAX_SEGMENTS = 200_000
-MAX_COMPONENTS = 10_000
+Variation deltas and transforms round in single precision and leave closing segments of length 1e-4. A smaller value
+keeps these; a larger one comes near the grid of a font.
+"""
+
+MAX_SEGMENTS, MAX_COMPONENTS = 200_000, 10_000
+"""Limits far above any real glyph. A few hundred bytes of nested components can ask for 2^64 copies."""
 
 
 class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     """Collects contours: lines, quadratics with their implied points made explicit, and cubics.
 
-    Components are decomposed. Segments of no length are dropped. A contour whose points all lie on one
-    line encloses nothing (single points, which fonts use as anchors, are the usual case): it is left out
-    and noted. An open path is closed by a line, as every rasteriser does when filling.
+    Components are decomposed. Segments of no length are dropped. A contour whose points all lie on one line encloses
+    nothing; it is left out and noted. Most such contours are single points, which fonts use as anchors. A line closes
+    an open path, as in every rasteriser.
 
     Attributes:
-        contours: the contours so far. left_out: numbers of those left out.
-        drawn: how many there were, those left out too.
-        numbers: the number of each contour to come, if they are not drawn from 0 on without gaps.
+        contours: the contours so far. left_out: numbers of those left out. drawn: the count of both.
+        numbers: the number of each contour to come, unless contours are drawn from 0 on without gaps.
     """
 
     skipMissingComponents = False
@@ -56,7 +57,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was left out, a sentence each."""
+        """One sentence for each contour left out."""
         return tuple(f"contour {number} left out: it encloses nothing" for number in sorted(self.left_out))
 
     def finish(self) -> None:
@@ -64,7 +65,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self._closePath()
 
     def addComponent(self, glyphName: str, transformation: Any) -> None:
-        """Draw another glyph of the set in place; a loop or a flood of components is an error."""
+        """Draw another glyph of the set in place; a loop of components, or too many, is an error."""
         self._components += 1
         if glyphName in self._nesting:
             loop = [*self._nesting[self._nesting.index(glyphName) :], glyphName]
@@ -91,7 +92,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self._add(pt1, pt2, pt3)
 
     def _add(self, *to: Point) -> None:
-        """Append the segment from the current point through ``to``, unless it goes nowhere."""
+        """Append the segment from the current point through ``to``, unless all points coincide."""
         self._segments += 1
         if self._segments > MAX_SEGMENTS:
             raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
@@ -129,7 +130,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         return abs(a[0] - b[0]) <= self._coincident and abs(a[1] - b[1]) <= self._coincident
 
     def _is_wide(self) -> bool:
-        """Whether two of the points show that the contour is not flat, as in most: asked first, it is soon answered.
+        """Whether two of the points prove that the contour is not flat. Most contours pass this quick test.
 
         Two arms a, b whose ends are at most d from one line through their common start have |a × b| ≤ (|a| + |b|) d.
         """

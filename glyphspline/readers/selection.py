@@ -1,4 +1,4 @@
-"""Which glyphs of a font are wanted: text, code points, names or indices, as the fontTools subsetter has them."""
+"""Selection of glyphs by text, code points, names or indices, as in the fontTools subsetter."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Request: TypeAlias = int | str | Iterable[int | str]
 """Numbers: one or several ints, or strings of numbers and ranges such as ``"U+4E00-4E10,9F8D"`` or ``"5,10-20"``."""
 
 LAST_UNICODE = 0x10FFFF
-LAST_GID = 0xFFFFFF  # of the longest glyph index there is a table format for
+LAST_GID = 0xFFFFFF  # the largest glyph index of any table format
 
 
 class Selection(tuple[str, ...]):
-    """Glyph names, unique, in glyph index order; ``missing`` says what was asked for and is not there.
+    """Glyph names, unique, in glyph index order.
 
-    ``missing`` holds one phrase for each thing not found, in the order asked: ``"U+9F99"``, ``"glyph foo"``,
-    ``"gid 70000"``. Of a range only what exists is meant, so a range is missing when all of it is.
+    ``missing`` has one phrase for each item that the font does not have, in the order of the arguments: ``"U+9F99"``,
+    ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it.
     """
 
     missing: tuple[str, ...]
 
     def __new__(cls, names: Iterable[str] = (), missing: Iterable[str] = ()) -> Selection:
-        """A selection of ``names``, taken to be in order already."""
+        """Make a selection of ``names``, which are in order."""
         selection = super().__new__(cls, names)
         selection.missing = tuple(missing)
         return selection
@@ -42,18 +42,18 @@ def select(
     gids: Request | None = None,
     all_glyphs: bool = False,
 ) -> Selection:
-    """The union of what each argument asks for.
+    """The union of the glyphs that each argument selects.
 
     Args:
         glyph_names: all names in glyph index order. cmap: code point to name.
-        text: every character; line ends and other control characters are passed over.
+        text: every character but line ends and other control characters.
         unicodes: code points, hexadecimal in strings, with or without ``U+``; ``"*"`` is every one mapped.
         glyphs: names, or one string of names between commas or spaces; ``"*"`` is every glyph.
         gids: glyph indices, decimal in strings; ``"*"`` is every glyph.
         all_glyphs: every glyph.
 
     Raises:
-        GlyphsplineError: a string that is no list of numbers, or no argument at all.
+        GlyphsplineError: a string is not a list of numbers, or no argument is given.
     """
     if not all_glyphs and all(argument is None for argument in (text, unicodes, glyphs, gids)):
         raise GlyphsplineError("no glyphs asked for: give text, unicodes, glyphs, gids or all_glyphs")
@@ -80,7 +80,7 @@ def select(
 
 
 def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:
-    """Names mapped from code points first to last, walking the shorter of the range and the map."""
+    """Names of the code points first to last; the loop runs over the shorter of the range and the map."""
     if last - first < len(cmap):
         return [cmap[code] for code in range(first, last + 1) if code in cmap]
     return [name for code, name in cmap.items() if first <= code <= last]
@@ -95,7 +95,7 @@ def _names(glyphs: str | Iterable[str] | None) -> list[str]:
 def _ranges(
     request: Request | None, parse: Callable[[str], tuple[int, int]], everything: tuple[int, int]
 ) -> Iterator[tuple[int, int]]:
-    """First and last of each number or range asked for."""
+    """First and last of each number or range."""
     if request is None:
         return
     for part in [request] if isinstance(request, int | str) else request:
@@ -125,7 +125,7 @@ def _gid_range(item: str) -> tuple[int, int]:
 
 
 def _ends(match: re.Match[str] | None, base: int) -> tuple[int, int]:
-    """The numbers of a match; an impossible range where there is none."""
+    """The numbers of a match; an impossible range if there is none."""
     if match is None:
         return 1, 0
     return int(match[1], base), int(match[2] or match[1], base)

@@ -1,8 +1,8 @@
-"""SVG drawings as glyphs: filled paths and shapes through svgpathtools, transforms applied, y turned up.
+"""SVG drawings as glyphs: filled paths and shapes through svgpathtools, transforms applied, y up.
 
-A drawing is a font of one glyph, a folder of drawings one of as many. Drawings that this package has written bring
-name, code points and metrics with them; of others the file's name is the glyph's (``A.svg``, ``uni9F8D.svg``,
-``龍.svg``), and the view box gives the em, the ascender and the advance.
+A drawing is a font of one glyph; a folder of drawings is a font of as many glyphs. Drawings written by this package
+contain name, code points and metrics. For others the file's name is the glyph's name (``A.svg``, ``uni9F8D.svg``,
+``龍.svg``), and the view box gives em, ascender and advance.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from .pens import ContourPen
 from .source import Head, OutlineOrError, Source, opening, reason
 
 LARGEST_FILE = 1 << 26
-"""Bytes of one drawing."""
+"""Limit of bytes of one drawing."""
 
 COINCIDENT = 1e-7
-"""Points nearer than this, in units of the em, are one: drawings may be made in metres as well as in pixels."""
+"""Distance in em below which points coincide. Drawings may be in metres as well as in pixels."""
 
 
 class SvgDrawings(Source):
@@ -40,7 +40,7 @@ class SvgDrawings(Source):
         path: file or folder, as given. face_index, location: 0 and empty.
         family, style: the name of the file or folder without suffix, and "Regular".
         metrics: of the first drawing.
-        glyph_names: in the order of ``data-gid`` where every drawing has one, else of the files' names.
+        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names.
         cmap: code point to glyph.
     """
 
@@ -75,7 +75,7 @@ class SvgDrawings(Source):
 
     @cached_property
     def sha256(self) -> str:
-        """Of the bytes of all drawings in the order of their names, in hexadecimal."""
+        """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
         digest = hashlib.sha256()
         for file in self._files:
             digest.update(file.read_bytes())
@@ -89,7 +89,7 @@ def open_svg(path: str | Path) -> SvgDrawings:
     """Open an SVG file or a folder of them.
 
     Raises:
-        FontError: it cannot be read, or a drawing is broken or declares XML entities.
+        FontError: the path cannot be read, or a drawing is broken or declares XML entities.
     """
     path = Path(path)
     with opening(path, "drawing"):
@@ -97,12 +97,12 @@ def open_svg(path: str | Path) -> SvgDrawings:
 
 
 def read_drawing(file: Path) -> Outline:
-    """One drawing as an outline, y up; its number, if it has none of its own, is 0.
+    """Read one drawing as an outline, y up; its glyph index is ``data-gid``, or 0.
 
     Raises:
-        GlyphsplineError: it is too large, no SVG, or declares entities.
+        GlyphsplineError: the file is too large, not an SVG drawing, or declares entities.
     """
-    from .svg_shapes import draw_shapes  # brings SciPy with it, for which fonts have no use
+    from .svg_shapes import draw_shapes  # imports SciPy, which fonts do not need
 
     if file.stat().st_size > LARGEST_FILE:
         raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB", font=str(file))
@@ -140,7 +140,7 @@ def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
 
 
 def _metrics(root: Any) -> tuple[FontMetrics, float]:
-    """Metrics and advance: from ``data-*`` attributes, else the view box, else width and height."""
+    """Metrics and advance from ``data-*`` attributes, else from the view box, else from width and height."""
     if root.get("data-units-per-em"):
         keys = ("units-per-em", "ascender", "descender", "advance")
         em, ascender, descender, advance = (float(root.get(f"data-{key}", "nan")) for key in keys)

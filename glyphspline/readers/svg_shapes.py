@@ -1,4 +1,4 @@
-"""The shapes of an SVG document, drawn with a pen: their path data read by svgpathtools, transforms applied."""
+"""Draws the shapes of an SVG document with a pen. svgpathtools parses the path data; transforms are applied."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from ..types import FloatArray
 from .pens import Point
 
 DEEPEST = 200
-"""Groups in groups. Beyond it lies no drawing that anybody has made."""
+"""Limit of nested groups, far above any real drawing."""
 
 ARC = 45.0
-"""Degrees of an elliptic arc that become one cubic: it is then off by 4e-6 of the radius."""
+"""Degrees of an elliptic arc that become one cubic, with an error of 4e-6 of the radius."""
 
 NOT_DRAWN = {"defs", "clipPath", "mask", "symbol", "pattern", "marker", "metadata", "title", "desc", "style", "text"}
 LEFT_OUT = {"use": "clones (use)", "image": "images", "text": "text"}
@@ -28,7 +28,7 @@ FLIP = np.diag([1.0, -1.0, 1.0])
 
 
 def draw_shapes(root: Any, pen: Any) -> tuple[str, ...]:
-    """Draw all that is filled, in document order, (x, y) as (x, -y); returns a remark on each kind left out."""
+    """Draw filled shapes in document order, (x, y) as (x, -y); returns a note on each kind left out."""
     left_out: dict[str, int] = {}
     for element, matrix, filled in shapes(root, FLIP, True, left_out):
         if filled:
@@ -61,7 +61,7 @@ def shapes(
 
 
 def styles(element: Any) -> dict[str, str]:
-    """``fill`` and ``display``: of the style attribute, else of their own."""
+    """``fill`` and ``display`` from the style attribute, else from the attributes of these names."""
     found = {name: element.get(name).strip() for name in ("fill", "display") if element.get(name)}
     for item in (element.get("style") or "").split(";"):
         name, colon, value = item.partition(":")
@@ -83,7 +83,7 @@ def path_data(element: Any) -> str:
 
 
 def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
-    """Path data with a pen, subpath by subpath: two that meet in a point are not joined."""
+    """Draw path data subpath by subpath: svgpathtools would join two that meet in a point."""
     here = 0j
     for subpath in re.findall(r"[Mm][^Mm]*", data):
         start = moved_to(subpath, here)
@@ -98,7 +98,7 @@ def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
 
 
 def moved_to(subpath: str, here: complex) -> complex:
-    """Where a subpath begins."""
+    """The start point of a subpath."""
     numbers = re.findall(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", subpath)
     if len(numbers) < 2:
         raise GlyphsplineError("path data that begins nowhere")
@@ -107,7 +107,7 @@ def moved_to(subpath: str, here: complex) -> complex:
 
 
 def draw_segment(segment: Any, matrix: FloatArray, pen: Any) -> None:
-    """A line, quadratic, cubic or arc, from where the pen is."""
+    """Draw a line, quadratic, cubic or arc from the current point."""
     if isinstance(segment, Line):
         pen.lineTo(*placed([segment.end], matrix))
     elif isinstance(segment, QuadraticBezier):

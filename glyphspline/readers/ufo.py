@@ -1,4 +1,4 @@
-"""UFO sources (versions 1 to 3), through fontTools' ufoLib: the default layer, components decomposed."""
+"""UFO sources (versions 1 to 3) through fontTools' ufoLib: the default layer, components decomposed."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Ufo(Source):
         path: the folder, as given. face_index, location: 0 and empty, as a UFO is one master.
         family, style: from ``fontinfo.plist``, falling back on the folder's name and "Regular".
         metrics: units per em, ascender and descender.
-        glyph_names: by ``public.glyphOrder``, then those not in it by name. Glyphs in ``public.skipExportGlyphs``
-            are not among them, but are there to be components of others.
-        cmap: code point to the first glyph that claims it.
+        glyph_names: in the order of ``public.glyphOrder``, then the rest by name. Glyphs of
+            ``public.skipExportGlyphs`` are left out; they may still be components.
+        cmap: code point to the first glyph that has it.
     """
 
     format = "UFO"
@@ -67,7 +67,7 @@ class Ufo(Source):
 
     @cached_property
     def sha256(self) -> str:
-        """Of the names and contents of all its files, in hexadecimal."""
+        """Hash of the names and contents of all files, in hexadecimal."""
         digest = hashlib.sha256()
         for file in _files(self.path):
             content = file.read_bytes()
@@ -98,7 +98,7 @@ class Ufo(Source):
         return glyph
 
     def _code_points(self) -> dict[int, str]:
-        """Also the place where every glyph's file is looked at for entities, before ufoLib reads any."""
+        """The cmap. Every glyph's file is checked for entities here, before ufoLib reads any."""
         claims: dict[str, list[int]] = {}
         for name in self._glyphs.contents:
             try:
@@ -114,7 +114,7 @@ class Ufo(Source):
 
 
 class _Glyph:
-    """What ufoLib fills in: a width, and the calls to a point pen, which are drawn later."""
+    """A glyph as ufoLib fills it in: a width, and the calls to a point pen, recorded."""
 
     def __init__(self) -> None:
         self.width: float = 0
@@ -134,7 +134,7 @@ class _Glyph:
 
 
 class _Drawable:
-    """The glyphs as a pen looks for components: skipped ones too."""
+    """The glyph set in which a pen finds components: all glyphs, those not exported too."""
 
     def __init__(self, ufo: Ufo) -> None:
         self._ufo = ufo
@@ -150,7 +150,7 @@ def open_ufo(path: str | Path) -> Ufo:
     """Open a UFO folder.
 
     Raises:
-        FontError: it cannot be read or is no UFO.
+        FontError: the folder cannot be read or is no UFO.
     """
     path = Path(path)
     with opening(path, "UFO"):
@@ -161,10 +161,10 @@ def open_ufo(path: str | Path) -> Ufo:
 
 
 def parsed(document: bytes) -> Any:
-    """The root of an XML document that declares no entities: they can make a small file a huge one, or read another.
+    """Parse an XML document and return its root. Entities are refused: they can expand without bound or read files.
 
     Raises:
-        GlyphsplineError: it does, or is no XML at all.
+        GlyphsplineError: the document declares entities, or is not XML.
     """
     try:
         return fromstring(document)
@@ -181,7 +181,7 @@ def _exported(names: list[str], lib: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _files(folder: Path) -> Iterator[Path]:
-    """All files of a folder in a fixed order; links to folders are not followed."""
+    """All files of a folder in a fixed order, without following links to folders."""
     for here, folders, files in os.walk(folder):
         folders.sort()
         yield from (Path(here, file) for file in sorted(files))

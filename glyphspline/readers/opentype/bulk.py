@@ -353,7 +353,7 @@ class BulkReader:
         if not self._hb.has_records:
             return None
         head, loca = face.reference_table("head").data, face.reference_table("loca").data
-        kind, size = (">u4", 1) if head[50:52] == b"\0\1" else (">u2", 2)
+        kind, size = (">u2", 2) if head[50:52] == b"\0\0" else (">u4", 1)
         offsets = np.frombuffer(loca, kind, count=len(loca) // np.dtype(kind).itemsize).astype(np.int64) * size
         return np.frombuffer(face.reference_table("glyf").data, dtype=np.uint8), offsets
 

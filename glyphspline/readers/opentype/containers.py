@@ -1,4 +1,4 @@
-"""Font files as plain tables: WOFF and WOFF2 are decompressed, within bounds."""
+"""Decompression of WOFF and WOFF2 within limits."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ FORMATS = {
     b"wOFF": "WOFF",
     b"wOF2": "WOFF2",
 }
-"""What a font file is, by its first four bytes."""
+"""Format of a font file by its first four bytes."""
 
 MAX_UNPACKED = 1 << 28
-"""Bytes that a compressed font may grow to. The largest real ones, CJK faces of 65,535 glyphs, have a tenth of it;
-a file of a few hundred kilobytes made to harm could ask for gigabytes."""
+"""Limit of bytes of a decompressed font. The largest real ones, CJK faces of 65,535 glyphs, have a tenth of it; a
+hostile file of a few hundred kilobytes can ask for gigabytes."""
 
 
 def unpacked(data: bytes) -> bytes:
-    """The same font without compression; what is not compressed is returned as it is.
+    """Decompress a font; other data is returned as it is.
 
     Raises:
-        FontError: it would grow beyond ``MAX_UNPACKED``, or is a WOFF2 of several faces.
+        FontError: the font is larger than ``MAX_UNPACKED``, or a WOFF2 file of several faces.
     """
     if data[:4] == b"wOFF":
         check_woff(data)
@@ -49,7 +49,7 @@ def unpacked(data: bytes) -> bytes:
 
 
 def check_woff(data: bytes) -> None:
-    """Refuse a WOFF file whose tables grow beyond the limit, or beyond what its directory says."""
+    """Refuse a WOFF file with tables above the limit, or longer than its directory says."""
     num_tables = struct.unpack_from(">H", data, 12)[0]
     total = 0
     for k in range(num_tables):
@@ -65,7 +65,7 @@ def check_woff(data: bytes) -> None:
 
 
 def check_woff2(data: bytes) -> None:
-    """Refuse a WOFF2 file that grows beyond the limit, without ever holding more than that."""
+    """Refuse a WOFF2 file above the limit; never more than that is in memory."""
     file = BytesIO(data)
     num_tables = struct.unpack_from(">H", data, 12)[0]
     file.seek(woff2DirectorySize)
@@ -88,5 +88,5 @@ def check_woff2(data: bytes) -> None:
 
 
 def too_large() -> FontError:
-    """What is said of a font beyond the limit."""
+    """The error for a font above the limit."""
     return FontError(f"a font that grows beyond {MAX_UNPACKED >> 20} MiB when it is unpacked")

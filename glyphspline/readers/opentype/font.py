@@ -31,21 +31,17 @@ PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 
 
 class Font(Source):
-    """One face of a font file at one place of its design space; made by :func:`open_font`.
-
-    Pickling a font keeps how it was opened, and opens it again.
+    """One face of a font file at one location; made by :func:`open_font`.
 
     Attributes:
-        path: the file, as given. face_index: which face of a collection. num_faces: how many it has.
-        format: what kind of file it is, in words.
-        axes: of a variable font, else empty. instances: its named instances, name to location.
-        location: axis tag to user-space value, as given but within the axis's limits; axes not in it are at
-            their default.
-        family, style: from the name table, falling back on the file name and "Regular".
-        metrics: units per em, ascender and descender (the typographic ones if the font asks for those), at the
-            location.
+        path: the file, as given. face_index: which face of a collection. num_faces: number of faces.
+        format: the kind of file, in words.
+        axes: of a variable font, else empty. instances: named instances, name to location.
+        location: axis tag to user-space value, clamped to the axes' limits. Axes not in it are at their default.
+        family, style: from the name table; by default the file's name and "Regular".
+        metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
-        num_glyphs: their number.
+        num_glyphs: number of glyphs.
         cmap: code point to glyph name, from the best Unicode table; empty if there is none.
     """
 
@@ -83,11 +79,11 @@ class Font(Source):
 
     @cached_property
     def sha256(self) -> str:
-        """Of the file's bytes, in hexadecimal."""
+        """Hash of the file's bytes, in hexadecimal."""
         return hashlib.sha256(self._data).hexdigest()
 
     def tables(self) -> TTFont:
-        """All tables, to be changed at will; of a variable font they are the default's, and the axes are there."""
+        """A new copy of all tables, to be changed; those of a variable font are at the default and keep the axes."""
         return TTFont(BytesIO(self._plain), fontNumber=self.face_index, recalcTimestamp=False)
 
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
@@ -95,7 +91,7 @@ class Font(Source):
 
     @cached_property
     def _bulk(self) -> BulkReader:
-        from .bulk import BulkReader  # brings the compiler with it, which opening and selecting do without
+        from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
         return BulkReader(self.path, self.face_index, self.location, self._plain, self._careful)
 
@@ -105,11 +101,11 @@ def open_font(path: str | Path, face_index: int = 0, location: Mapping[str, floa
 
     Args:
         path: the file. face_index: which font of a collection (TTC).
-        location: for a variable font, axis tag to value in user space, as in ``{"wght": 700}``; values beyond
-            an axis's limits are brought back to them with a warning. A string is the name of an instance: "Bold".
+        location: for a variable font, axis tag to value in user space, as in ``{"wght": 700}``. Values beyond an
+            axis's limits are clamped with a warning. A string is the name of an instance: "Bold".
 
     Raises:
-        FontError: the file cannot be read, is no font or a broken one, or has no such face, axis or instance.
+        FontError: the file cannot be read, is no font or broken, or has no such face, axis or instance.
     """
     path = Path(path)
     with opening(path):

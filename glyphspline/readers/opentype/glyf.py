@@ -1,4 +1,4 @@
-"""What a TrueType glyph is made of, read from its bare record: how many contours, of how many points."""
+"""Contours and components of TrueType glyphs, counted from the records without drawing."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _WORDS, _SCALE, _MORE, _TWO_SCALES, _MATRIX = 0x01, 0x08, 0x20, 0x40, 0x80
 
 @dataclass(frozen=True)
 class Parts:
-    """A glyph with its components taken apart: the number of points of each contour, and how many components."""
+    """Number of points of each contour of a glyph, components decomposed, and number of components."""
 
     contours: tuple[int, ...] = ()
     components: int = 0
 
 
 class GlyphRecords:
-    """The ``glyf`` table, looked at without drawing: a drawing can then be checked for being whole.
+    """The ``glyf`` table: what a glyph should draw, to check that a drawing is whole.
 
-    HarfBuzz leaves out in silence what it cannot read, and goes round a loop of components as far as it cares to.
+    HarfBuzz leaves out what it cannot read without an error, and follows a loop of components up to a limit.
     """
 
     def __init__(self, glyf: bytes, offsets: Sequence[int], glyph_names: Sequence[str]) -> None:
@@ -31,10 +31,10 @@ class GlyphRecords:
         self._known: dict[int, Parts | None] = {}
 
     def parts(self, gid: int, above: tuple[int, ...] = ()) -> Parts | None:
-        """What the glyph should draw; None if its record, or one it leads to, is broken.
+        """The parts of a glyph; None if its record, or that of a component, is broken.
 
         Raises:
-            GlyphsplineError: components in a loop, or more of them than any real glyph has.
+            GlyphsplineError: components in a loop, or too many.
         """
         if gid in above:
             loop = [*above[above.index(gid) :], gid]

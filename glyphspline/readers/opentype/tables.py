@@ -1,4 +1,4 @@
-"""What a font's tables say of the whole font: names, metrics, axes and named instances."""
+"""Names, metrics, axes and named instances of a font from its tables."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Axis:
 
 
 def axes_of(tables: TTFont) -> tuple[Axis, ...]:
-    """The axes, in the font's order; none if it is not variable."""
+    """The axes in the font's order; empty if the font is not variable."""
     if "fvar" not in tables:
         return ()
     return tuple(
@@ -44,7 +44,7 @@ def axes_of(tables: TTFont) -> tuple[Axis, ...]:
 
 
 def instances_of(tables: TTFont) -> dict[str, dict[str, float]]:
-    """The named instances, such as "Bold", and where in the design space they are."""
+    """The named instances, such as "Bold", with their locations."""
     if "fvar" not in tables:
         return {}
     named = ((_name(tables, instance.subfamilyNameID), instance) for instance in tables["fvar"].instances)
@@ -62,14 +62,14 @@ def location_within(
     instances: Mapping[str, Mapping[str, float]],
     path: Path,
 ) -> dict[str, float]:
-    """A location with every value within its axis's limits, in the order of the font's axes.
+    """Clamp a location to the limits of the axes; the result is in the order of the font's axes.
 
     Args:
         asked: axis tag to user-space value, or the name of an instance without regard to case.
-        axes, instances: of the font. path: named in the warning about a value brought back.
+        axes, instances: of the font. path: for the warning about a clamped value.
 
     Raises:
-        FontError: no such axis or instance, or a value that is not finite.
+        FontError: the font has no such axis or instance, or a value is not finite.
     """
     location = _of_instance(asked, instances) if isinstance(asked, str) else asked or {}
     known = {axis.tag: axis for axis in axes}
@@ -99,7 +99,7 @@ def _of_instance(name: str, instances: Mapping[str, Mapping[str, float]]) -> Map
 
 
 def names_of(tables: TTFont, path: Path) -> tuple[str, str]:
-    """Family and style, falling back on the file's name and "Regular"."""
+    """Family and style; by default the file's name and "Regular"."""
     names = tables.get("name")
     family = names.getBestFamilyName() if names else None
     style = names.getBestSubFamilyName() if names else None
@@ -107,7 +107,7 @@ def names_of(tables: TTFont, path: Path) -> tuple[str, str]:
 
 
 def metrics_of(tables: TTFont) -> FontMetrics:
-    """Units per em, ascender and descender: the typographic ones if the font asks for those."""
+    """Units per em, ascender and descender; the typographic ones if the font says so."""
     units_per_em = tables["head"].unitsPerEm
     if units_per_em < 1:
         raise FontError(f"units per em cannot be {units_per_em}")
