@@ -325,7 +325,7 @@ class BulkReader:
             contours. k is at least 1; a glyph alone that does not fit ends at the capacity.
         """
         expected = self._expected(gids)
-        draw, functions, used = self._hb.font.draw_glyph, _functions(), memoryview(self._buffer)
+        draw, functions, used = self._hb.font.draw_glyph, _functions(), self._buffer.data
         used[USED] = FIRST
         places: list[float] = [FIRST]
         for gid, count in zip(gids, expected.tolist(), strict=True):
