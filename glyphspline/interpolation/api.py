@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import accumulate
 from typing import Any, Literal, cast, overload
 
 import numpy as np
@@ -12,7 +13,7 @@ from ..curves.parameters import Parametrisation
 from ..errors import OptionError, PolygonError
 from ..types import FloatArray
 from .any_degree import interpolate_any_degree, interpolate_any_vertex
-from .batched import explain, interpolate_batch, over_threads
+from .batched import explain, interpolate_batch, interpolate_one, over_threads
 from .method import Fallback, Finish, Method, Tangents, method_of
 from .result import Interpolation
 
@@ -71,10 +72,15 @@ def interpolate(
         variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed, finish,
         diagnostics,
     )  # fmt: skip
-    tangents = None if end_tangents is None else [end_tangents]
-    (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
-    if isinstance(result, PolygonError):
-        raise result
+    if closed and end_tangents is not None:
+        raise OptionError("end_tangents belong to an open arc (closed=False)")
+    p = _as_points(points)
+    given = _as_knots(knots, p, closed) if own else None
+    if method.stepwise:
+        return interpolate_any_degree(p, method, given, end_tangents)
+    result = interpolate_one(p, method, given, None if end_tangents is None else _as_tangents([end_tangents]))
+    if result is None:
+        raise explain(p, given if own else method.knots, closed)
     return result
 
 
@@ -181,16 +187,16 @@ def _interpolated(
 
         found = over_threads(one, range(len(good)), threads)
     else:
-        offsets = np.zeros(len(good) + 1, dtype=np.int64)
-        np.cumsum([len(p) for p in parts], out=offsets[1:])
+        offsets = np.array([0, *accumulate(map(len, parts))], dtype=np.int64)
         batch = interpolate_batch(
             parts[0] if len(parts) == 1 else np.concatenate(parts), offsets, method,
             knots=np.concatenate(given) if given else None,
             end_tangents=None if method.closed or pairs is None else _as_tangents(pairs), threads=threads,
         )  # fmt: skip
         found = cast(list[Any], batch.results())
-        for j in np.flatnonzero(batch.whole[:, 0]).tolist():
-            found[j] = explain(parts[j], given[j] if given else method.knots, method.closed)
+        for j in range(len(found)) if None in found else ():
+            if found[j] is None:
+                found[j] = explain(parts[j], given[j] if given else method.knots, method.closed)
     if len(good) == len(polygons):
         return found
     for k, result in zip(good, found, strict=True):

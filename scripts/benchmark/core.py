@@ -16,6 +16,7 @@ from glyphspline.types import FloatArray, IntArray
 from .measure import Row, in_words, interleaved
 from .shapes import SHARE, glyph_polygons, random_polygon, smooth_polygon
 
+Results = gs.Interpolation | list[gs.Interpolation]
 LIMITS = {20: (5, 6), 90: (2.5, 3), 300: (1.5, 2), 1000: (1.0, 1.2)}
 
 
@@ -43,6 +44,12 @@ class Polygons:
         return interpolate_batch(
             self.points, self.offsets, Method(**options), residual_tolerances=self.tolerances, threads=threads
         )
+
+
+def read(results: Results) -> None:
+    """Read of every result what its users read, as the libraries' results hold it too."""
+    for result in results if isinstance(results, list) else [results]:
+        _ = result.spline.control_points, result.parameters, result.residuals
 
 
 def _footpoints(result: BatchedInterpolation) -> int:
@@ -106,7 +113,7 @@ def against_libraries() -> list[Row]:
         u = gs.interpolate(p).spline.knots
         tolerance = SHARE * float(np.ptp(p, axis=0).max())
         cases: dict[str, Any] = {
-            "ours": lambda p=p, t=tolerance: gs.interpolate(p, residual_tolerance=t),
+            "ours": lambda p=p, t=tolerance: read(gs.interpolate(p, residual_tolerance=t)),
             "`make_interp_spline`": lambda u=u, q=closed: make_interp_spline(u, q, k=3, bc_type="periodic"),
             "`CubicSpline`": lambda u=u, q=closed: CubicSpline(u, q, bc_type="periodic"),
             "`splprep`": lambda q=closed: splprep(q.T, s=0, per=True),
@@ -142,7 +149,7 @@ def overhead() -> list[Row]:
 
     def one_by_one() -> None:
         for _ in calls:
-            gs.interpolate(p, residual_tolerance=tolerance)
+            read(gs.interpolate(p, residual_tolerance=tolerance))
 
     times = interleaved({"one": one_by_one, "many": together.run}, rounds=25)
     one, core = times["one"] / len(calls), times["many"] / len(calls)
@@ -170,9 +177,9 @@ def many() -> list[Row]:
 
     times = interleaved(
         {
-            "1": lambda: ours(1),
-            "2": lambda: ours(2),
-            "solve": lambda: ours(2, "solve"),
+            "1": lambda: read(ours(1)),
+            "2": lambda: read(ours(2)),
+            "solve": lambda: read(ours(2, "solve")),
             "splprep": library,
             "core 1": lambda: laid_out.run(1),
             "core 2": lambda: laid_out.run(2),
@@ -189,11 +196,11 @@ def many() -> list[Row]:
     return [
         Row(
             "2000 glyph contours, two threads, against a loop over `splprep`",
-            times["splprep"] / times["2"], must=1.2, aim=2, note=f"{words['2']}, {words['splprep']}",
+            times["splprep"] / times["2"], must=1.8, aim=2.5, note=f"{words['2']}, {words['splprep']}",
         ),
         Row(
             'the same with `finish="solve"`',
-            times["splprep"] / times["solve"], must=2, aim=3, note=f"{words['solve']}, {words['splprep']}",
+            times["splprep"] / times["solve"], must=2.2, aim=3, note=f"{words['solve']}, {words['splprep']}",
         ),
         Row(
             "two threads against one, same bits",
