@@ -142,12 +142,13 @@ def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
 def batches(read: Sequence[Read]) -> Iterator[list[Read]]:
     """Glyphs in batches of bounded cost, those of a batch with the same em."""
     batch: list[Read] = []
+    cost = 0.0
     for glyph in read:
-        whole = sum(other.cost for other in batch) + glyph.cost > BATCH
-        if batch and (whole or glyph.outline.metrics != batch[0].outline.metrics):
+        if batch and (cost + glyph.cost > BATCH or glyph.outline.metrics != batch[0].outline.metrics):
             yield batch
-            batch = []
+            batch, cost = [], 0.0
         batch.append(glyph)
+        cost += glyph.cost
     if batch:
         yield batch
 
