@@ -15,7 +15,7 @@ from .files import make_folder
 from .run import SCALE_SAMPLE
 
 PROFILED = 12
-"""Up to so many glyphs, all get a page of their own unless it is said which."""
+"""Up to this number of glyphs, each gets a page of its own by default."""
 
 
 def make_atlas(
@@ -33,7 +33,7 @@ def make_atlas(
         source: the opened font. names: its glyphs, in order. path: the PDF.
         options: of the conversion.
         profiles: glyphs that get a page with κ(s); None takes all of up to ``PROFILED``, else none.
-        observer: told how many glyphs are done, of how many.
+        observer: called with the number of glyphs done and of all.
 
     Returns:
         Pages written, and glyphs that failed.

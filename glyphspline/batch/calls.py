@@ -1,7 +1,6 @@
 """The calls that a worker answers.
 
-The process that makes them has no use for the compiled code, which takes a second to import: it is imported here, where
-the calls are answered.
+The process that makes them does not need the compiled code, which takes a second to import: workers import it here.
 """
 
 from __future__ import annotations

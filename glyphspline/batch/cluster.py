@@ -1,7 +1,7 @@
 """The same work on a dask.distributed cluster: fonts travel by content, files come back.
 
-dask itself does the work of a lost worker again. Its workers are other people's processes, which nobody here may kill:
-the limit of time does not hold there, those of size do.
+dask itself repeats the work of a lost worker. Its workers cannot be killed from here: the time limit does not hold
+there, the limits of size do.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .pool import WorkerLostError
 Files = dict[str, bytes]
 
 PATIENCE = "10s"
-"""How long a scheduler may take to answer."""
+"""Time limit for a scheduler to answer."""
 
 
 class ClusterExecutor(Executor):
@@ -63,7 +63,7 @@ class ClusterExecutor(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Leave the cluster; what it is at for us is cancelled."""
+        """Disconnect from the cluster; calls in flight are cancelled."""
         self._client.close()
 
 

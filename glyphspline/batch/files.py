@@ -1,4 +1,4 @@
-"""Files of a run: safe names that differ in more than case, and writes that are whole or not there at all."""
+"""Files of a run: safe names that differ in more than case, and atomic writes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
 from ..errors import OutputError
 
 LONGEST_NAME = 150
-"""Bytes of a file name before its suffix. File systems take 255; the rest is room for clash numbers and suffixes."""
+"""Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
 
 PARTIAL = ".part"
 """How temporary files end. They begin with a dot, so that no glob over results meets them."""
@@ -22,7 +22,7 @@ O_BINARY = getattr(os, "O_BINARY", 0)
 """Windows would write other line ends."""
 
 _PLAIN = re.compile(r"[a-z0-9_]{1,75}")
-"""Names that the rules leave as they are: most names of a large font, for which asking them takes half a second."""
+"""Names that the rules do not change: most names of a large font, where applying them takes half a second."""
 
 _NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
 
@@ -43,7 +43,7 @@ def file_names(glyph_names: Iterable[str]) -> list[str]:
 
 
 def _stem(name: str, taken: set[str]) -> str:
-    """A name's file name, which joins those that are taken."""
+    """A name's file name, which is added to ``taken``."""
     plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
     stem = name if plain else userNameToFileName(_tame(name), taken)
     taken.add(stem.lower())
@@ -51,7 +51,7 @@ def _stem(name: str, taken: set[str]) -> str:
 
 
 def _tame(name: str) -> str:
-    """What the UFO rules leave open: names too long in bytes, empty ones, and half characters."""
+    """Names that the UFO rules do not cover: too long in bytes, empty, or with half characters."""
     clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
     return clipped.decode(errors="ignore").rstrip(". ") or "_"
 

@@ -1,11 +1,11 @@
 """Worker processes that can be killed and replaced, behind the interface of ``concurrent.futures``.
 
 The pools of the standard library break when one process dies, and cannot end one that hangs. Here a process that dies,
-or shows no sign of life for too long, costs only the call that it was at: that call's future gets the error, and
-another process takes the place.
+or gives no sign of life for too long, costs only its current call: the call's future gets the error, and a new process
+replaces the old one.
 
-While a process is at a call it has the next one already, if there are enough of them: between two calls it would wait
-for a millisecond, which is as long as a glyph or two take.
+A busy process already has its next call if enough are queued. Otherwise it would wait for a millisecond between two
+calls, the time of two or three glyphs.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ POLL = 0.25
 """Seconds between looks for processes that have hung."""
 
 SMALL = 32_768
-"""Bytes of a call that a pipe takes in any case, even if nobody reads it for now."""
+"""Bytes of a call that a pipe buffers: sending them does not block."""
 
 Call = tuple[Future[Any], bytes]
-"""What is to be answered, and the function and its arguments, pickled."""
+"""The future of a call, and its function and arguments, pickled."""
 
 
 class WorkerLostError(GlyphsplineError):
@@ -46,23 +46,23 @@ class TimeLimitError(GlyphsplineError):
 
 
 class WorkerStartError(GlyphsplineError):
-    """A process died before it could do anything; no other would fare better."""
+    """A process died before its first call, as every other would."""
 
 
 _last_sign: Any = None
 
 
 def sign_of_life() -> None:
-    """Called by a long call between its parts, so that the time limit counts for each part."""
+    """Restart the time limit: a long call calls this between its parts."""
     if _last_sign is not None:
         _last_sign.value = time.monotonic()
 
 
 def start_forkserver(preload: Sequence[str]) -> None:
-    """Start the process from which workers are forked, if it is not there yet; nobody waits for its imports.
+    """Start the process from which workers are forked, if it does not run yet, without waiting for its imports.
 
-    Ctrl-C is for this process, and while it still imports the other would tell of it at length: it is started, and so
-    remains, and its workers, with that signal blocked.
+    It is started with Ctrl-C blocked, and so are its workers: the signal is for this process, and an import that it
+    interrupts would print a traceback.
     """
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -74,16 +74,16 @@ def start_forkserver(preload: Sequence[str]) -> None:
 
 
 def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
-    """The life of a worker process: calls in, results out, until the other end is closed.
+    """The main loop of a worker process: receive calls and send results until the pipe is closed.
 
-    It gets no call, and so no limit of time, before everything is imported. As a rule that is so when it is forked.
+    No call arrives, and no time limit counts, before everything is imported, which usually happened before the fork.
     """
     global _last_sign
     _last_sign = sign
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent ends its workers
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
     for name in preload:
         import_module(name)
-    gc.freeze()  # what was imported stays: it need not be looked through again and again, nor its pages copied
+    gc.freeze()  # the garbage collector need not scan what was imported, nor copy its pages
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:
@@ -97,7 +97,7 @@ def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
 
 
 class _Worker:
-    """One process, its end of the pipe, and the calls that it has: the first is the one that it is at."""
+    """One process, its end of the pipe, and its calls; the first of them is running."""
 
     def __init__(self, context: Any, preload: Sequence[str]) -> None:
         self.sign = context.RawValue("d", 0.0)
@@ -109,15 +109,15 @@ class _Worker:
         self.has: deque[Call] = deque()
 
     def give(self, call: Call) -> None:
-        """Hand a call over."""
+        """Send a call."""
         if not self.has:
             self.sign.value = time.monotonic()
         self.has.append(call)
-        with suppress(OSError):  # a dead one shows when its end of the pipe is read
+        with suppress(OSError):  # a dead process is noticed when its pipe is read
             self.calls.send_bytes(call[1])
 
     def end(self) -> None:
-        """Kill the process, whatever it is doing."""
+        """Kill the process."""
         self.process.kill()
         self.process.join()
         self.calls.close()
@@ -129,9 +129,9 @@ class WorkerPool(Executor):
     Args:
         size: how many processes.
         seconds: time limit between signs of life.
-        preload: modules to import before the first call: once, in the process from which the workers are forked. One
-            that is there already, from an earlier pool, stays as it is, and workers import what they miss.
-        expected: so many calls are sure to come, and processes for them can start at once.
+        preload: modules to import before the first call: once, in the process from which the workers are forked. If
+            that runs already, for an earlier pool, each worker imports what it lacks.
+        expected: number of calls that will certainly come: processes for them start at once.
     """
 
     def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
@@ -159,7 +159,7 @@ class WorkerPool(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes; what they are at is lost, as is what is queued."""
+        """Kill the processes; running and queued calls are lost."""
         if not self._closing:
             self._closing = True
             self._wake.send_bytes(b"")
@@ -188,7 +188,7 @@ class WorkerPool(Executor):
             self._fail_all(WorkerLostError("the pool was closed"))
 
     def _assign(self) -> None:
-        """Calls to processes that have none; then, as long as there is one for each, the next ones ahead."""
+        """Send calls to idle processes; then, while there are enough for all, the next calls to busy ones."""
         ready = [worker for worker in self._workers if worker.ready]
         for worker in ready:
             if not worker.has:
@@ -205,7 +205,7 @@ class WorkerPool(Executor):
                 break
 
     def _start(self) -> None:
-        """Processes as they are needed: as many as there are calls, up to the size."""
+        """Start as many processes as there are calls, up to the size."""
         wanted = max(self._expected, len(self._queue) + sum(len(worker.has) for worker in self._workers))
         while len(self._workers) < min(self._max_workers, wanted):
             self._workers.append(_Worker(self._context, self._preload))
@@ -232,7 +232,7 @@ class WorkerPool(Executor):
                 self._replace(worker, TimeLimitError(f"took longer than {self._seconds:g} s"))
 
     def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
-        """Another process for one that is lost: the call that it was at gets the error, the next is queued again."""
+        """Replace a lost process: its running call gets the error, its next call is queued again."""
         worker.end()
         self._workers[self._workers.index(worker)] = _Worker(self._context, self._preload)
         if worker.has:

@@ -1,4 +1,4 @@
-"""The flow of a run: what is left to do, the shared curvature scale, glyphs through workers, the manifest."""
+"""The steps of a run: remaining glyphs, the shared curvature scale, workers, manifest and gallery."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ SCALE_SAMPLE = 200
 """Glyphs from which the shared curvature scale is taken, evenly spread over those selected."""
 
 SCALE_CHUNK = 4
-"""Of these so many at a time: a run over a few glyphs should use all workers from its start."""
+"""Glyphs of the sample in a chunk: a run over a few glyphs should use all workers from its start."""
 
 Observer = Callable[[int, int, int], None]
-"""Told from time to time: glyphs done in the folder, of how many, and how many failed."""
+"""Called with the number of glyphs done in the folder, of all glyphs, and of those that failed."""
 
 
 def convert_font(
@@ -47,10 +47,9 @@ def convert_font(
     restart: bool = False,
     observer: Observer | None = None,
 ) -> Summary:
-    """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and an index.
+    """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and a gallery.
 
-    A folder that an earlier run of the same kind has begun or finished is gone on with; glyphs beyond those now
-    asked for stay in it.
+    A run with the same options that was begun or finished in the folder is continued; its other glyphs stay.
 
     Args:
         source: the opened font; workers open it again by its path.
@@ -59,7 +58,7 @@ def convert_font(
         spec: how to convert and what to write.
         jobs: worker processes; None takes all cores, 0 does everything in this process.
         executor: where the work is done instead, such as a :class:`.cluster.ClusterExecutor`; it stays open.
-        restart: throw away what an earlier run has left.
+        restart: remove the files of an earlier run first.
         observer: called as glyphs get done.
 
     Raises:
@@ -101,14 +100,14 @@ def convert_font(
 def workers_for(
     source: Source, glyphs: Sequence[str], finished: Container[int], spec: RunSpec, jobs: int | None
 ) -> Executor:
-    """Workers, which get ready while tasks are listed; none if all glyphs are finished."""
+    """Workers, which start while tasks are listed; none if all glyphs are finished."""
     names = {name for gid, name in enumerate(source.glyph_names) if gid not in finished}
     expected = len(names.intersection(glyphs))
     return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
 def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
-    """Make the folders, and find what an earlier run has left there."""
+    """Make the folders, and read what an earlier run has finished."""
     make_folder(out)
     old = None if restart else read_run(out)
     if old is not None:
@@ -142,7 +141,7 @@ def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
 
 
 def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
-    """The job with the curvature scale its maps share: that of the folder's run.json, or one found now."""
+    """The job with the curvature scale that its maps share: of the folder's run.json, or computed now."""
     old = read_run(job.out)
     if old is not None:
         return replace(job, curvature_scale=old["curvature_scale"])
@@ -161,7 +160,7 @@ def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> J
 def convert_tasks(
     job: Job, tasks: list[Task], pool: Executor, journal: Journal, summary: Summary, observer: Observer | None
 ) -> None:
-    """All tasks through the pool, each recorded in the journal once its files are written."""
+    """Run all tasks in the pool, and record each in the journal once its files are written."""
     before = len(journal.record.finished())
     failures = 0
     for chunk, result in spread(pool, work, job, chunks_of(tasks, pool)):

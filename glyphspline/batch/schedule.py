@@ -1,4 +1,4 @@
-"""Work for many glyphs handed out in chunks, to workers that may be lost on the way."""
+"""Chunks of glyphs for a pool of workers, any of which may be lost."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ LARGEST_CHUNK = 40
 """Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar."""
 
 AHEAD = 4
-"""Chunks in flight for each worker, so that none waits for the next: two that it has, and two to come."""
+"""Chunks in flight for each worker, so that none waits: two that it has, and two in the queue."""
 
 TRIALS = 3
-"""How often a glyph is tried whose worker died: a worker may be killed for no fault of the glyph's."""
+"""Attempts at a glyph whose worker died: the glyph need not be the cause."""
 
 Result = TypeVar("Result")
 
 
 class InProcess(Executor):
-    """An executor that does everything at once, here: for notebooks, and for looking into a glyph's failure."""
+    """An executor that makes each call at once in this process: for notebooks and for debugging."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Call the function now."""
@@ -43,13 +43,12 @@ class InProcess(Executor):
 def workers(
     jobs: int | None, seconds: float, options: Options | None = None, formats: Sequence[str] = (), expected: int = 0
 ) -> Executor:
-    """As many worker processes as asked for; None: one a core, 0: everything is done in this process.
+    """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
     Args:
-        seconds: what a glyph may take before its worker is killed.
-        options, formats: what glyphs will be converted with and to, so that the code for it is loaded, or compiled,
-            beforehand.
-        expected: how many calls are sure to come.
+        seconds: time limit of a batch, after which its worker is killed.
+        options, formats: of the run; the compiled code that they need is loaded before the first call.
+        expected: number of calls that will certainly come.
     """
     if jobs == 0:
         return InProcess()
@@ -57,12 +56,12 @@ def workers(
 
 
 def pool_size(pool: Executor) -> int:
-    """How many calls a pool runs at a time."""
+    """Number of calls that a pool runs at a time."""
     return int(getattr(pool, "_max_workers", 1))
 
 
 def chunks_of(tasks: Sequence[Task], pool: Executor) -> list[Sequence[Task]]:
-    """Glyphs in chunks, so many that the workers finish at about the same time."""
+    """Glyphs in chunks, small enough for the workers to finish at about the same time."""
     return slices(tasks, max(1, min(LARGEST_CHUNK, len(tasks) // (8 * pool_size(pool)))))
 
 
@@ -74,10 +73,10 @@ def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
 def spread(
     pool: Executor, function: Callable[[Job, Sequence[Task]], Result], job: Job, chunks: Iterable[Sequence[Task]]
 ) -> Iterator[tuple[Sequence[Task], Result | WorkerLostError | TimeLimitError]]:
-    """Call a function on chunks of glyphs: each chunk with its result, in the order in which they get done.
+    """Call a function on chunks of glyphs; yield each chunk with its result as it completes.
 
-    Only a few chunks are under way at a time. Of a chunk whose worker was lost or killed each glyph is tried on its
-    own, so that in the end only the one to blame comes with an error.
+    Only a few chunks are in flight at a time. If a worker is lost or killed, each glyph of its chunk is tried on its
+    own, so that only the glyph to blame ends with an error.
     """
     again: deque[tuple[Sequence[Task], int]] = deque()
     fresh = ((chunk, 1) for chunk in chunks)

@@ -1,4 +1,4 @@
-"""What is run: the options of a whole run, and ``run.json``, which says them."""
+"""The options of a whole run, and ``run.json``, which records them."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ FORMATS = (*(name for name in SUFFIXES if name not in ("source", RESULTS)), *WHO
 
 @dataclass(frozen=True)
 class Limits:
-    """What one glyph may cost before it fails.
+    """Limits beyond which a glyph fails.
 
     Attributes:
-        seconds: of wall clock; its worker is killed and replaced.
+        seconds: of wall clock for a batch; its worker is killed and replaced, and each glyph tried on its own.
         segments: of the source outline. vertices: of all its polygons.
     """
 
@@ -59,7 +59,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class RunSpec:
-    """How every glyph of a run is converted and what is written of it.
+    """How the glyphs of a run are converted, and what is written.
 
     Attributes:
         options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
@@ -127,7 +127,7 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
 
 
 def write_run(out: Path, run: dict[str, Any]) -> None:
-    """Write ``run.json``, without which nothing that a run leaves can be gone on with."""
+    """Write ``run.json``, without which a run cannot be resumed."""
     write_whole(f"{out}/{RUN_FILE}", json.dumps(run, indent=1, ensure_ascii=False) + "\n", durable=True)
 
 
@@ -151,7 +151,7 @@ def read_run(out: Path) -> dict[str, Any] | None:
 
 
 def differences(old: dict[str, Any], new: dict[str, Any], prefix: str = "") -> list[str]:
-    """What two runs were asked that is not the same, a phrase each; the file's name and the scale do not count."""
+    """The differences between two runs, a phrase each; the file's name and the scale do not count."""
     found = []
     for key in dict.fromkeys([*old, *new]):
         name = f"{prefix}{key}"

@@ -69,19 +69,19 @@ Location = Annotated[
     ),
 ]
 
-Variant = Annotated[int, typer.Option("--variant", min=0, max=4, help="Of the paper's Table 1.")]
-Margin = Annotated[float, typer.Option("--margin", min=0, max=0.5, help="c of Lemma 2.")]
+Variant = Annotated[int, typer.Option("--variant", help="Of the paper's Table 1, 0 to 4.")]
+Margin = Annotated[float, typer.Option("--margin", help="c of Lemma 2, 0 to 0.5.")]
 WhereNone = Annotated[Fallback, typer.Option("--fallback", help="Where Lemma 2 has no interval.")]
 CornerMode = Annotated[Corners, typer.Option("--corners", help="One smooth curve a contour, or split at corners.")]
 Tolerance = Annotated[
     float | None,
     typer.Option("--tolerance", help="Distance allowed from the source, in font units. Without it, 1/1000 em."),
 ]
-Step = Annotated[float | None, typer.Option("--step", help="Instead: vertices so far apart, in font units.")]
-Count = Annotated[int | None, typer.Option("--count", min=3, help="Instead: so many vertices a contour.")]
+Step = Annotated[float | None, typer.Option("--step", help="Instead: distance between vertices, in font units.")]
+Count = Annotated[int | None, typer.Option("--count", help="Instead: this number of vertices a contour.")]
 HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
 ViewBox = Annotated[View, typer.Option("--view-box", help="Region an SVG drawing shows.")]
-Precision = Annotated[int, typer.Option("--precision", min=0, max=9, help="Decimals written.")]
+Precision = Annotated[int, typer.Option("--precision", help="Decimals written, 0 to 9.")]
 RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
 Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
 Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.")]

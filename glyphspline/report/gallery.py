@@ -52,7 +52,7 @@ def write_report(out_dir: Path, entries: Iterable[Mapping[str, Any]], run: Mappi
 
 
 class Gallery:
-    """A run's gallery as it is written, glyph after glyph in the order in which they are shown.
+    """A run's gallery as it is written, glyph after glyph in the order of the manifest.
 
     Args:
         out_dir: the run's folder.
@@ -99,7 +99,7 @@ def remove_gallery(out_dir: Path) -> None:
 
 
 def is_whole(out_dir: Path, count: int) -> bool:
-    """Whether page and tables of so many glyphs are there, and none was cut off."""
+    """Whether the page and the tables of ``count`` glyphs exist, and none was cut off."""
     names = ["run.js", *(f"table-{k:05}.js" for k in range(-(-count // TABLE)))]
     ends = [*((f"{FOLDER}/{name}", b");\n") for name in names), ("index.html", b"</html>\n")]
     return all(_end_of(out_dir / path, len(end)) == end for path, end in ends)
@@ -141,7 +141,7 @@ def layer_switches() -> str:
 
 
 def package_text(name: str) -> str:
-    """A text file of this room."""
+    """A text file of this package."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...types import FloatArray, IntArray
 
 SIDES = 7
-"""Colour classes on each side of zero. More are not told apart on thin teeth, and each is a path of its own."""
+"""Colour classes on each side of zero. More cannot be distinguished on thin teeth, and each adds a path."""
 
 LIGHTNESS = 0.66
 """OKLab lightness of all colours: contrast of about 3:1 with white and 6:1 with black, so both themes can show it."""
