@@ -7,6 +7,7 @@ import numpy as np
 import glyphspline as gs
 
 from .common import Run, random_polygons
+from .study import TOLERANCE
 from .theorems import MARGIN, step_factors
 
 
@@ -37,7 +38,8 @@ def convergence(run: Run) -> None:
 
 
 def _factors(polygons: list[np.ndarray], variant: int, margin: float) -> dict[str, float]:
-    results = [r for r in gs.interpolate_many(polygons, variant, margin=margin) if not r.fallbacks]
+    everything = gs.interpolate_many(polygons, variant, margin=margin, residual_tolerance=TOLERANCE)
+    results = [r for r in everything if not r.fallbacks]
     one = [step_factors(r.residuals).max(initial=0.0) for r in results]
     two = [(r.residuals[2:] / r.residuals[:-2]).max(initial=0.0) for r in results]
     above = [(step_factors(r.residuals) > r.rate_bound + 1e-9).sum() for r in results]

@@ -39,34 +39,6 @@ from .lemma2 import fill_intervals
 from .vertices import knots_of, pad_intervals, prepare
 
 
-@compiled(internal=True)
-def _all(k0: int, k1: int, given: Given, found: Found, group: Group) -> FloatArray:
-    """Polygons k0 to k1 - 1, as many together as fit into a block; all residuals."""
-    table, numbers = group.table, group.numbers
-    history, residuals = np.empty(64), np.empty(64)
-    zero = k0 - k0  # of the type of a variable: functions would be compiled for the constant 0, and again for others
-    used = slots = lane = at = zero
-    for k in range(k0, k1 + 1):
-        n, unit, knot_unit = prepare(given, found, k) if k < k1 else (zero, 1.0, 1.0)
-        if k < k1 and n == 0:
-            continue
-        if slots > 0 and (k == k1 or lane + n + 2 * HALO > LANES + 2 * HALO):
-            place(given, found, group, slots)
-            fill_intervals(given, group, slots)
-            history, residuals, used = iterate(given, found, group, slots, history, residuals, used)
-            slots = lane = at = zero
-        if k == k1:
-            break
-        u = knots_of(given, found, k, n)
-        pad_intervals(u, given.closed, knot_unit, group.h[at:])
-        table[slots, POLYGON], table[slots, COUNT], table[slots, LANE], table[slots, INTERVALS] = k, n, lane, at
-        numbers[slots, UNIT], numbers[slots, KNOT_UNIT] = unit, knot_unit
-        settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
-        numbers[slots, LIMIT] = max(given.tolerances[k], settled) * unit
-        slots, lane, at = slots + 1, lane + n + 2 * HALO, at + n + 2 * PAD
-    return residuals[:used]
-
-
 @compiled
 def run(
     k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
@@ -109,6 +81,26 @@ def run(
     rows, numbers = np.empty((most + WIDTH if solve else 0, ROW)), np.empty((SLOTS, END + 4))
     table = np.empty((SLOTS, TOTAL + 1), dtype=np.int64)
     group = Group(borrowed(blocks), borrowed(scratch), borrowed(h), borrowed(rows), borrowed(table), borrowed(numbers))
-    residuals = _all(k0, k1, given, found, group)
+    history, residuals = np.empty(64), np.empty(64)
+    zero = k0 - k0  # of the type of a variable: functions would be compiled for the constant 0, and again for others
+    used = slots = lane = at = zero
+    for k in range(k0, k1 + 1):
+        n, unit, knot_unit = prepare(given, found, k) if k < k1 else (zero, 1.0, 1.0)
+        if k < k1 and n == 0:
+            continue
+        if slots > 0 and (k == k1 or lane + n + 2 * HALO > LANES + 2 * HALO):
+            place(given, found, group, slots)
+            fill_intervals(given, group, slots)
+            history, residuals, used = iterate(given, found, group, slots, history, residuals, used)
+            slots = lane = at = zero
+        if k == k1:
+            break
+        u = knots_of(given, found, k, n)
+        pad_intervals(u, given.closed, knot_unit, group.h[at:])
+        table[slots, POLYGON], table[slots, COUNT], table[slots, LANE], table[slots, INTERVALS] = k, n, lane, at
+        numbers[slots, UNIT], numbers[slots, KNOT_UNIT] = unit, knot_unit
+        settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
+        numbers[slots, LIMIT] = max(given.tolerances[k], settled) * unit
+        slots, lane, at = slots + 1, lane + n + 2 * HALO, at + n + 2 * PAD
     keep_alive((blocks, scratch, h, rows, table, numbers))
-    return residuals
+    return residuals[:used]
