@@ -73,12 +73,12 @@ def rows() -> list[Row]:
         (forge,) = least(3, lambda k: fontforge_export(here / f"forge-{k}", many))
     return [
         row("`--step 20`, one worker, against fontTools' export of the source", stepped, source, 1.5, 1.0),
-        row("`--tolerance 1 --effort fast`, certified, against the same", certified, source, 8, 5),
+        row("`--tolerance 1 --effort fast`, certified, against the same", certified, source, 5, 3),
         row("the same with `--corners sharp`", sharp, source, 8, 5),
         row("`--step 20` against FontForge's export", stepped, forge, 4, 2),
         row("`--step 20` against the floor: HarfBuzz reads, empty files", stepped, bare, 9, 6),
         Row("two workers against one", stepped / two, "x", 1.8, note=f"{per(stepped)}, {per(two)}"),
-        row("with curvature maps against without", mapped, stepped, 2, None),
+        row("with curvature maps against without", mapped, stepped, 2.5, 2),
         Row(f"resume of a finished folder of {GLYPHS} glyphs", resumed, "s", 3 * GLYPHS / 20_000, more=False),
     ]
 

@@ -31,9 +31,12 @@ def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[st
 
 
 def converted(options: Options) -> GlyphResult:
-    """A leaf of two cubics that meet in corners, and a square."""
+    """A leaf of two cubics that meet in corners, and a square, after all modules of a worker are imported."""
+    from ...readers.opentype.bulk import load_compiled
     from ...writers.svg.document import to_svg
+    from .. import worker  # noqa: F401
 
+    load_compiled()
     result = convert(Outline("leaf", contours=(LEAF, SQUARE)), options)
     to_svg(result)
     return result

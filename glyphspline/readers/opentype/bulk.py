@@ -247,6 +247,14 @@ def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
     return found
 
 
+def load_compiled() -> None:
+    """Load the compiled code, which takes some tenths of a second, before a font is opened."""
+    _functions()
+    none = np.empty(0, dtype=np.int64)
+    _contours(np.zeros(FIRST), np.array([FIRST]), none)
+    _expected(np.frombuffer(bytes(1), dtype=np.uint8), np.zeros(2, dtype=np.int64), none)
+
+
 class BulkReader:
     """One face of a font file at one location, for reading many of its glyphs; quick to open.
 
