@@ -1,7 +1,6 @@
-"""How outlines, splines and results show themselves in a notebook, and how they are drawn onto matplotlib axes.
+"""Display of outlines, splines and results in notebooks, and on matplotlib axes.
 
-The classes are of earlier rooms and know nothing of drawing, so they are told here how to show themselves. What draws
-is imported only when something is shown.
+The classes do not depend on drawing; :func:`install` adds their display methods. Drawing modules are imported on use.
 """
 
 from __future__ import annotations
@@ -23,14 +22,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SHOWN = ("vertices", "segments", "iterations", "residual", "converged", "deviation", "bending_energy", "max_curvature")
-"""Measures in a notebook's table."""
+"""Measures shown in a table."""
 
 HEIGHT = 320
-"""Pixels that a drawing takes in a notebook."""
+"""Height of a drawing in pixels."""
 
 
 def install() -> None:
-    """Give the classes the methods that notebooks look for."""
+    """Add the methods that notebooks call to the classes."""
     GlyphResult._repr_svg_ = glyph_svg  # type: ignore[attr-defined]
     GlyphResult._repr_html_ = glyph_html  # type: ignore[attr-defined]
     Outline._repr_svg_ = outline_svg  # type: ignore[attr-defined]
@@ -45,11 +44,9 @@ def glyph_svg(glyph: GlyphResult) -> str:
 
 
 def glyph_html(glyph: GlyphResult) -> str:
-    """The result with its comb, over a table of its contours' measures."""
+    """The result with its comb, above a table of its contours' measures."""
     head = "".join(f"<th>{name.replace('_', ' ')}</th>" for name in SHOWN)
-    rows = "".join(
-        f"<tr><th>{index}</th>{_cells(contour.measures)}</tr>" for index, contour in enumerate(glyph.contours)
-    )
+    rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures)}</tr>" for c, each in enumerate(glyph.contours))
     notes = "".join(f"<p>{escape(note)}</p>" for note in glyph.notes)
     return f"{glyph_svg(glyph)}<table><tr><th>contour</th>{head}</tr>{rows}</table>{notes}"
 
@@ -124,11 +121,9 @@ def plot(
     """Draw an outline, a contour, a spline or a glyph's result onto matplotlib axes, y up, in font units.
 
     Args:
-        thing: what to draw.
-        axes: where; None takes pyplot's current axes.
-        comb: the curvature comb too, in the colours of the maps. scale: its curvature in 1/unit of a full tooth; None
-            takes the thing's own.
-        polygon: a result's polygon. control_polygon: of a spline or of a result's splines. source: a result's source.
+        thing: what to draw. axes: where; None is pyplot's current axes.
+        comb: draw the curvature comb. scale: curvature in 1/unit of a full tooth; None is computed from ``thing``.
+        polygon: draw a result's polygon. control_polygon: of a spline or of a result's splines. source: of a result.
         style: of the curve, as for a ``PathPatch``: ``edgecolor``, ``linewidth``, ``facecolor``, …
 
     Returns:
@@ -153,13 +148,12 @@ def plot(
         em = glyph.outline.metrics.units_per_em
     patches = []
     if source:
-        patches.append(outline_patch(sources, facecolor="none", edgecolor="tab:orange", linewidth=0.8))
+        patches += outline_patch(sources, facecolor="none", edgecolor="tab:orange", linewidth=0.8)
     if comb:
         patches += _comb_patches(curves, em, scale, closed=closed)
-    patches.append(outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style))
+    patches += outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style)
     for patch in patches:
-        if patch is not None:
-            axes.add_patch(patch)
+        axes.add_patch(patch)
     for corners in polygons if polygon else ():
         axes.plot(*_closed(corners).T, ".-", color="tab:green", linewidth=0.7, markersize=3)
     for spline in splines if control_polygon else ():
@@ -171,7 +165,7 @@ def plot(
 
 
 def _cubics(spline: Spline) -> FloatArray:
-    """(m, 4, 2) the curve's pieces; of degrees above 3 they stay within 1e-5 of its extent."""
+    """(m, 4, 2) the curve's pieces; for degrees above 3 within 1e-5 of its extent."""
     if spline.degree <= 3:
         return np.array([as_cubic(piece) for piece in spline.to_bezier()])
     extent = float(np.ptp(spline.control_points, axis=0).max())

@@ -10,7 +10,8 @@ from ..fitting.convert import convert
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
-from ..writers.figures.atlas import Glyph, curvature_scale, write_atlas
+from ..writers.figures.atlas import Glyph, write_atlas
+from ..writers.svg.curvature_map import curvature_scale
 from .files import make_folder
 from .run import SCALE_SAMPLE
 

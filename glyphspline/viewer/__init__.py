@@ -1,4 +1,4 @@
-"""The live viewer: a page on this machine alone, whose every picture the Python core computes as sliders move."""
+"""The live viewer: a page served on this machine only; the Python core computes every picture as sliders move."""
 
 from .app import make_app
 from .serve import serve

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
+from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -27,20 +28,12 @@ from .state import State, read_state
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""
 
-PAGES = {
-    "viewer.css": ("glyphspline.viewer", "text/css"),
-    "viewer_stage.js": ("glyphspline.viewer", "text/javascript"),
-    "viewer_chart.js": ("glyphspline.viewer", "text/javascript"),
-    "viewer.js": ("glyphspline.viewer", "text/javascript"),
-    "theme.css": ("glyphspline.report", "text/css"),
-    "shapes.js": ("glyphspline.report", "text/javascript"),
-    "zoom.js": ("glyphspline.report", "text/javascript"),
-}
-"""All files there are to be had, and where they are kept: no path of a request ever reaches the file system."""
-
+PACKAGES = dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), "glyphspline.viewer")
+PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.report")
+"""All static files and their packages: no path of a request reaches the file system."""
 
 FIRST = "龍龙好gSa"
-"""Characters to begin with: the paper's, or some with curves."""
+"""The first of these in the font is shown first: the paper's characters, or some with curves."""
 
 
 def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starlette:
@@ -48,7 +41,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
 
     Args:
         path: the font file. face_index: which font of a collection.
-        hosts: what a request's ``Host`` may be, as in "127.0.0.1:8642".
+        hosts: accepted ``Host`` headers, as in "127.0.0.1:8642".
 
     Raises:
         FontError: the font cannot be opened.
@@ -74,28 +67,22 @@ def page(request: Request) -> Response:
 
 def static(request: Request) -> Response:
     """One of the page's files."""
-    found = PAGES.get(request.path_params["name"])
-    if found is None:
+    name = request.path_params["name"]
+    if name not in PACKAGES:
         return Response("no such file", status_code=404)
-    return Response(files(found[0]).joinpath(request.path_params["name"]).read_bytes(), media_type=found[1])
+    kind = "text/css" if name.endswith(".css") else "text/javascript"
+    return Response(files(PACKAGES[name]).joinpath(name).read_bytes(), media_type=kind)
 
 
 def font_facts(work: Work) -> dict[str, Any]:
-    """What the page needs to know of the font."""
+    """The facts of the font that the page needs."""
     font = work.font
     return {
         "family": font.family,
         "style": font.style,
         "glyphs": len(font.glyph_names),
-        "metrics": {
-            "units_per_em": font.metrics.units_per_em,
-            "ascender": font.metrics.ascender,
-            "descender": font.metrics.descender,
-        },
-        "axes": [
-            {"tag": a.tag, "name": a.name, "minimum": a.minimum, "default": a.default, "maximum": a.maximum}
-            for a in font.axes
-        ],
+        "metrics": asdict(font.metrics),
+        "axes": [asdict(axis) for axis in font.axes],
         "first": next((font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap), font.glyph_names[0]),
         "scale": work.scale(),
         "palette": palette(),
@@ -103,7 +90,7 @@ def font_facts(work: Work) -> dict[str, Any]:
 
 
 def glyph_answer(work: Work, state: State) -> dict[str, Any]:
-    """The glyph by the state's own variant, and the command that does the same."""
+    """The glyph by the variant of the state, and the command that converts it."""
     result = work.result(state)
     return glyph_payload(result.outline) | result_payload(result) | {"command": work.command(state)}
 
@@ -119,7 +106,7 @@ def steps_answer(work: Work, state: State) -> dict[str, Any]:
 
 
 def svg_answer(work: Work, state: State) -> dict[str, Any]:
-    """The drawing that a conversion writes."""
+    """The SVG that a conversion writes."""
     return {"svg": to_svg(work.result(state))}
 
 
@@ -131,7 +118,7 @@ def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:
 
 
 def _computed(work: Work, make: Callable[[Work, State], dict[str, Any]]) -> Callable[[Request], Any]:
-    """An endpoint that reads a state; what is wrong with it, or with the glyph, is an answer too."""
+    """An endpoint that reads a state; errors in it, or in the glyph, are answers too."""
 
     async def endpoint(request: Request) -> Response:
         body = b""

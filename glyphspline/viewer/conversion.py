@@ -1,4 +1,4 @@
-"""What the viewer computes: a glyph converted, with vertices moved, by other variants, and step by step."""
+"""Computations of the viewer: a converted glyph, with moved vertices, by other variants, and step by step."""
 
 from __future__ import annotations
 
@@ -25,28 +25,26 @@ from ..writers.svg.curvature_map import combs
 from .state import Moved, State
 
 COMPARED = (1, 2, 3)
-"""Variants shown side by side, those of the paper's Figs. 8 and 9."""
+"""Variants shown side by side, as in the paper's Figs. 8 and 9."""
 
 STEPS = 60
-"""Iterations shown at most: all of the first half, then wider and wider apart."""
+"""Maximum number of iterations shown: the first half of them are consecutive, then their distance grows."""
 
 
 class Work:
-    """A font, opened wherever in its design space it is looked at, and the glyphs last converted."""
+    """A font, opened at each location of its design space on request, and a cache of converted glyphs."""
 
     def __init__(self, path: Path, face_index: int = 0) -> None:
         self.path, self.face_index = path, face_index
         self.lock = RLock()  # a font's tables are read on demand, by one thread at a time
-        self.at = lru_cache(maxsize=12)(self._open)
+        self.at = lru_cache(maxsize=12)(lambda location: open_font(path, face_index, dict(location)))
         self.converted = lru_cache(maxsize=48)(self._convert)
         self.scale = lru_cache(maxsize=1)(self._scale)
-        self.font = self.at(())
-
-    def _open(self, location: tuple[tuple[str, float], ...]) -> Font:
-        return open_font(self.path, self.face_index, dict(location))
+        self.font: Font = self.at(())
+        self.em = self.font.metrics.units_per_em
 
     def outline(self, glyph: str, location: tuple[tuple[str, float], ...]) -> Outline:
-        """The glyph as the font has it at a location."""
+        """The glyph's outline at a location."""
         with self.lock:
             return self.at(location).outline(glyph)
 
@@ -54,10 +52,10 @@ class Work:
         return convert(self.outline(glyph, location), options)
 
     def result(self, state: State, variant: int | None = None) -> GlyphResult:
-        """The glyph of a state; by another variant if one is given.
+        """The glyph of a state, or of the state with another variant.
 
-        On smooth contours another variant interpolates the same polygon, so that only the variant differs. Arcs
-        between corners are converted anew.
+        On smooth contours another variant interpolates the same polygon, so only the variant differs. Sharp contours
+        are converted again.
         """
         result = moved(self.converted(state.glyph, state.location, state.options), state.moved)
         if variant is None or variant == state.options.variant:
@@ -65,11 +63,11 @@ class Work:
         options = replace(state.options, variant=variant)
         if state.options.corners == "sharp":
             return self.converted(state.glyph, state.location, options)
-        contours = [through(contour, contour.polygon, options) for contour in result.contours]
-        return replace(result, options=options, contours=tuple(contours))
+        contours = tuple(through(contour, contour.polygon, options) for contour in result.contours)
+        return replace(result, options=options, contours=contours)
 
     def _scale(self) -> float:
-        """The font's curvature scale, from the outlines of at most 60 glyphs, as they are."""
+        """The font's curvature scale, from the source outlines of at most 60 glyphs."""
         names = [name for name in self.font.glyph_names if name in set(self.font.cmap.values())]
         chosen = (names or list(self.font.glyph_names))[:: max(1, len(names) // 60)]
         return robust_scale(item for name in chosen for item in self._source_combs(name)) or 4 / self.em
@@ -78,15 +76,10 @@ class Work:
         try:
             return list(combs(as_glyph(self.outline(name, ()))))
         except GlyphsplineError:
-            return []  # a broken glyph says so when it is looked at
-
-    @property
-    def em(self) -> float:
-        """Units per em."""
-        return self.font.metrics.units_per_em
+            return []  # a broken glyph has its error when it is shown
 
     def command(self, state: State) -> str:
-        """The command that converts the glyph as the state has it, moved vertices apart."""
+        """The command that converts the glyph with the options of the state, without moved vertices."""
         options, gid = state.options, self.font.glyph_names.index(state.glyph)
         words = ["glyphspline", "convert", str(self.path), "--gids", str(gid)]
         if self.face_index:
@@ -99,7 +92,7 @@ class Work:
 
 
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:
-    """The glyph with polygon vertices elsewhere, its touched contours interpolated anew; smooth contours only."""
+    """The glyph with moved polygon vertices; changed contours are interpolated again. Smooth contours only."""
     contours = list(result.contours)
     for index in sorted({move[0] for move in moves}):
         if not 0 <= index < len(contours) or not is_smooth(contours[index]):
@@ -125,7 +118,7 @@ def through(contour: ContourResult, polygon: FloatArray, options: Options) -> Co
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
-    """Number of updates made, and every closed curve of the glyph after so many."""
+    """Numbers of updates, and after each number the closed curves of the glyph."""
     closed = [contour for contour in result.contours if is_smooth(contour)]
     most = max((contour.interpolations[0].iterations for contour in closed), default=0)
     for m in shown_steps(most):

@@ -1,4 +1,4 @@
-"""Who may ask: pages of this server alone. A page elsewhere must not read a font through the visitor's browser."""
+"""Access control: only pages of this server. A page elsewhere must not read a font through the visitor's browser."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ HEADERS = {
 
 
 class Guard:
-    """Answers only requests whose ``Host`` is one of ours and whose ``Origin``, if any, is such a page.
+    """Answers only requests whose ``Host`` is one of ``hosts`` and whose ``Origin``, if any, is a page there.
 
-    The host is checked against DNS rebinding: a name elsewhere that was made to point to this machine.
+    Checking the host prevents DNS rebinding: a foreign name that resolves to this machine.
     """
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str]) -> None:
@@ -35,7 +35,7 @@ class Guard:
         self.origins = frozenset(f"http://{host}" for host in self.hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse, or pass on and add the headers."""
+        """Refuse the request, or pass it on and add the headers to the response."""
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return

@@ -1,14 +1,13 @@
-"""Results as the page draws them: path data and lists of points, y down, a few digits each."""
+"""Results as JSON for the page: path data and lists of points, y down, with two decimals."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from ..fitting.results import GlyphResult, Measures
+from ..fitting.results import GlyphResult
 from ..interpolation.result import Interpolation
 from ..outlines.outline import Contour, Outline
 from ..types import FloatArray
@@ -18,11 +17,11 @@ from ..writers.svg.path_data import path_data, polyline_data
 DIGITS = 2
 
 ARC = 7
-"""Points on the curve along the interval of a footpoint."""
+"""Points of the polyline that shows the interval of a footpoint."""
 
 
 def glyph_payload(outline: Outline) -> dict[str, Any]:
-    """The source outline and what is known of the glyph."""
+    """The source outline and the facts of the glyph."""
     return {
         "glyph": outline.name,
         "gid": outline.gid,
@@ -41,16 +40,15 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
         "polygons": [points(contour.polygon) for contour in result.contours],
         "movable": [len(c.interpolations) == 1 and c.interpolations[0].spline.closed for c in result.contours],
         "notes": list(result.notes),
-        "residuals": [finite(arc.residuals.tolist()) for arc in arcs],
+        "residuals": [[finite(error) for error in arc.residuals.tolist()] for arc in arcs],
         "intervals": "".join(interval_data(arc) for arc in arcs),
-        "measures": [measures_payload(contour.measures) for contour in result.contours],
+        "measures": [{k: finite(v) for k, v in asdict(contour.measures).items()} for contour in result.contours],
         **curves_payload(arcs),
     }
 
 
-def curves_payload(arcs: Iterable[Interpolation]) -> dict[str, Any]:
-    """Control polygons and footpoints of some curves."""
-    arcs = list(arcs)
+def curves_payload(arcs: list[Interpolation]) -> dict[str, Any]:
+    """Control polygons and footpoints of curves."""
     return {
         "control": "".join(polyline_data(arc.spline.control_points, DIGITS, closed=arc.spline.closed) for arc in arcs),
         "controls": [point for arc in arcs for point in points(arc.spline.control_points)],
@@ -59,14 +57,14 @@ def curves_payload(arcs: Iterable[Interpolation]) -> dict[str, Any]:
 
 
 def step_payload(updates: int, curves: list[Interpolation]) -> dict[str, Any]:
-    """The curves after so many updates."""
+    """The curves after a number of updates."""
     shapes = [Contour.from_segments(curve.spline.to_bezier()) for curve in curves]
     error = max((curve.max_error for curve in curves), default=0.0)
     return {"step": updates, "error": error, "result": path_data(shapes, DIGITS), **curves_payload(curves)}
 
 
 def interval_data(arc: Interpolation) -> str:
-    """The parts of the curve on which footpoints were sought, as path data; those of one point are left out."""
+    """The parts of the curve searched for footpoints, as path data, without those of a single point."""
     wide = arc.intervals[:, 1] > arc.intervals[:, 0]
     a, b = arc.intervals[wide].T
     t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, ARC)
@@ -75,16 +73,9 @@ def interval_data(arc: Interpolation) -> str:
 
 def points(array: FloatArray) -> list[list[float]]:
     """(n, 2) as pairs, y down."""
-    found: list[list[float]] = (np.round(array * (1, -1), DIGITS) + 0.0).tolist()
-    return found
+    return (np.round(array * (1, -1), DIGITS) + 0.0).tolist()
 
 
-def measures_payload(measures: Measures) -> Mapping[str, Any]:
-    """Measures as JSON knows them: what is not finite is null."""
-    values = asdict(measures)
-    return {key: None if isinstance(v, float) and not np.isfinite(v) else v for key, v in values.items()}
-
-
-def finite(values: list[float]) -> list[float | None]:
-    """A list with what is not finite left null."""
-    return [value if np.isfinite(value) else None for value in values]
+def finite(value: Any) -> Any:
+    """The value, or None for a float that JSON cannot express."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value

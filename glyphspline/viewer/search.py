@@ -10,18 +10,17 @@ from typing import Any
 from ..readers import Font
 
 SHOWN = 120
-"""Glyphs listed at a time."""
+"""Maximum number of glyphs listed."""
 
 
 def search(font: Font, words: str) -> dict[str, Any]:
     """The first glyphs that match; without words, the first that have a character."""
     found = list(islice(_matches(font, words.strip()), SHOWN))
-    names = dict.fromkeys(found)
-    characters: dict[str, int] = {}
+    names = dict.fromkeys(found, "")
     for code, name in font.cmap.items():
         if name in names:
-            characters.setdefault(name, code)
-    listed = [{"name": name, "text": chr(characters[name]) if name in characters else ""} for name in names]
+            names[name] = names[name] or chr(code)
+    listed = [{"name": name, "text": text} for name, text in names.items()]
     return {"glyphs": listed, "more": len(found) == SHOWN}
 
 

@@ -1,4 +1,4 @@
-"""Runs the viewer on the loopback interface, and nowhere else."""
+"""Runs the viewer on the loopback interface only."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def serve(
 
     Args:
         path: the font file. face_index: which font of a collection.
-        port: to listen on; 0 takes any that is free. browser: open a page in the visitor's browser.
+        port: to listen on; 0 takes any free port. browser: open a page in the visitor's browser.
         told: called with the address once it is known.
 
     Raises:
@@ -33,7 +33,7 @@ def serve(
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((HOST, port))
-            listener.listen()  # from here on a page that is opened early waits instead of failing
+            listener.listen()  # from here on a page that opens early waits
         except OSError as error:
             raise GlyphsplineError(f"port {port} cannot be had: {error.strerror}") from error
         port = listener.getsockname()[1]

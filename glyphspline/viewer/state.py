@@ -1,4 +1,4 @@
-"""What the page asks for, checked: a glyph, a place in the design space, options, and vertices moved by hand."""
+"""Requests of the page, validated: a glyph, a location in the design space, options, and moved vertices."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ..fitting.options import Corners, Options
 Sampling = Literal["tolerance", "step", "count"]
 
 FINEST = {"tolerance": 1 / 20000, "step": 1 / 1000}
-"""Smallest tolerance and step, in em: finer ones would keep the machine busy for a picture that looks the same."""
+"""Smallest tolerance and step, in em: smaller ones cost time and change nothing that shows."""
 
 MOST_VERTICES = 1000
-"""Most vertices a contour by count."""
+"""Maximum number of vertices of a contour sampled by count."""
 
 MOST_MOVED = 1000
-"""Vertices moved by hand."""
+"""Maximum number of moved vertices."""
 
 Moved = tuple[tuple[int, int, float, float], ...]
 """(contour, vertex, x, y) each, in font units, y up."""
@@ -27,7 +27,7 @@ Moved = tuple[tuple[int, int, float, float], ...]
 
 @dataclass(frozen=True)
 class State:
-    """One request of the page. All of it is checked; ``options`` are ready for :func:`glyphspline.fitting.convert`."""
+    """One valid request of the page; ``options`` are those for :func:`glyphspline.fitting.convert`."""
 
     glyph: str
     location: tuple[tuple[str, float], ...]
@@ -38,10 +38,10 @@ class State:
 
 
 def read_state(given: Any, units_per_em: float) -> State:
-    """Check what came over the wire.
+    """Validate a parsed request.
 
     Raises:
-        GlyphsplineError: anything is missing, of the wrong kind, or out of range.
+        GlyphsplineError: something is missing, of the wrong type, or out of range.
     """
     if not isinstance(given, Mapping) or not isinstance(given.get("glyph"), str):
         raise GlyphsplineError("a request is an object that names its glyph")

@@ -1,4 +1,4 @@
-"""Outlines, polygons, splines and measures as a Parquet table, one row a contour; glyphs without contours have none.
+"""Outlines, polygons, splines and measures as a Parquet table with one row per contour.
 
 Columns of schema version 1. Lists are in curve order, points are pairs (x, y) in font units, y up.
 
@@ -9,8 +9,8 @@ codepoints           list<uint32>                  its characters, ascending
 advance, units_per_em double                       in font units
 contour              uint32                        which contour of the result, from 0
 polygon              list<point>                   the sampled vertices
-closed               list<bool>                    of each spline of the contour: one closed spline in "smooth", in
-                                                   "sharp" as many arcs as there are between corners
+closed               list<bool>                    of each spline of the contour: one closed spline in "smooth", one
+                                                   arc between corners each in "sharp"
 degree               list<uint8>                   of each spline
 knots                list<list<double>>            of each spline
 control_points       list<list<point>>             of each spline
@@ -20,7 +20,7 @@ bezier_points        list<point>                   their control points, each sh
                                                    on the first point
 source_degrees,      as those two                  the source contour in the same form
 source_points
-vertices …           as in :class:`.glyph.Measures` one column each, null where it was not computed
+vertices …           as in :class:`.Measures`      one column each, null where it was not computed
 new_crossings
 ==================== ============================= ==================================================================
 """
@@ -29,22 +29,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..readers import Source
-from ..types import FloatArray
 
 SCHEMA_VERSION = 1
 
 ROWS = 512
-"""Contours in a row group, which is what is held in memory while writing."""
+"""Contours in a row group: those held in memory while writing."""
 
 
 def schema() -> Any:
-    """The table's columns as an Arrow schema; its metadata say the version."""
+    """The table's columns as an Arrow schema, with its version as metadata."""
     pa = arrow()
     point = pa.list_(pa.float64(), 2)
     columns = [
@@ -81,9 +81,9 @@ def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any) -> int
     pa = arrow()
     from pyarrow.parquet import ParquetWriter
 
-    layout, count = schema(), 0
+    layout, count, table = schema(), 0, rows(source, glyphs)
     with ParquetWriter(str(file) if isinstance(file, Path) else file, layout, compression="zstd") as writer:
-        for batch in batches(rows(source, glyphs)):
+        while batch := list(islice(table, ROWS)):
             writer.write_table(pa.Table.from_pylist(batch, schema=layout))
             count += len(batch)
     return count
@@ -93,7 +93,7 @@ def rows(source: Source, glyphs: Iterable[GlyphResult]) -> Iterator[dict[str, An
     """A row for each contour."""
     for glyph in glyphs:
         outline = glyph.outline
-        whole = {
+        of_glyph = {
             "font": source.family,
             "style": source.style,
             "glyph": outline.name,
@@ -103,42 +103,24 @@ def rows(source: Source, glyphs: Iterable[GlyphResult]) -> Iterator[dict[str, An
             "units_per_em": outline.metrics.units_per_em,
         }
         for index, contour in enumerate(glyph.contours):
-            yield whole | {"contour": index} | row(contour)
+            yield of_glyph | {"contour": index} | row(contour)
 
 
 def row(contour: ContourResult) -> dict[str, Any]:
-    """What a row says of the contour itself."""
+    """The columns of the contour itself."""
     splines = [interpolation.spline for interpolation in contour.interpolations]
-    measures = {field.name: getattr(contour.measures, field.name) for field in fields(Measures)}
-    return measures | {
-        "polygon": listed(contour.polygon),
+    return vars(contour.measures) | {
+        "polygon": contour.polygon.tolist(),
         "closed": [spline.closed for spline in splines],
         "degree": [spline.degree for spline in splines],
-        "knots": [listed(spline.knots) for spline in splines],
-        "control_points": [listed(spline.control_points) for spline in splines],
-        "footpoints": [listed(interpolation.parameters) for interpolation in contour.interpolations],
+        "knots": [spline.knots.tolist() for spline in splines],
+        "control_points": [spline.control_points.tolist() for spline in splines],
+        "footpoints": [interpolation.parameters.tolist() for interpolation in contour.interpolations],
         "bezier_degrees": contour.curve.degrees.tolist(),
-        "bezier_points": listed(contour.curve.points),
+        "bezier_points": contour.curve.points.tolist(),
         "source_degrees": contour.source.degrees.tolist(),
-        "source_points": listed(contour.source.points),
+        "source_points": contour.source.points.tolist(),
     }
-
-
-def listed(array: FloatArray) -> list[Any]:
-    """An array as nested lists of floats."""
-    return list(array.tolist())
-
-
-def batches(items: Iterator[dict[str, Any]]) -> Iterator[list[dict[str, Any]]]:
-    """The rows by ``ROWS``."""
-    batch: list[dict[str, Any]] = []
-    for item in items:
-        batch.append(item)
-        if len(batch) == ROWS:
-            yield batch
-            batch = []
-    if batch:
-        yield batch
 
 
 def arrow() -> Any:

@@ -1,8 +1,8 @@
-"""Interpolated outlines as a UFO 3 folder, to be opened in font editors.
+"""Interpolated outlines as a UFO 3 folder, for font editors; it contains converted glyphs only.
 
-Cubics as the splines have them, with points at the extrema put in by exact splitting, and points marked smooth where
-the curve is. The polygon of each contour is kept in the layer ``public.background``; each glyph's ``lib`` has, under
-``org.glyphspline.contours``, the splines' knots, footpoint parameters and measures. Only converted glyphs are in it.
+Cubics are those of the splines, split exactly at extrema, with points marked smooth where the curve is. The layer
+``public.background`` contains the polygon of each contour; each glyph's ``lib`` contains, under
+``org.glyphspline.contours``, the splines' knots, footpoint parameters and measures.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 import shutil
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, astuple
+from itertools import islice
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -31,24 +32,24 @@ OPTIONS_KEY = "org.glyphspline.options"
 BACKGROUND = "public.background"
 
 SMOOTH = 1e-3
-"""Radians. A join turning by less is smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
+"""Radians of turn below which a join is smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
 
 NO_HANDLE = 1e-9
-"""Handles up to this long, in font units, may be rounding's alone, and give no direction."""
+"""Handles up to this length in font units may be rounding errors and have no direction."""
 
 AT_END = 1e-3
-"""An extremum as near to an end of its segment, as a share of it, is that end's own."""
+"""An extremum within this parameter distance of an end of its segment counts as that end."""
 
 
 def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *, family: str | None = None) -> int:
-    """Write the folder, in the place of one that may be there; returns the number of glyphs.
+    """Write the folder, replacing an older one; returns the number of glyphs.
 
     Args:
-        source: what the glyphs were read from. glyphs: results, each glyph once; they are taken one by one.
-        path: the folder to be. family: the name; None is the source's with "Spline".
+        source: what the glyphs were read from. glyphs: results, each glyph once, read one by one.
+        path: the folder. family: the name; None is the source's with "Spline".
 
     Raises:
-        GlyphsplineError: there is something at ``path`` that is no UFO. OSError: it cannot be written.
+        GlyphsplineError: something at ``path`` is not a UFO. OSError: it cannot be written.
     """
     path = Path(path)
     if path.is_symlink() or (path.exists() and not (path / "metainfo.plist").exists()):
@@ -64,16 +65,9 @@ def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *
 
 def _write(source: Source, glyphs: Iterable[GlyphResult], path: Path, family: str) -> int:
     writer = UFOWriter(path, fileCreator="org.glyphspline", validate=True)
-    metrics = source.metrics
-    writer.writeInfo(
-        SimpleNamespace(
-            familyName=family,
-            styleName=source.style,
-            unitsPerEm=_number(metrics.units_per_em),
-            ascender=_number(metrics.ascender),
-            descender=_number(metrics.descender),
-        )
-    )
+    em, ascender, descender = map(_number, astuple(source.metrics))
+    metrics = {"unitsPerEm": em, "ascender": ascender, "descender": descender}
+    writer.writeInfo(SimpleNamespace(familyName=family, styleName=source.style, **metrics))
     front = writer.getGlyphSet()
     back = writer.getGlyphSet(layerName=BACKGROUND, defaultLayer=False)
     order = []
@@ -89,28 +83,19 @@ def _write(source: Source, glyphs: Iterable[GlyphResult], path: Path, family: st
 
 
 def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
-    """One glyph into the default layer, and its polygons into the background."""
+    """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
     curves = [with_extrema(contour.curve) for contour in result.contours]
+    lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(asdict(result.options))}
-    glyph = SimpleNamespace(
-        width=_number(outline.advance), unicodes=list(outline.unicodes), note="\n".join(result.notes) or None, lib=lib
-    )
-
-    def draw_front(pen: Any) -> None:
-        for curve in curves:
-            draw_curve(curve, digits, pen)
-
-    def draw_back(pen: Any) -> None:
-        for contour in result.contours:
-            draw_polygon(contour.polygon, digits, pen)
-
-    front.writeGlyph(outline.name, glyph, draw_front)
-    back.writeGlyph(outline.name, SimpleNamespace(width=_number(outline.advance)), draw_back)
+    width, note = _number(outline.advance), "\n".join(result.notes) or None
+    glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
+    front.writeGlyph(outline.name, glyph, lambda pen: draw(curves, digits, pen))
+    back.writeGlyph(outline.name, SimpleNamespace(width=width), lambda pen: draw(lines, digits, pen))
 
 
 def with_extrema(contour: Contour) -> Contour:
-    """The same curve, its cubics and quadratics split where they are highest, lowest, leftmost and rightmost."""
+    """The same curve with its cubics and quadratics split at their extrema in x and y."""
     return Contour.from_segments(piece for segment in contour.segments() for piece in split_at_extrema(segment))
 
 
@@ -134,72 +119,50 @@ def split_at_extrema(segment: FloatArray) -> Iterator[FloatArray]:
 
 
 def real_roots(power: list[float]) -> list[float]:
-    """Real roots of a polynomial of degree 2 at most, by ascending powers; double ones left out."""
+    """Real roots of a polynomial of degree up to 2, coefficients in ascending order; without double roots."""
     c, b, a = [*power, 0.0][:3]
     if abs(a) <= 1e-12 * (abs(b) + abs(c)):
         return [-c / b] if b else []
     discriminant = b * b - 4 * a * c
     if discriminant <= 0:
-        return []  # a double root is an inflection with that tangent, no extremum
+        return []  # at a double root the curve has an inflection, not an extremum
     q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
     return [q / a, c / q] if q else [q / a]
 
 
-def draw_curve(contour: Contour, digits: int, pen: Any) -> None:
-    """A contour with a point pen, rounded, with smooth flags."""
-    smooth = smooth_ends(contour)
-    points = (np.round(contour.points, digits) + 0.0).tolist()
+def draw(contours: Iterable[Contour], digits: int, pen: Any) -> None:
+    """Draw contours with a point pen, rounded, with smooth flags."""
     kinds = (None, "line", "qcurve", "curve")
-    pen.beginPath()
-    for j, (offset, degree) in enumerate(zip(contour.offsets.tolist(), contour.degrees.tolist(), strict=True)):
-        arriving = kinds[int(contour.degrees[j - 1])]
-        pen.addPoint(_pair(points[offset]), arriving, bool(smooth[j]))
-        for k in range(1, degree):
-            pen.addPoint(_pair(points[offset + k]))
-    pen.endPath()
+    for contour in contours:
+        points = iter(contour.rounded(digits).points.tolist())
+        arriving = np.roll(contour.degrees, 1).tolist()
+        pen.beginPath()
+        for before, degree, smooth in zip(arriving, contour.degrees.tolist(), smooth_ends(contour), strict=True):
+            pen.addPoint(tuple(map(_number, next(points))), kinds[before], smooth)
+            for point in islice(points, degree - 1):
+                pen.addPoint(tuple(map(_number, point)))
+        pen.endPath()
 
 
 def smooth_ends(contour: Contour) -> list[bool]:
-    """Whether the curve goes straight on at the beginning of each segment; between two lines none is smooth."""
+    """Whether the tangent is continuous at the beginning of each segment; False between two lines."""
     curved = np.maximum(contour.degrees, np.roll(contour.degrees, 1)) > 1
     return ((np.abs(turns(contour.cubics(), NO_HANDLE)) < SMOOTH) & curved).tolist()
 
 
-def draw_polygon(polygon: FloatArray, digits: int, pen: Any) -> None:
-    """A polygon with a point pen."""
-    if not len(polygon):
-        return
-    pen.beginPath()
-    for point in (np.round(polygon, digits) + 0.0).tolist():
-        pen.addPoint(_pair(point), "line")
-    pen.endPath()
-
-
 def _lib_entry(contour: ContourResult) -> dict[str, Any]:
     splines = [
-        {
-            "closed": one.spline.closed,
-            "degree": one.spline.degree,
-            "knots": one.spline.knots.tolist(),
-            "parameters": one.parameters.tolist(),
-        }
+        {"closed": s.closed, "degree": s.degree, "knots": s.knots.tolist(), "parameters": one.parameters.tolist()}
         for one in contour.interpolations
+        for s in [one.spline]
     ]
     return {"splines": splines, "measures": _plain(asdict(contour.measures))}
 
 
 def _plain(values: dict[str, Any]) -> dict[str, Any]:
-    """What a property list can hold: no nulls, no infinities."""
-    return {
-        name: value
-        for name, value in values.items()
-        if value is not None and not (isinstance(value, float) and not math.isfinite(value))
-    }
+    """The values that a property list can store: neither None nor infinite."""
+    return {k: v for k, v in values.items() if not (v is None or (isinstance(v, float) and not math.isfinite(v)))}
 
 
 def _number(value: float) -> float | int:
     return int(value) if float(value).is_integer() else float(value)
-
-
-def _pair(point: list[float]) -> tuple[float | int, float | int]:
-    return _number(point[0]), _number(point[1])

@@ -1,4 +1,4 @@
-"""The curvature map as PNG or PDF, drawn by matplotlib, which is imported only when one is asked for."""
+"""The curvature map as PNG or PDF, drawn by matplotlib, which is imported on first use."""
 
 from __future__ import annotations
 
@@ -8,24 +8,22 @@ from typing import Any
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ..svg.colours import SIDES, class_colour, colour_classes
+from ..svg.colours import class_colour, colour_classes
 from ..svg.curvature_map import LONGEST, Teeth, curvature_scale, teeth
-from .patches import outline_patch
+from .patches import UNDATED, ascii_text, colour_bar, outline_patch
 
 SIZE = 6.0
 """Width and height of the figure in inches."""
 
 
 def to_png(glyph: GlyphResult, *, scale: float | None = None, vertices: bool = True, dpi: int = 200) -> bytes:
-    """The curvature map as a PNG image on white; arguments as for :func:`to_curvature_svg`, and the resolution."""
+    """The curvature map as a PNG image on white; arguments as for :func:`to_curvature_svg`, and ``dpi``."""
     return _save(glyph, scale, vertices, format="png", dpi=dpi, metadata={"Software": None})
 
 
 def to_pdf(glyph: GlyphResult, *, scale: float | None = None, vertices: bool = True) -> bytes:
     """The curvature map as a one-page PDF; arguments as for :func:`to_curvature_svg`."""
-    # Without dates and version the same glyph gives the same bytes.
-    nothing = {"CreationDate": None, "Producer": None, "Creator": None}
-    return _save(glyph, scale, vertices, format="pdf", metadata=nothing)
+    return _save(glyph, scale, vertices, format="pdf", metadata=UNDATED)
 
 
 def _save(glyph: GlyphResult, scale: float | None, vertices: bool, **how: Any) -> bytes:
@@ -35,19 +33,17 @@ def _save(glyph: GlyphResult, scale: float | None, vertices: bool, **how: Any) -
     scale = curvature_scale([glyph]) if scale is None else scale
     figure = Figure(figsize=(SIZE, SIZE), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    draw_map(axes, glyph, scale, vertices=vertices)
+    draw_map(figure.add_subplot(), glyph, scale, vertices)
     file = io.BytesIO()
     figure.savefig(file, **how)
     return file.getvalue()
 
 
-def draw_map(axes: Any, glyph: GlyphResult, scale: float, *, vertices: bool = True) -> None:
+def draw_map(axes: Any, glyph: GlyphResult, scale: float, vertices: bool) -> None:
     """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
     outline = glyph.outline
     curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
-    patch = outline_patch(curves, facecolor=(0, 0, 0, 0.07), edgecolor="black", linewidth=1)
-    if patch is not None:
+    for patch in outline_patch(curves, facecolor=(0, 0, 0, 0.07), edgecolor="black", linewidth=1):
         axes.add_patch(patch)
     for part in teeth(glyph, scale):
         _draw_teeth(axes, part)
@@ -57,9 +53,11 @@ def draw_map(axes: Any, glyph: GlyphResult, scale: float, *, vertices: bool = Tr
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.set_axis_off()
-    # A font's own words are not to be read as mathematics.
-    axes.set_title(f"gid {outline.gid}  " + outline.name.encode("ascii", "replace").decode(), parse_math=False)
-    _colour_bar(axes, scale * outline.metrics.units_per_em)
+    # A name with dollar signs is not mathematics.
+    axes.set_title(f"gid {outline.gid}  {ascii_text(outline.name)}", parse_math=False)
+    reach = scale * outline.metrics.units_per_em
+    bar = colour_bar(axes.figure, reach if reach > 0 else 1.0, ax=axes, location="bottom", shrink=0.5, aspect=40)
+    bar.set_label(f"curvature in 1/em, left turns positive; dots: cut at {LONGEST * reach:.3g}")
 
 
 def _draw_teeth(axes: Any, part: Teeth) -> None:
@@ -70,15 +68,3 @@ def _draw_teeth(axes: Any, part: Teeth) -> None:
     closed = np.concatenate([part.tips, part.tips[:1]])
     axes.plot(*closed.T, color="black", alpha=0.45, linewidth=0.3)
     axes.plot(*part.tips[part.cut].T, "k.", markersize=1)
-
-
-def _colour_bar(axes: Any, reach: float) -> None:
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
-
-    colours = ListedColormap([class_colour(index) for index in range(-SIDES, SIDES + 1)])
-    limit = reach if reach > 0 else 1.0
-    bar = axes.figure.colorbar(
-        ScalarMappable(Normalize(-limit, limit), colours), ax=axes, location="bottom", shrink=0.5, aspect=40
-    )
-    bar.set_label(f"curvature in 1/em, left turns positive; dots: cut at {LONGEST * reach:.3g}")

@@ -1,10 +1,9 @@
 """A font with the interpolated outlines in place of the source's: OTF (CFF, cubic) or TTF (quadratic).
 
-What is not about outlines stays: advances, characters, kerning, features. Of a variable font the written one is
-static, at the source's location. Hints go, and so do bitmaps and SVG pictures, which would hide the new outlines;
-colour layers (COLR) are made of outlines and stay. Glyphs that were not converted are kept: as they are stored if
-the format is the source's, else as the same outlines in the other format, within 1 unit. Components of composites
-are kept too, so a composite of a replaced glyph is taken apart first and looks as before.
+Everything but the outlines stays: advances, characters, kerning, features. A variable font becomes static, at the
+source's location. Hints, bitmaps and SVG pictures go, as they belong to the old outlines; colour layers (COLR) stay.
+Glyphs that were not converted keep their outlines: unchanged if the format is the source's, else converted to the
+other format, within 1 unit. A composite with a replaced component is decomposed first, so it looks as before.
 """
 
 from __future__ import annotations
@@ -13,10 +12,11 @@ import logging
 from collections.abc import Iterable
 from dataclasses import dataclass
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.pens.ttGlyphPen import TTGlyphPointPen
 from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError
@@ -31,12 +31,12 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class FontSummary:
-    """What a written font came to.
+    """What was written.
 
     Attributes:
-        family: its new name. replaced: number of glyphs with new outlines.
-        largest_error: bound, in font units, of the distance of any of them from the source; None if not measured.
-        beyond: names of those that may be farther from the source than their tolerance.
+        family: the new name. replaced: number of glyphs with new outlines.
+        largest_error: bound of their distance from the source, in font units; None if not measured.
+        beyond: names of the glyphs that may be farther from the source than their tolerance.
     """
 
     family: str
@@ -56,13 +56,10 @@ def to_font(
     """The font as a file's bytes; the same input gives the same bytes.
 
     Args:
-        source: what the glyphs were read from.
-        glyphs: results, each glyph once; they are taken one by one.
-        flavour: "otf" or "ttf".
-        family: the new family name; None is the source's with "Spline".
-        tolerance: distance from the source allowed to the written outlines, in font units; None is each glyph's own.
-            Coordinates in a TTF are whole units: leave room for that when fitting, see
-            :func:`.font_glyphs.fitting_tolerance`.
+        source: what the glyphs were read from. glyphs: results, each glyph once, read one by one.
+        flavour: "otf" or "ttf". family: the new family name; None is the source's with "Spline".
+        tolerance: largest distance of the written outlines from the source, in font units; None is each glyph's own.
+            A TTF has whole units, so fit within :func:`.font_glyphs.fitting_tolerance`.
 
     Raises:
         GlyphsplineError: the source has no outlines, or a coordinate does not fit into a font.
@@ -70,7 +67,7 @@ def to_font(
     family = family or f"{source.family} Spline"
     font = base_tables(source)
     in_place = ("glyf" if flavour == "ttf" else "CFF ") in font
-    target = _InPlace(font, source, flavour) if in_place else _Rebuilt(font, source, flavour, family)
+    target = _InPlace(font, flavour) if in_place else _Rebuilt(font, source, flavour, family)
     beyond, errors = [], []
     for result in glyphs:
         allowed = result.options.tolerance_for(source.metrics.units_per_em) if tolerance is None else tolerance
@@ -85,7 +82,7 @@ def to_font(
 
 
 def compiled(font: TTFont) -> bytes:
-    """The font's bytes, with bounds and maxima counted anew."""
+    """The font's bytes, with bounds and maxima recalculated."""
     file = BytesIO()
     font.save(file, reorderTables=False)
     return file.getvalue()
@@ -94,11 +91,10 @@ def compiled(font: TTFont) -> bytes:
 class _InPlace:
     """New glyphs in a copy of the source's own table."""
 
-    def __init__(self, font: TTFont, source: Source, flavour: Flavour) -> None:
-        self.font, self.source, self.flavour = font, source, flavour
+    def __init__(self, font: TTFont, flavour: Flavour) -> None:
+        self.font, self.flavour = font, flavour
         self.names: list[str] = font.getGlyphOrder()
-        self.replaced: set[str] = set()
-        self.new: dict[str, Any] = {}
+        self.new: dict[str, Any] = {}  # for "glyf", which is read until all glyphs are known
         if flavour == "otf":
             font["CFF "].cff.remove_hints()
             self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
@@ -106,7 +102,6 @@ class _InPlace:
     def replace(self, result: GlyphResult, tolerance: float) -> Drawn:
         name = self.names[result.outline.gid]
         drawn = drawn_result(result, tolerance, self.flavour, self._width(name))
-        self.replaced.add(name)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
         else:
@@ -116,11 +111,11 @@ class _InPlace:
                 self.strings.charStringsIndex[self.strings.charStrings[name]] = drawn.data
             else:
                 self.strings[name] = drawn.data
-        set_bearings(self.font, self.source, name, drawn, result.outline)
+        set_bearings(self.font, name, drawn, result.outline)
         return drawn
 
     def _width(self, name: str) -> float | None:
-        """The advance as it stands in a char string: less the nominal one, or left out where it is the default."""
+        """The advance as a char string stores it: relative to the nominal width, or None for the default."""
         if self.flavour == "ttf":
             return None
         private = self.strings[name].private
@@ -132,27 +127,18 @@ class _InPlace:
             return
         glyf = self.font["glyf"]
         for name in self.names:
-            if name not in self.replaced:
-                self._keep(glyf, name)
+            if name in self.new:
+                continue
+            if glyf[name].isComposite() and self._touched(glyf, name, set()):
+                self.new[name] = decomposed(glyf, name)
+            else:
+                glyf[name].removeHinting()
         for name, glyph in self.new.items():
             glyf[name] = glyph
 
-    def _keep(self, glyf: Any, name: str) -> None:
-        """Without instructions, and without components that are not what they were."""
-        glyph = glyf[name]
-        if glyph.isComposite() and self._touched(glyf, name, set()):
-            pen = TTGlyphPen(None)
-            coordinates, ends, flags = glyph.getCoordinates(glyf)[:3]
-            start = 0
-            for end in ends:
-                draw_points(pen, coordinates[start : end + 1], flags[start : end + 1])
-                start = end + 1
-            self.new[name] = pen.glyph()
-        else:
-            glyph.removeHinting()
-
     def _touched(self, glyf: Any, name: str, seen: set[str]) -> bool:
-        if name in self.replaced:
+        """Whether the glyph is new or has a new component at any depth."""
+        if name in self.new:
             return True
         if name in seen or not glyf[name].isComposite():
             return False
@@ -160,57 +146,48 @@ class _InPlace:
         return any(self._touched(glyf, part.glyphName, seen) for part in glyf[name].components)
 
 
-def draw_points(pen: TTGlyphPen, points: Any, flags: Any) -> None:
-    """A contour of a TrueType glyph, as its table has it, with a pen that makes one."""
-    on = [bool(flag & 1) for flag in flags]
-    if not any(on):
-        pen.qCurveTo(*points, None)
-        pen.closePath()
-        return
-    first = on.index(True)
-    points = [*points[first:], *points[:first]]
-    on = [*on[first:], *on[:first]]
-    pen.moveTo(points[0])
-    waiting: list[Any] = []
-    for point, is_on in zip([*points[1:], points[0]], [*on[1:], True], strict=True):
-        waiting.append(point)
-        if is_on:
-            (pen.qCurveTo if len(waiting) > 1 else pen.lineTo)(*waiting)
-            waiting = []
-    pen.closePath()
+def decomposed(glyf: Any, name: str) -> Any:
+    """A composite as a simple glyph whose contours begin on the curve, where they touch it."""
+    points, ends, flags = glyf[name].getCoordinates(glyf)[:3]
+    pen = TTGlyphPointPen(None)
+    for start, stop in pairwise([0, *(end + 1 for end in ends)]):
+        first = next((i for i in range(start, stop) if flags[i] & 1), start)
+        pen.beginPath()
+        for i in (*range(first, stop), *range(start, first)):
+            pen.addPoint(points[i], "line" if flags[i] & 1 else None)
+        pen.endPath()
+    return pen.glyph()
 
 
 class _Rebuilt:
-    """All glyphs drawn anew in the other format."""
+    """All glyphs drawn again in the other format."""
 
     def __init__(self, font: TTFont, source: Source, flavour: Flavour, family: str) -> None:
         self.font, self.source, self.flavour, self.family = font, source, flavour, family
         self.of_name = {name: name for name in source.glyph_names}
-        if font.getGlyphOrder()[0] == source.glyph_names[0]:  # names in the file may differ, their order cannot
+        if font.getGlyphOrder()[0] == source.glyph_names[0]:  # names may differ, their order is the same
             self.of_name = dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
         self.glyphs: dict[str, Any] = {}
 
     def replace(self, result: GlyphResult, tolerance: float) -> Drawn:
-        return self._put(drawn_result(result, tolerance, self.flavour, self._width(result.outline)), result.outline)
-
-    def _width(self, outline: Outline) -> float | None:
-        return round(outline.advance) if self.flavour == "otf" else None
+        outline = result.outline
+        return self._put(drawn_result(result, tolerance, self.flavour, round(outline.advance)), outline)
 
     def _put(self, drawn: Drawn, outline: Outline) -> Drawn:
         name = self.of_name[outline.name]
         self.glyphs[name] = drawn.data
-        set_bearings(self.font, self.source, name, drawn, outline)
+        set_bearings(self.font, name, drawn, outline)
         return drawn
 
     def finish(self) -> None:
         for name in self.source.glyph_names:
             if self.of_name[name] not in self.glyphs:
                 outline = self._readable(name)
-                self._put(drawn_outline(outline, self.flavour, self._width(outline)), outline)
+                self._put(drawn_outline(outline, self.flavour), outline)
         if ".notdef" not in self.glyphs:
             empty = Outline(".notdef", advance=self.source.metrics.units_per_em / 2)
             self.of_name[".notdef"] = ".notdef"
-            self._put(drawn_outline(empty, self.flavour, self._width(empty)), empty)
+            self._put(drawn_outline(empty, self.flavour), empty)
         become(self.font, self.flavour, {name: self.glyphs[name] for name in self.font.getGlyphOrder()}, self.family)
 
     def _readable(self, name: str) -> Outline:
@@ -221,8 +198,8 @@ class _Rebuilt:
             return Outline(name, metrics=self.source.metrics)
 
 
-def set_bearings(font: TTFont, source: Source, name: str, drawn: Drawn, outline: Outline) -> None:
-    """Side bearings as the new bounds ask for: renderers place an outline by them. The advance stays."""
+def set_bearings(font: TTFont, name: str, drawn: Drawn, outline: Outline) -> None:
+    """Set side bearings from the new bounds: renderers place an outline by them. The advance stays."""
     metrics = font["hmtx"].metrics
     metrics[name] = (round(outline.advance), int(drawn.bounds[0]) if drawn.bounds else 0)
     if "vmtx" in font and drawn.bounds:
@@ -240,10 +217,10 @@ def write_font(
     family: str | None = None,
     tolerance: float | None = None,
 ) -> FontSummary:
-    """:func:`to_font` into a file, OTF or TTF by its suffix.
+    """Write the result of :func:`to_font` to a file, OTF or TTF by its suffix.
 
     Raises:
-        GlyphsplineError: as there; or the suffix is neither. OSError: the file cannot be written.
+        GlyphsplineError: as in :func:`to_font`; or the suffix is neither. OSError: the file cannot be written.
     """
     path = Path(path)
     flavour = path.suffix.lower().lstrip(".")

@@ -1,4 +1,4 @@
-"""One glyph as a font stores it: whole units, or where those are too coarse finer ones; the error is bounded."""
+"""One glyph as a font stores it: in whole units, or in CFF fractions where those are too coarse; with its error."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from fontTools.misc.roundTools import otRound
 from fontTools.pens.boundsPen import BoundsPen
 from fontTools.pens.cu2quPen import Cu2QuPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
@@ -22,14 +23,14 @@ from ...outlines.outline import Contour, Outline
 Flavour = Literal["otf", "ttf"]
 
 ROUNDING = math.sqrt(0.5)
-"""How far rounding to whole units can move a control point, and so, as curves are convex sums of those, a curve."""
+"""Largest distance by which rounding to whole units moves a control point, and so, by convexity, the curve."""
 
 FINE = 64
 """Parts of a unit to which CFF coordinates are rounded where whole units would break the tolerance. Sums of such
 numbers are exact in the format's 16.16 fixed point."""
 
 QUADRATIC_SHARE = 0.1
-"""Of the tolerance, what the step from cubics to quadratics may take at least."""
+"""Least share of the tolerance for the approximation of cubics by quadratics."""
 
 LIMIT = 32767
 """Largest coordinate of a font."""
@@ -37,7 +38,7 @@ LIMIT = 32767
 
 @dataclass(frozen=True)
 class Drawn:
-    """A glyph ready to be stored: ``data`` for the table, its bounds, and how far from the source it may be.
+    """A glyph ready to be stored: ``data`` for the table, and its bounds.
 
     ``error`` bounds the two-sided distance from the source in font units; None if the conversion measured none.
     """
@@ -48,38 +49,38 @@ class Drawn:
 
 
 def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
-    """What is left of a tolerance for the fit, so that the font that is written keeps the whole of it.
+    """Tolerance for the fit such that the written font stays within ``tolerance``.
 
-    An OTF takes next to nothing: it has fractions where it needs them. A TTF takes the rounding and the step to
-    quadratics; a tolerance too small for those leaves half of itself, and such a font says that it is beyond.
+    An OTF needs almost nothing: it has fractions. A TTF needs the rounding and the step to quadratics; where the
+    tolerance is too small for those, the fit gets half of it and glyphs are reported as beyond it.
     """
     left = tolerance - ROUNDING / FINE if flavour == "otf" else (1 - QUADRATIC_SHARE) * tolerance - ROUNDING
     return left if left > 0 else tolerance / 2
 
 
 def drawn_result(result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None) -> Drawn:
-    """A converted glyph, its contours run as the format has them. ``tolerance`` is that of the whole."""
+    """A converted glyph within ``tolerance`` of its source; ``width`` is for :func:`char_string`."""
     contours = oriented([contour.curve for contour in result.contours], flavour)
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     deviation = max((value for value in measured if value is not None), default=0.0)
     known = None not in measured
-    room = tolerance - deviation - ROUNDING
+    left = tolerance - deviation - ROUNDING
     if flavour == "otf":
-        whole = not known or room >= 0 or all(np.array_equal(c.points, np.rint(c.points)) for c in contours)
+        whole = not known or left >= 0 or all(np.array_equal(c.points, np.rint(c.points)) for c in contours)
         data = char_string(contours, width, 1 if whole else FINE, result.outline.name)
         error = ROUNDING if whole else ROUNDING / FINE
     else:
-        step = max(room if known else 0.0, QUADRATIC_SHARE * tolerance)
+        step = max(left if known else 0.0, QUADRATIC_SHARE * tolerance)
         data = quadratic_glyph(contours, step, result.outline.name)
         error = ROUNDING + (step if any((c.degrees == 3).any() for c in contours) else 0.0)
     return Drawn(data, bounds_of(data, contours), deviation + error if known else None)
 
 
-def drawn_outline(outline: Outline, flavour: Flavour, width: float | None) -> Drawn:
-    """A glyph kept as it is, in the other format."""
+def drawn_outline(outline: Outline, flavour: Flavour) -> Drawn:
+    """A glyph that was not converted, in the other format."""
     contours = oriented(outline.contours, flavour)
     if flavour == "otf":
-        data = char_string(contours, width, 1, outline.name)
+        data = char_string(contours, round(outline.advance), 1, outline.name)
     else:
         data = quadratic_glyph(contours, outline.metrics.units_per_em / 2000, outline.name)
     return Drawn(data, bounds_of(data, contours), None)
@@ -88,8 +89,7 @@ def drawn_outline(outline: Outline, flavour: Flavour, width: float | None) -> Dr
 def oriented(contours: Sequence[Contour], flavour: Flavour) -> list[Contour]:
     """The contours, all reversed if the ink lies on the wrong side of them.
 
-    CFF fills what lies left of its outer contours, TrueType what lies right of them: the area of the whole is
-    positive in the one and negative in the other.
+    The total signed area is positive in CFF, which fills the left side, and negative in TrueType.
     """
     total = sum(area(contour.cubics()) for contour in contours)
     wrong = total < 0 if flavour == "otf" else total > 0
@@ -97,7 +97,7 @@ def oriented(contours: Sequence[Contour], flavour: Flavour) -> list[Contour]:
 
 
 def char_string(contours: Sequence[Contour], width: float | None, parts: int, name: str) -> Any:
-    """A Type 2 char string with coordinates in multiples of 1/``parts`` unit; ``width`` as it stands in it."""
+    """A Type 2 char string with coordinates in multiples of 1/``parts`` unit; ``width`` is stored as given."""
     pen = T2CharStringPen(width, None, roundTolerance=0)
     stored = [rounded_cubics(contour, parts) for contour in contours]
     for contour in stored:
@@ -108,13 +108,12 @@ def char_string(contours: Sequence[Contour], width: float | None, parts: int, na
 
 def rounded_cubics(contour: Contour, parts: int) -> Contour:
     """The contour as lines and cubics with coordinates in multiples of 1/``parts``."""
-    segments = [segment if len(segment) == 2 else as_cubic(segment) for segment in contour.segments()]
-    raised = Contour.from_segments(segments)
+    raised = Contour.from_segments(part if len(part) == 2 else as_cubic(part) for part in contour.segments())
     return Contour(np.rint(parts * raised.points) / parts + 0.0, raised.degrees)
 
 
 def doubles_back(contour: Contour) -> bool:
-    """Whether a line goes back over the one before it: the optimiser of char strings would make one line of both."""
+    """Whether a line goes back over the one before it: the char string optimiser would merge the two."""
     starts = contour.points[contour.offsets]
     arms = np.roll(starts, -1, axis=0) - starts
     lines = contour.degrees == 1
@@ -124,7 +123,7 @@ def doubles_back(contour: Contour) -> bool:
 
 
 class _WholeNumbers:
-    """Gives a pen ints, which are shorter in a char string than floats of the same value."""
+    """Passes ints to a pen: they are shorter in a char string than floats of the same value."""
 
     def __init__(self, pen: Any) -> None:
         self._pen = pen
@@ -158,7 +157,4 @@ def bounds_of(data: Any, contours: Sequence[Contour]) -> tuple[float, float, flo
     pen = BoundsPen(None)
     for contour in contours:
         contour.draw(pen)
-    if pen.bounds is None:
-        return None
-    left, bottom, right, top = pen.bounds
-    return math.floor(left + 0.5), math.floor(bottom + 0.5), math.floor(right + 0.5), math.floor(top + 0.5)
+    return pen.bounds and tuple(map(otRound, pen.bounds))

@@ -14,20 +14,20 @@ from ...readers import Font, Source
 from .font_glyphs import Flavour
 
 HINTS = ("cvt ", "cvar", "fpgm", "prep", "gasp", "hdmx", "VDMX", "LTSH", "TSI0", "TSI1", "TSI2", "TSI3", "TSI5", "TSIV")
-"""They belong to the old outlines' points."""
+"""Hints, which refer to points of the old outlines."""
 
 PICTURES = ("EBDT", "EBLC", "EBSC", "CBDT", "CBLC", "sbix", "SVG ", "bdat", "bloc")
-"""Pictures of glyphs, which would be shown instead of the new outlines."""
+"""Pictures of glyphs, which renderers prefer to outlines."""
 
 SPENT = ("DSIG", "STAT", "MERG", "VORG")
-"""A signature, names of axes, and what is derived from the old outlines."""
+"""A signature, names of axes, and values derived from the old outlines."""
 
 DATE = 3_786_912_000
-"""2024-01-01 in a font's seconds, for fonts made from sources that have no date of their own: bytes must not vary."""
+"""2024-01-01 in a font's seconds, for sources without a date: the bytes must not depend on the clock."""
 
 
 def base_tables(source: Source) -> TTFont:
-    """The source's tables, static at its location; of a source that is no font, new ones with no glyphs."""
+    """The source's tables, static at its location; new tables without glyphs if the source is not a font."""
     if not isinstance(source, Font):
         return new_tables(source)
     font = source.tables()
@@ -45,11 +45,10 @@ def base_tables(source: Source) -> TTFont:
 
 def new_tables(source: Source) -> TTFont:
     """Names, metrics and characters of a UFO or of drawings. Kerning and features are not carried over."""
-    em = round(source.metrics.units_per_em)
-    if not 16 <= em <= 16384 or em != source.metrics.units_per_em:
-        raise FontError(
-            f"an em of {source.metrics.units_per_em:g} units: a font has 16 to 16384", font=str(source.path)
-        )
+    given = source.metrics.units_per_em
+    em = round(given)
+    if not 16 <= em <= 16384 or em != given:
+        raise FontError(f"an em of {given:g} units: a font has 16 to 16384", font=str(source.path))
     builder = FontBuilder(em, isTTF=True)
     builder.setupHead(unitsPerEm=em, created=DATE, modified=DATE)
     names = list(source.glyph_names)
@@ -61,47 +60,36 @@ def new_tables(source: Source) -> TTFont:
     builder.setupHorizontalMetrics(dict.fromkeys(names, (0, 0)))
     builder.setupHorizontalHeader(ascent=ascender, descent=descender)
     builder.setupNameTable({"familyName": source.family, "styleName": source.style})
-    builder.setupOS2(
-        sTypoAscender=ascender,
-        sTypoDescender=descender,
-        usWinAscent=max(ascender, 0),
-        usWinDescent=max(-descender, 0),
-    )
+    heights = {"sTypoAscender": ascender, "sTypoDescender": descender}
+    builder.setupOS2(**heights, usWinAscent=max(ascender, 0), usWinDescent=max(-descender, 0))
     builder.setupPost()
     builder.font.recalcTimestamp = False
     return builder.font
 
 
 def become(font: TTFont, flavour: Flavour, glyphs: dict[str, Any], family: str) -> None:
-    """Put a whole set of glyphs in the font's place for them, whatever kind it was."""
+    """Replace all glyphs of the font, of either flavour, by ``glyphs``."""
     for tag in ("glyf", "loca", "CFF ", "CFF2"):
         if tag in font:
             del font[tag]
     builder = FontBuilder(font=font)
     builder.isTTF = flavour == "ttf"
+    builder.setupMaxp()
+    post = font["post"]
     if flavour == "ttf":
         font.sfntVersion = "\0\1\0\0"
-        font["maxp"] = maxp = newTable("maxp")
-        maxp.tableVersion, maxp.numGlyphs = 0x00010000, len(glyphs)
-        for field in ("maxZones", "maxTwilightPoints", "maxStorage", "maxFunctionDefs", "maxInstructionDefs",
-                      "maxStackElements", "maxSizeOfInstructions", "maxComponentElements", "maxComponentDepth",
-                      "maxPoints", "maxContours", "maxCompositePoints", "maxCompositeContours"):  # fmt: skip
-            setattr(maxp, field, 1 if field == "maxZones" else 0)
+        font["maxp"].maxZones = 1  # no instructions, so no twilight zone
         builder.setupGlyf(glyphs, calcGlyphBounds=False)
         font["head"].glyphDataFormat = 0
-    else:
-        font["maxp"] = maxp = newTable("maxp")
-        maxp.tableVersion, maxp.numGlyphs = 0x00005000, len(glyphs)
-        builder.setupCFF(postscript(family), {"FamilyName": family, "FullName": family}, glyphs, {})
-    post = font["post"]
-    post.formatType = 2.0 if flavour == "ttf" else 3.0
-    if flavour == "ttf":
-        post.extraNames, post.mapping = [], {}
+        post.formatType, post.extraNames, post.mapping = 2.0, [], {}
         post.glyphOrder = font.getGlyphOrder()
+    else:
+        builder.setupCFF(postscript(family), {"FamilyName": family, "FullName": family}, glyphs, {})
+        post.formatType = 3.0
 
 
 def rename(font: TTFont, family: str, style: str) -> None:
-    """A new family name wherever the old one stands: a changed font must not pass for the one it came from.
+    """Replace the family name everywhere: a changed font must not pass for its source.
 
     Copyright and licence stay; trademark goes.
     """
