@@ -1,1 +1,1 @@
-"""What a font draws: contours, their canonical order, sampling, joins and overlaps."""
+"""Outlines of a font: contours, their canonical order, sampling, joins and overlaps."""

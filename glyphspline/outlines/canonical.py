@@ -1,4 +1,4 @@
-"""A start and a direction that belong to a contour's shape: its fit does not depend on how the font stores it."""
+"""Start point and direction from a contour's shape, so that the fit does not depend on how the font stores it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..types import FloatArray
 
 @compiled(internal=True)
 def farthest_joint(joints: FloatArray) -> int:
-    """Index of the joint (m, 2) farthest from the middle of all; of several, that farthest right, then up."""
+    """Index of the joint (m, 2) farthest from the mean of all; ties go to the rightmost, then the uppermost."""
     m = len(joints)
     x = y = 0.0
     for j in range(m):
@@ -28,10 +28,10 @@ def farthest_joint(joints: FloatArray) -> int:
 
 @compiled(internal=True)
 def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
-    """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether that is not its own.
+    """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether it was reversed.
 
-    The chords of its segments decide: the sum changes its sign with the direction, is the same from every start, and
-    does not change when the contour is shifted, turned or mirrored.
+    The sign of a sum over the segments' chords decides. It changes with the direction, but not with the start point,
+    nor with shift, rotation or reflection of the contour.
     """
     m = len(cubics)
     total = 0.0

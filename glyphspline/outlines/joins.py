@@ -1,4 +1,4 @@
-"""Where a contour is not smooth: its corners, breaks of the tangent too small for one, and breaks of curvature."""
+"""Where a contour is not smooth: corners, smaller breaks of the tangent, and breaks of curvature."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .outline import Contour
 from .sampling import CORNER_ANGLE
 
 TANGENT_ANGLE = 0.5
-"""Degrees of turn from which a tangent counts as broken. Coordinates in whole units turn joins meant smooth by less."""
+"""Degrees of turn from which a tangent is broken: rounding to whole units turns smooth joins by less."""
 
 Kind = Literal["corner", "G1", "G2"]
 KINDS: tuple[Kind, ...] = ("corner", "G1", "G2")
@@ -22,11 +22,11 @@ KINDS: tuple[Kind, ...] = ("corner", "G1", "G2")
 
 @dataclass(frozen=True, eq=False)
 class Joins:
-    """The joins of a closed contour's segments; row j is the one at which segment j begins.
+    """The joins of a closed contour's segments; row j is the beginning of segment j.
 
     Attributes:
         points: (m, 2).
-        turns: (m,) radians by which the tangent turns there, positive to the left.
+        turns: (m,) turn of the tangent in radians, positive to the left.
         jumps: (m,) curvature after less curvature before, in 1/unit.
     """
 
@@ -38,8 +38,8 @@ class Joins:
         """(m,) which joins are corners, smaller breaks of the tangent (G1), or of curvature alone (G2).
 
         Args:
-            kind: which of the three; a join is at most one of them.
-            least_jump: curvature in 1/unit from which a jump counts. corner_angle: in degrees.
+            kind: the kind; a join has at most one.
+            least_jump: smallest jump of curvature, in 1/unit. corner_angle: in degrees.
         """
         turn = np.degrees(np.abs(self.turns))
         corner, broken = turn >= corner_angle, turn >= TANGENT_ANGLE

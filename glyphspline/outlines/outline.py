@@ -1,4 +1,4 @@
-"""What is read from a font: contours of line, quadratic and cubic Bézier segments, y up, in font units."""
+"""Outlines: contours of line, quadratic and cubic Bézier segments, y up, in font units."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Contour:
     """A closed chain of Bézier segments.
 
     Attributes:
-        points: (N, 2) the control points of all segments in order, each shared end written once.
+        points: (N, 2) the control points of all segments in order, each shared end once.
         degrees: (m,) the degree of each segment: 1 (line), 2 or 3, so that ``N == degrees.sum()``.
 
     Segment j has the ``degrees[j] + 1`` points that begin at ``offsets[j]``; the last segment ends on
@@ -40,14 +40,14 @@ class Contour:
 
     @classmethod
     def from_segments(cls, segments: Iterable[FloatArray]) -> Contour:
-        """Join segments of shape (degree + 1, 2); each has to begin where the one before it ended."""
+        """Join segments of shape (degree + 1, 2); each must begin where its predecessor ends."""
         parts = [np.asarray(segment, dtype=np.float64) for segment in segments]
         points = np.concatenate([part[:-1] for part in parts]) if parts else np.empty((0, 2))
         return cls(points, np.array([len(part) - 1 for part in parts], dtype=np.int64))
 
     @cached_property
     def offsets(self) -> IntArray:
-        """(m,) where in ``points`` each segment begins."""
+        """(m,) first index in ``points`` of each segment."""
         return np.cumsum(self.degrees) - self.degrees
 
     def __len__(self) -> int:
@@ -60,9 +60,8 @@ class Contour:
             yield closed[offset : offset + degree + 1]
 
     def cubics(self) -> FloatArray:
-        """(m, 4, 2) all segments as cubic Béziers, lines and quadratics raised exactly."""
-        # Here and not above, as it brings the compiler with it: the package opens without.
-        from ..curves.cubics import raised
+        """(m, 4, 2) all segments as cubic Béziers, by exact degree elevation."""
+        from ..curves.cubics import raised  # here and not above: the package opens without a compiler
 
         return raised(self.points, self.degrees)
 
@@ -72,11 +71,11 @@ class Contour:
         return evaluate(self.cubics()[segments % len(self)], places - segments)
 
     def rounded(self, digits: int) -> Contour:
-        """The contour as it is written with ``digits`` decimals."""
+        """The contour with coordinates rounded to ``digits`` decimals."""
         return Contour(np.round(self.points, digits) + 0.0, self.degrees)
 
     def reversed(self) -> Contour:
-        """The same shape run the other way, beginning at the same point."""
+        """The same shape in the opposite direction, with the same start point."""
         return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
 
     def draw(self, pen: Any) -> None:
@@ -90,14 +89,14 @@ class Contour:
 
 
 class Contours(Views[Contour]):
-    """The contours of a glyph: a sequence of :class:`Contour`, whose numbers lie end to end in ``arrays``."""
+    """The contours of a glyph: a sequence of :class:`Contour`, which are views of ``arrays``."""
 
     __slots__ = ("arrays",)
 
     def __init__(self, contours: Iterable[Contour] | ContourArrays = ()) -> None:
         if isinstance(contours, ContourArrays):
             self.arrays = contours
-            super().__init__(len(contours.offsets) - 1, lambda: _views(contours))
+            super().__init__(contours.num_contours, lambda: _views(contours))
         else:
             given = tuple(contours)
             self.arrays = _end_to_end(given)
@@ -123,7 +122,7 @@ def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:
 
 @dataclass(frozen=True)
 class FontMetrics:
-    """What a drawing needs to know of the whole font, in font units."""
+    """The font's em and vertical metrics, in font units."""
 
     units_per_em: float = 1000.0
     ascender: float = 800.0
@@ -132,14 +131,14 @@ class FontMetrics:
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A glyph as its font gives it.
+    """A glyph as its font stores it.
 
     Attributes:
         name: the glyph's name; gid: its index in the font; unicodes: its code points, ascending.
         advance: horizontal advance in font units.
-        contours: its contours in the font's order, from any iterable of them; empty for a space.
+        contours: its contours in the font's order; any iterable is accepted; empty for a space.
         metrics: units per em, ascender and descender of its font.
-        notes: what the reader left out and why, a sentence each.
+        notes: what the reader left out and why, one sentence each.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Places of vertices on contours, by step or by count, compiled.
 
 A *place* j + x on a contour is local parameter x of its segment j. Distances along a contour come from a table of
-chords: they only decide where vertices lie, and vertices lie on the outline wherever that is.
+chord lengths: they determine the spacing only, and vertices lie on the outline exactly.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from ..curves.cubics import bernstein, directions, length_table
 from ..types import BoolArray, FloatArray, IntArray
 
 TABLE = 32
-"""Steps a segment in the table of arc lengths."""
+"""Steps per segment in the table of arc lengths."""
 
 TIE = 1e-6
-"""A half part, or a ratio just at its bound, is common among straight lines; rounding errors must not decide there."""
+"""Slack of rounding and comparison: halves and ratios at their bound are common on straight lines."""
 
 ROUNDS = 64
-"""Rounds of grading after which a contour is refused: each halves, and no length is halved more often."""
+"""Maximum number of halvings of a spacing; a contour that needs more is refused."""
 
 WEIGHTS = bernstein(TABLE)
 
@@ -32,13 +32,13 @@ def sampled(
 
     Args:
         cubics: (M, 4, 2). offsets: (K + 1,) where contours begin.
-        step: in font units, or 0 to sample by ``count``, vertices a contour.
-        max_ratio: of neighbouring spacings. corner_angle: turn in radians from which a joint is a corner.
-        most: vertices a contour may have.
+        step: in font units, or 0 to sample by ``count`` vertices per contour.
+        max_ratio: of adjacent spacings. corner_angle: turn in radians from which a joint is a corner.
+        most: maximum number of vertices of a contour.
 
     Returns:
         (N, 2) vertices; (N,) their places, increasing within a contour; (K + 1,) where each polygon begins; (K,)
-        whether a contour would have more than ``most`` vertices, and then has none.
+        whether a contour would need more than ``most`` vertices; such a contour has none.
     """
     contours = len(offsets) - 1
     found = np.empty((1024, 3))
@@ -82,7 +82,7 @@ def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
 
 @compiled(internal=True)
 def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> FloatArray:
-    """Distances at even spacing, the nearest moved onto each corner where spacings stay within ``max_ratio``."""
+    """Even distances; the nearest to each corner moves onto it where spacings stay within ``max_ratio``."""
     at = length * np.arange(count) / count
     for corner in corners:
         nearest = np.argmin(np.abs(at - corner))
@@ -98,21 +98,21 @@ def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> F
 
 @compiled(internal=True)
 def _spacing(at: FloatArray, k: int, length: float) -> float:
-    """Distance from vertex k to the next, round the contour."""
+    """Distance from vertex k to the next, cyclically."""
     k %= len(at)
     return at[k + 1] - at[k] if k + 1 < len(at) else at[0] + length - at[k]
 
 
 @compiled(internal=True)
 def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, most: int) -> FloatArray:
-    """Distances along a contour, ascending, where vertices are; empty if there would be too many."""
+    """Ascending distances of the vertices along a contour; empty if there are too many."""
     c = len(corners)
     if c == 0:
         corners, c = np.zeros(1), 1
     parts = np.empty(c, dtype=np.int64)
     total = 0
     for j in range(c):
-        stretch = (corners[j + 1] if j + 1 < c else corners[0] + length) - corners[j]
+        stretch = _spacing(corners, j, length)
         if not stretch / step < most:
             return np.empty(0)
         parts[j] = max(int(np.rint(stretch / step - TIE)), 1)
@@ -125,43 +125,38 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
     at = np.empty(total)
     i = 0
     for j in range(c):
-        a, b = corners[j], corners[j + 1] if j + 1 < c else corners[0] + length
         for k in range(parts[j]):
-            at[i] = a + k * ((b - a) / parts[j])
+            at[i] = corners[j] + k * (_spacing(corners, j, length) / parts[j])
             i += 1
     return _from_start(_graded(at, length, max_ratio, most), length)
 
 
 @compiled(internal=True)
 def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> FloatArray:
-    """Halve spacings that are more than max_ratio times a neighbour, until none is."""
+    """Halve spacings larger than max_ratio times a neighbour until there are none; empty if that fails."""
     for _ in range(ROUNDS):
         n = len(at)
-        h = np.empty(n)
+        finer, k = np.empty(2 * n), 0
+        before, here = _spacing(at, n - 1, length), _spacing(at, 0, length)
         for i in range(n):
-            h[i] = (at[i + 1] if i + 1 < n else at[0] + length) - at[i]
-        long = 0
-        for i in range(n):
-            long += h[i] > (max_ratio + TIE) * min(h[i - 1], h[i + 1 if i + 1 < n else 0])
-        if long == 0:
-            return at
-        if n + long > most:
-            break
-        finer = np.empty(n + long)
-        k = 0
-        for i in range(n):
+            after = _spacing(at, i + 1, length)
             finer[k] = at[i]
             k += 1
-            if h[i] > (max_ratio + TIE) * min(h[i - 1], h[i + 1 if i + 1 < n else 0]):
-                finer[k] = at[i] + 0.5 * h[i]
+            if here > (max_ratio + TIE) * min(before, after):
+                finer[k] = at[i] + 0.5 * here
                 k += 1
-        at = finer
+            before, here = here, after
+        if k == n:
+            return at
+        if k > most:
+            break
+        at = finer[:k]
     return np.empty(0)
 
 
 @compiled(internal=True)
 def _from_start(at: FloatArray, length: float) -> FloatArray:
-    """The same distances beginning with the first after the contour's own beginning."""
+    """The same distances modulo ``length``, ascending."""
     n = len(at)
     wrapped = 0
     while wrapped < n and at[n - 1 - wrapped] >= length:
@@ -175,7 +170,7 @@ def _from_start(at: FloatArray, length: float) -> FloatArray:
 
 @compiled(internal=True)
 def _evaluate(pieces: FloatArray, table: FloatArray, at: FloatArray, found: FloatArray) -> None:
-    """Points, and their places, at ascending distances along the contour, by the table; into ``found`` (n, 3)."""
+    """Write points and places at ascending distances along the contour to ``found`` (n, 3)."""
     cell, last = 0, len(table) - 2
     for i in range(len(at)):
         while cell < last and table[cell + 1] <= at[i]:

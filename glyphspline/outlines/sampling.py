@@ -12,7 +12,7 @@ CORNER_ANGLE = 12.0
 """Degrees of turn from which a join of two segments is a corner. Brush faces join smooth strokes at up to 10."""
 
 MOST_VERTICES = 200_000
-"""Vertices that the polygon of one contour may have."""
+"""Maximum number of vertices of a polygon."""
 
 
 def sample(
@@ -26,11 +26,11 @@ def sample(
     """Sample a contour to a polygon whose vertices lie on it.
 
     Args:
-        contour: the outline.
-        count: that many vertices, evenly spaced by arc length; the nearest vertex moves onto each corner where the
-            chords stay within ``max_ratio``.
-        step: corners are vertices, and the stretches between them are divided evenly into parts of at most about
-            ``step`` font units (at least 3 vertices); longer chords beside much shorter ones are halved.
+        contour: the contour.
+        count: number of vertices, evenly spaced by arc length; the nearest vertex moves onto each corner where
+            spacings stay within ``max_ratio``.
+        step: corners are vertices, and the sections between them are divided evenly into parts of about ``step`` font
+            units (at least 3 vertices); spacings next to much shorter ones are halved.
         max_ratio: bound on the ratio of adjacent spacings along the contour, 2 or more. Up to 4 keeps every
             basis function above 1/2, so that convergence is certified.
         corner_angle: turn in degrees from which a join of two segments is a corner.
@@ -42,22 +42,18 @@ def sample(
         OptionError: neither or both of ``count`` and ``step``, or a value out of range.
         GlyphsplineError: too many vertices.
     """
-    # Here and not above, as it brings the compiler with it: the package opens without.
-    from .places import sampled
+    from .places import sampled  # here and not above: the package opens without a compiler
 
     check_sampling(count, step, max_ratio, corner_angle)
-    cubics = contour.cubics()
-    ends = np.array([0, len(cubics)])
-    points, _, _, refused = sampled(
-        cubics, ends, step or 0.0, count or 0, max_ratio, np.radians(corner_angle), MOST_VERTICES
-    )
+    ends, angle = np.array([0, len(contour)]), np.radians(corner_angle)
+    points, _, _, refused = sampled(contour.cubics(), ends, step or 0.0, count or 0, max_ratio, angle, MOST_VERTICES)
     if refused[0]:
         raise GlyphsplineError(f"sampling takes more than {MOST_VERTICES} vertices")
     return points
 
 
 def check_sampling(count: int | None, step: float | None, max_ratio: float, corner_angle: float) -> None:
-    """Refuse a sampling that cannot be made.
+    """Validate the parameters of :func:`sample`.
 
     Raises:
         OptionError: neither or both of ``count`` and ``step``, or a value out of range.
