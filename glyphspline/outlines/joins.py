@@ -17,7 +17,6 @@ TANGENT_ANGLE = 0.5
 """Degrees of turn from which a tangent is broken: rounding to whole units turns smooth joins by less."""
 
 Kind = Literal["corner", "G1", "G2"]
-KINDS: tuple[Kind, ...] = ("corner", "G1", "G2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +33,13 @@ class Joins:
     turns: FloatArray
     jumps: FloatArray
 
-    def of(self, kind: Kind, least_jump: float, corner_angle: float = CORNER_ANGLE) -> BoolArray:
-        """(m,) which joins are corners, smaller breaks of the tangent (G1), or of curvature alone (G2).
+    def of(self, kind: Kind, least_jump: float) -> BoolArray:
+        """(m,) which joins are of the kind: corners, smaller breaks of the tangent (G1), or of curvature alone (G2).
 
-        Args:
-            kind: the kind; a join has at most one.
-            least_jump: smallest jump of curvature, in 1/unit. corner_angle: in degrees.
+        A join has at most one kind. ``least_jump`` is the smallest jump of curvature that counts, in 1/unit.
         """
         turn = np.degrees(np.abs(self.turns))
-        corner, broken = turn >= corner_angle, turn >= TANGENT_ANGLE
+        corner, broken = turn >= CORNER_ANGLE, turn >= TANGENT_ANGLE
         if kind == "corner":
             return corner
         return broken & ~corner if kind == "G1" else ~broken & (np.abs(self.jumps) >= least_jump)

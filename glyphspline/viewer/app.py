@@ -52,10 +52,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
         Route("/static/{name}", static),
         Route("/api/font", _answer(lambda request: font_facts(work))),
         Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
-        Route("/api/glyph", _computed(work, glyph_answer), methods=["POST"]),
-        Route("/api/compare", _computed(work, compare_answer), methods=["POST"]),
-        Route("/api/steps", _computed(work, steps_answer), methods=["POST"]),
-        Route("/api/svg", _computed(work, svg_answer), methods=["POST"]),
+        *(Route(f"/api/{name}", _computed(work, make), methods=["POST"]) for name, make in ANSWERS.items()),
     ]
     return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])
 
@@ -95,19 +92,13 @@ def glyph_answer(work: Work, state: State) -> dict[str, Any]:
     return glyph_payload(result.outline) | result_payload(result) | {"command": work.command(state)}
 
 
-def compare_answer(work: Work, state: State) -> dict[str, Any]:
-    """The same polygon by variants 1, 2 and 3."""
-    return {"results": [result_payload(work.result(state, variant)) for variant in COMPARED]}
-
-
-def steps_answer(work: Work, state: State) -> dict[str, Any]:
-    """The iteration of the glyph's closed curves."""
-    return {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]}
-
-
-def svg_answer(work: Work, state: State) -> dict[str, Any]:
-    """The SVG that a conversion writes."""
-    return {"svg": to_svg(work.result(state))}
+ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
+    "glyph": glyph_answer,
+    "compare": lambda work, state: {"results": [result_payload(work.result(state, each)) for each in COMPARED]},
+    "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
+    "svg": lambda work, state: {"svg": to_svg(work.result(state))},
+}
+"""By route: the glyph; its polygon by the variants 1, 2 and 3; the iteration of its closed curves; the SVG file."""
 
 
 def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...curves.curvature import Comb, comb
 from ...fitting.results import ContourResult, GlyphResult
-from ...outlines.joins import KINDS, joins
+from ...outlines.joins import Kind, joins
 from ...outlines.outline import Contour
 from ...types import FloatArray
 from ..svg.curvature_map import LONGEST, SPACING, Teeth, teeth
@@ -33,8 +33,13 @@ PROFILES = 4
 JUMP = 0.25
 """Smallest jump of curvature, in units of the scale, that is marked as a break: half a colour class."""
 
-MARKS = {"corner": ("s", "#d6336c"), "G1": ("^", "#e8590c"), "G2": ("o", "#1098ad")}
-WORDS = {"corner": "corners", "G1": "tangent breaks (G1)", "G2": "curvature jumps (G2)"}
+MARKS: dict[Kind, tuple[str, str, str]] = {
+    "corner": ("s", "#d6336c", "corners"),
+    "G1": ("^", "#e8590c", "tangent breaks (G1)"),
+    "G2": ("o", "#1098ad", "curvature jumps (G2)"),
+}
+"""Marker, colour and label of the breaks, by kind."""
+
 SOURCE = "#e8590c"
 
 Glyph = GlyphResult | tuple[str, str]
@@ -154,11 +159,10 @@ def _draw(axes: Any, curves: Sequence[FloatArray], drawn: Sequence[Teeth]) -> No
 
 def _mark_breaks(axes: Any, glyph: GlyphResult, scale: float) -> None:
     found = [joins(contour.source) for contour in glyph.contours]
-    for kind in KINDS:
+    for kind, (marker, colour, label) in MARKS.items():
         points = [point for own in found for point in own.points[own.of(kind, JUMP * scale)]]
         if points:
-            marker, colour = MARKS[kind]
-            axes.plot(*np.array(points).T, marker, color=colour, markersize=3, label=f"{WORDS[kind]}: {len(points)}",
+            axes.plot(*np.array(points).T, marker, color=colour, markersize=3, label=f"{label}: {len(points)}",
                       linestyle="none", markeredgewidth=0)  # fmt: skip
     if axes.get_legend_handles_labels()[0]:
         axes.legend(fontsize=6, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, frameon=False)
@@ -179,8 +183,7 @@ def _draw_profile(axes: Any, contour: ContourResult, index: int, scale: float, e
     axes.plot(t[order] / em, curvature, color="black", linewidth=0.8, label="spline")
     found = joins(contour.source)
     at = s[source.pieces[:-1]]
-    for kind in KINDS:
-        marker, colour = MARKS[kind]
+    for kind, (marker, colour, _) in MARKS.items():
         where = at[found.of(kind, JUMP * scale)] / em
         axes.plot(where, np.full(len(where), -0.95 * limit), marker, color=colour, markersize=3, linestyle="none")
     axes.set(xlim=(0, total / em), ylim=(-limit, limit))
