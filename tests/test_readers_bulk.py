@@ -19,7 +19,7 @@ from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
 from glyphspline.readers.opentype.careful import CarefulReader
-from glyphspline.readers.source import Head
+from glyphspline.readers.source import Head, attempt
 
 from .test_broken_fonts import with_components
 
@@ -52,10 +52,7 @@ def heads_of(font: Font) -> list[Head]:
 
 
 def read_carefully(font: Font, head: Head) -> Outline | GlyphsplineError:
-    try:
-        return font._careful.outline(head, font.metrics)
-    except GlyphsplineError as error:
-        return error
+    return attempt(font.path, head.name, lambda: font._careful.outline(head, font.metrics))
 
 
 def assert_same(found: Outline | GlyphsplineError, expected: Outline | GlyphsplineError) -> None:

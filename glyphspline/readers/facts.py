@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,11 @@ from typing import Any
 from ..curves.integrals import area
 from ..errors import GlyphsplineError
 from ..outlines.outline import Outline
+from ..outlines.overlaps import contours_of
 from .open import open_source
 from .opentype.font import Font
-from .pens import ContourPen
-from .source import OutlineOrError, Source
+from .opentype.tables import Location
+from .source import Source
 
 OVERLAP = 1e-5
 """Share of a square em below which the area of an overlap counts as rounding."""
@@ -22,9 +23,7 @@ BATCH = 200
 """Glyphs read at once: a few megabytes of outlines."""
 
 
-def file_facts(
-    path: str | Path, face_index: int | None = None, location: Mapping[str, float] | str | None = None
-) -> dict[str, Any]:
+def file_facts(path: str | Path, face_index: int | None = None, location: Location = None) -> dict[str, Any]:
     """The file's format, and the facts of each face or of the one requested. Every glyph is drawn.
 
     Raises:
@@ -50,7 +49,9 @@ def source_facts(source: Source) -> dict[str, Any]:
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
     has_pathops = find_spec("pathops") is not None
-    for name, outline in outlines_of(source):
+    batches = (source.glyph_names[first : first + BATCH] for first in range(0, len(source.glyph_names), BATCH))
+    glyphs = (pair for names in batches for pair in zip(names, source.outlines(names, errors="return"), strict=True))
+    for name, outline in glyphs:
         if isinstance(outline, GlyphsplineError):
             broken.append(name)
             continue
@@ -65,13 +66,8 @@ def source_facts(source: Source) -> dict[str, Any]:
         "face_index": source.face_index,
         "family": source.family,
         "style": source.style,
-        "units_per_em": source.metrics.units_per_em,
-        "ascender": source.metrics.ascender,
-        "descender": source.metrics.descender,
-        "axes": [] if font is None else [
-            {"tag": a.tag, "name": a.name, "minimum": a.minimum, "default": a.default, "maximum": a.maximum}
-            for a in font.axes
-        ],
+        **asdict(source.metrics),
+        "axes": [] if font is None else [asdict(axis) for axis in font.axes],
         "instances": {} if font is None else font.instances,
         "location": dict(source.location),
         "glyphs": len(source.glyph_names),
@@ -82,14 +78,7 @@ def source_facts(source: Source) -> dict[str, Any]:
         "broken": broken,
         "degenerate": degenerate,
         "overlaps": overlapping if has_pathops else None,
-    }  # fmt: skip
-
-
-def outlines_of(source: Source) -> Iterator[tuple[str, OutlineOrError]]:
-    """Every glyph of a source, read in batches."""
-    for first in range(0, len(source.glyph_names), BATCH):
-        names = source.glyph_names[first : first + BATCH]
-        yield from zip(names, source.outlines(names, errors="return"), strict=True)
+    }
 
 
 def overlaps(outline: Outline) -> bool:
@@ -104,9 +93,7 @@ def overlaps(outline: Outline) -> bool:
         path.simplify(fix_winding=True)
     except pathops.PathOpsError:
         return False  # Skia fails on the glyph
-    united = ContourPen()
-    path.draw(united)
-    united.finish()
-    filled = sum(area(contour.cubics()) for contour in united.contours)
-    summed = sum(area(contour.cubics()) for contour in outline.contours)
+    filled, summed = (
+        sum(area(contour.cubics()) for contour in contours) for contours in (contours_of(path), outline.contours)
+    )
     return abs(abs(filled) - abs(summed)) > OVERLAP * outline.metrics.units_per_em**2

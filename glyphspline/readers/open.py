@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TypeAlias
@@ -12,6 +11,8 @@ from typing import TypeAlias
 from ..errors import FontError
 from .opentype.containers import FORMATS
 from .opentype.font import Font, open_font
+from .opentype.tables import Location
+from .source import opening
 from .svg_drawings import SvgDrawings, open_svg
 from .ufo import Ufo, open_ufo
 
@@ -24,7 +25,7 @@ LARGEST_INPUT = 1 << 29
 _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
-def open_source(path: str | Path, face_index: int = 0, location: Mapping[str, float] | str | None = None) -> AnySource:
+def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> AnySource:
     """Open a font file, a UFO, an SVG drawing or a folder of drawings.
 
     The content of the path decides, not its name.
@@ -41,20 +42,13 @@ def open_source(path: str | Path, face_index: int = 0, location: Mapping[str, fl
         is_ufo = (path / "metainfo.plist").exists()
         if not is_ufo and next(path.glob("*.svg"), None) is None:
             raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
-        return _single(path, face_index, location, open_ufo if is_ufo else open_svg)
-    try:
-        with open(path, "rb") as file:
+        reader = open_ufo if is_ufo else open_svg
+    else:
+        with opening(path), open(path, "rb") as file:
             head = file.read(4096)
-    except OSError as error:
-        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
-    if head[:4] not in FORMATS and head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<":
-        return _single(path, face_index, location, open_svg)
-    return open_font(path, face_index, location)
-
-
-def _single(
-    path: Path, face_index: int, location: Mapping[str, float] | str | None, reader: Callable[[Path], Ufo | SvgDrawings]
-) -> Ufo | SvgDrawings:
+        if head[:4] in FORMATS or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] != b"<":
+            return open_font(path, face_index, location)
+        reader = open_svg
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
     if location:

@@ -60,10 +60,6 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         """One sentence for each contour left out."""
         return tuple(f"contour {number} left out: it encloses nothing" for number in sorted(self.left_out))
 
-    def finish(self) -> None:
-        """Close a contour left open at the end."""
-        self._closePath()
-
     def addComponent(self, glyphName: str, transformation: Any) -> None:
         """Draw another glyph of the set in place; a loop of components, or too many, is an error."""
         self._components += 1
@@ -79,17 +75,8 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self._nesting.pop()
 
     def _moveTo(self, pt: Point) -> None:
-        self._closePath()
+        self.finish()
         self._points = [pt]
-
-    def _lineTo(self, pt: Point) -> None:
-        self._add(pt)
-
-    def _qCurveToOne(self, pt1: Point, pt2: Point) -> None:
-        self._add(pt1, pt2)
-
-    def _curveToOne(self, pt1: Point, pt2: Point, pt3: Point) -> None:
-        self._add(pt1, pt2, pt3)
 
     def _add(self, *to: Point) -> None:
         """Append the segment from the current point through ``to``, unless all points coincide."""
@@ -104,7 +91,10 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
                 self._degrees.append(len(to))
                 return
 
-    def _closePath(self) -> None:
+    _lineTo = _qCurveToOne = _curveToOne = _add
+
+    def finish(self) -> None:
+        """Close a contour left open at the end."""
         if not self._points:
             return
         if not self._same(self._points[0], self._points[-1]):
@@ -121,7 +111,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self.drawn += 1
         self._points, self._degrees = [], []
 
-    _endPath = _closePath
+    _closePath = _endPath = finish
 
     def _number(self) -> int:
         return self.numbers[self.drawn] if self.drawn < len(self.numbers) else self.drawn

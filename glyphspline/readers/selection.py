@@ -4,16 +4,34 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from typing import NamedTuple, TypeAlias
 
 from ..errors import GlyphsplineError
 
 Request: TypeAlias = int | str | Iterable[int | str]
 """Numbers: one or several ints, or strings of numbers and ranges such as ``"U+4E00-4E10,9F8D"`` or ``"5,10-20"``."""
 
-LAST_UNICODE = 0x10FFFF
-LAST_GID = 0xFFFFFF  # the largest glyph index of any table format
+
+class Numbers(NamedTuple):
+    """How numbers and ranges of one kind are written."""
+
+    pattern: re.Pattern[str]
+    base: int
+    last: int
+    hint: str
+
+
+UNICODES = Numbers(
+    re.compile(r"(?:U\+|0x)?([0-9A-F]{1,6})(?:-(?:U\+|0x)?([0-9A-F]{1,6}))?", re.IGNORECASE),
+    16,
+    0x10FFFF,
+    "code point or range of them, as in U+4E00-4E10",
+)
+GIDS = Numbers(
+    re.compile(r"([0-9]{1,7})(?:-([0-9]{1,7}))?"), 10, 0xFFFFFF, "glyph index or range of them, as in 10-20"
+)  # the largest glyph index of any table format
 
 
 class Selection(tuple[str, ...]):
@@ -35,12 +53,11 @@ class Selection(tuple[str, ...]):
 def select(
     glyph_names: Sequence[str],
     cmap: Mapping[int, str],
-    *,
-    text: str | None = None,
-    unicodes: Request | None = None,
-    glyphs: str | Iterable[str] | None = None,
-    gids: Request | None = None,
-    all_glyphs: bool = False,
+    text: str | None,
+    unicodes: Request | None,
+    glyphs: str | Iterable[str] | None,
+    gids: Request | None,
+    all_glyphs: bool,
 ) -> Selection:
     """The union of the glyphs that each argument selects.
 
@@ -67,14 +84,13 @@ def select(
         if not known:
             missing.append(phrase)
 
-    for character in dict.fromkeys(text or ""):
-        if unicodedata.category(character) != "Cc":
-            take(_within(cmap, ord(character), ord(character)), _unicode_phrase(ord(character), ord(character)))
-    for first, last in _ranges(unicodes, _unicode_range, (0, LAST_UNICODE)):
-        take(_within(cmap, first, last), _unicode_phrase(first, last))
-    for name in _names(glyphs):
+    codes = [ord(character) for character in dict.fromkeys(text or "") if unicodedata.category(character) != "Cc"]
+    for first, last in chain(zip(codes, codes, strict=True), _ranges(unicodes, UNICODES)):
+        take(_within(cmap, first, last), f"U+{first:04X}" if first == last else f"U+{first:04X}-{last:04X}")
+    names = glyphs.replace(",", " ").split() if isinstance(glyphs, str) else glyphs
+    for name in () if names is None else names:
         take(glyph_names if name == "*" else [name], f"glyph {name}")
-    for first, last in _ranges(gids, _gid_range, (0, LAST_GID)):
+    for first, last in _ranges(gids, GIDS):
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
     return Selection(sorted(found, key=index.__getitem__), dict.fromkeys(missing))
 
@@ -86,50 +102,23 @@ def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:
     return [name for code, name in cmap.items() if first <= code <= last]
 
 
-def _names(glyphs: str | Iterable[str] | None) -> list[str]:
-    if glyphs is None:
-        return []
-    return glyphs.replace(",", " ").split() if isinstance(glyphs, str) else list(glyphs)
-
-
-def _ranges(
-    request: Request | None, parse: Callable[[str], tuple[int, int]], everything: tuple[int, int]
-) -> Iterator[tuple[int, int]]:
+def _ranges(request: Request | None, kind: Numbers) -> Iterator[tuple[int, int]]:
     """First and last of each number or range."""
     if request is None:
         return
     for part in [request] if isinstance(request, int | str) else request:
         if isinstance(part, str):
             for item in part.replace(",", " ").split():
-                yield everything if item == "*" else parse(item)
-        elif 0 <= part <= everything[1]:
+                yield (0, kind.last) if item == "*" else _range(item, kind)
+        elif 0 <= part <= kind.last:
             yield part, part
         else:
-            raise GlyphsplineError(f"{part} is not between 0 and {everything[1]}")
+            raise GlyphsplineError(f"{part} is not between 0 and {kind.last}")
 
 
-def _unicode_range(item: str) -> tuple[int, int]:
-    match = re.fullmatch(r"(?:U\+|0x)?([0-9A-F]{1,6})(?:-(?:U\+|0x)?([0-9A-F]{1,6}))?", item, re.IGNORECASE)
-    first, last = _ends(match, 16)
-    if match is None or not first <= last <= LAST_UNICODE:
-        raise GlyphsplineError(f"{item!r} is no code point or range of them, as in U+4E00-4E10")
+def _range(item: str, kind: Numbers) -> tuple[int, int]:
+    match = kind.pattern.fullmatch(item)
+    first, last = (int(match[1], kind.base), int(match[2] or match[1], kind.base)) if match else (1, 0)
+    if not first <= last <= kind.last:
+        raise GlyphsplineError(f"{item!r} is no {kind.hint}")
     return first, last
-
-
-def _gid_range(item: str) -> tuple[int, int]:
-    match = re.fullmatch(r"([0-9]{1,7})(?:-([0-9]{1,7}))?", item, re.ASCII)
-    first, last = _ends(match, 10)
-    if match is None or not first <= last <= LAST_GID:
-        raise GlyphsplineError(f"{item!r} is no glyph index or range of them, as in 10-20")
-    return first, last
-
-
-def _ends(match: re.Match[str] | None, base: int) -> tuple[int, int]:
-    """The numbers of a match; an impossible range if there is none."""
-    if match is None:
-        return 1, 0
-    return int(match[1], base), int(match[2] or match[1], base)
-
-
-def _unicode_phrase(first: int, last: int) -> str:
-    return f"U+{first:04X}" if first == last else f"U+{first:04X}-{last:04X}"

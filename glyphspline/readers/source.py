@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal, NamedTuple, TypeAlias, overload
 
 from ..errors import FontError, GlyphsplineError
@@ -31,8 +32,8 @@ class Source(ABC):
     Pickling keeps ``path``, ``face_index`` and ``location`` and opens the source again.
 
     Attributes:
-        path: the file as the caller named it.
-        face_index: which font of a collection; 0 otherwise.
+        path: the file as the caller named it. format: its kind, in words.
+        face_index: which font of a collection; 0 otherwise. num_faces: number of fonts.
         location: place in the design space, axis tag to user-space value; empty at the default.
         family, style: names for people, never empty.
         metrics: units per em, ascender and descender.
@@ -41,8 +42,10 @@ class Source(ABC):
     """
 
     path: Path
-    face_index: int
-    location: Mapping[str, float]
+    format: str
+    face_index: int = 0
+    num_faces: int = 1
+    location: Mapping[str, float] = MappingProxyType({})
     family: str
     style: str
     metrics: FontMetrics
@@ -135,15 +138,7 @@ class Source(ABC):
             FontError: no argument is given, or a string is not a list of numbers.
         """
         try:
-            return select(
-                self.glyph_names,
-                self.cmap,
-                text=text,
-                unicodes=unicodes,
-                glyphs=glyphs,
-                gids=gids,
-                all_glyphs=all_glyphs,
-            )
+            return select(self.glyph_names, self.cmap, text, unicodes, glyphs, gids, all_glyphs)
         except GlyphsplineError as error:
             raise FontError(error.message, font=str(self.path)) from error
 
@@ -164,17 +159,25 @@ def opening(path: Path, kind: str = "font") -> Iterator[None]:
         raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
 
 
-@contextmanager
-def drawing(path: Path, name: str) -> Iterator[None]:
-    """Turn every exception within into a GlyphsplineError that names file and glyph."""
+def attempt(path: Path, name: str, read: Callable[[], Outline]) -> OutlineOrError:
+    """The outline that ``read`` returns; if it raises, an error that names file and glyph."""
     try:
-        yield
+        return read()
     except GlyphsplineError as error:
-        error.locate(font=str(path), glyph=name)
-        raise
+        return error.locate(font=str(path), glyph=name)
     except Exception as error:  # as in opening
-        message = f"cannot be drawn: {reason(error)}"
-        raise GlyphsplineError(message, font=str(path), glyph=name) from error
+        found = GlyphsplineError(f"cannot be drawn: {reason(error)}", font=str(path), glyph=name)
+        found.__cause__ = error
+        return found
+
+
+def first_claims(unicodes: Iterable[tuple[str, Iterable[int]]]) -> Mapping[int, str]:
+    """Code point to the first glyph that has it, from the code points of each glyph."""
+    found: dict[int, str] = {}
+    for name, codes in unicodes:
+        for code in codes:
+            found.setdefault(code, name)
+    return MappingProxyType(found)
 
 
 def reason(error: Exception) -> str:

@@ -10,11 +10,10 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from defusedxml.common import DefusedXmlException
@@ -24,7 +23,7 @@ from fontTools import agl
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
 from .pens import ContourPen
-from .source import Head, OutlineOrError, Source, opening, reason
+from .source import Head, OutlineOrError, Source, first_claims, opening
 
 LARGEST_FILE = 1 << 26
 """Limit of bytes of one drawing."""
@@ -45,30 +44,21 @@ class SvgDrawings(Source):
     """
 
     format = "SVG"
-    face_index = 0
-    num_faces = 1
-    location: Mapping[str, float] = MappingProxyType({})
 
     def __init__(self, path: Path, files: list[Path]) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
         outlines = [read_drawing(file) for file in files]
         if not outlines:
             raise FontError("a folder without SVG drawings")
-        order = sorted(range(len(files)), key=lambda k: (outlines[k].gid, k))
         self._files = files
         self._outlines: dict[str, Outline] = {}
-        for k in order:
-            outline = outlines[k]
+        for outline in sorted(outlines, key=lambda outline: outline.gid):
             if outline.name in self._outlines:
                 raise FontError("two drawings of one name", glyph=outline.name)
             self._outlines[outline.name] = outline
         self.glyph_names = tuple(self._outlines)
-        self.metrics = outlines[order[0]].metrics
-        cmap: dict[int, str] = {}
-        for name, outline in self._outlines.items():
-            for code in outline.unicodes:
-                cmap.setdefault(code, name)
-        self.cmap: Mapping[int, str] = MappingProxyType(cmap)
+        self.metrics = self._outlines[self.glyph_names[0]].metrics
+        self.cmap = first_claims((outline.name, outline.unicodes) for outline in self._outlines.values())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_svg, (self.path,)
@@ -76,10 +66,7 @@ class SvgDrawings(Source):
     @cached_property
     def sha256(self) -> str:
         """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
-        digest = hashlib.sha256()
-        for file in self._files:
-            digest.update(file.read_bytes())
-        return digest.hexdigest()
+        return hashlib.sha256(b"".join(file.read_bytes() for file in self._files)).hexdigest()
 
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
         return [replace(self._outlines[head.name], gid=head.gid) for head in heads]
@@ -104,32 +91,22 @@ def read_drawing(file: Path) -> Outline:
     """
     from .svg_shapes import draw_shapes  # imports SciPy, which fonts do not need
 
-    if file.stat().st_size > LARGEST_FILE:
-        raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB", font=str(file))
-    try:
-        root = fromstring(file.read_bytes(), forbid_dtd=False)
+    with opening(file, "drawing"):
+        if file.stat().st_size > LARGEST_FILE:
+            raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB")
+        try:
+            root = fromstring(file.read_bytes())
+        except DefusedXmlException as error:
+            raise GlyphsplineError("its XML declares entities, which are refused") from error
         if root.tag.rpartition("}")[2] != "svg":
             raise GlyphsplineError("not an SVG drawing")
         metrics, advance = _metrics(root)
         pen = ContourPen(coincident=COINCIDENT * metrics.units_per_em)
         notes = draw_shapes(root, pen)
         pen.finish()
-    except GlyphsplineError as error:
-        raise error.locate(font=str(file)) from error.__cause__
-    except DefusedXmlException as error:
-        raise GlyphsplineError("its XML declares entities, which are refused", font=str(file)) from error
-    except Exception as error:  # svgpathtools raises errors of many types
-        raise GlyphsplineError(f"a broken drawing: {reason(error)}", font=str(file)) from error
-    name = root.get("data-glyph") or file.stem
-    return Outline(
-        name=name,
-        gid=int(root.get("data-gid") or 0),
-        unicodes=_unicodes(root.get("data-unicodes"), name),
-        advance=advance,
-        contours=tuple(pen.contours),
-        metrics=metrics,
-        notes=(*pen.notes, *notes),
-    )
+    name, gid = root.get("data-glyph") or file.stem, int(root.get("data-gid") or 0)
+    unicodes = _unicodes(root.get("data-unicodes"), name)
+    return Outline(name, gid, unicodes, advance, tuple(pen.contours), metrics, (*pen.notes, *notes))
 
 
 def _unicodes(written: str | None, name: str) -> tuple[int, ...]:

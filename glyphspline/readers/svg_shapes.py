@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,17 +30,17 @@ FLIP = np.diag([1.0, -1.0, 1.0])
 
 def draw_shapes(root: Any, pen: Any) -> tuple[str, ...]:
     """Draw filled shapes in document order, (x, y) as (x, -y); returns a note on each kind left out."""
-    left_out: dict[str, int] = {}
+    left_out: Counter[str] = Counter()
     for element, matrix, filled in shapes(root, FLIP, True, left_out):
         if filled:
             draw_path(path_data(element), matrix, pen)
         else:
-            left_out["shapes without fill"] = left_out.get("shapes without fill", 0) + 1
+            left_out["shapes without fill"] += 1
     return tuple(f"{count} {kind} left out" for kind, count in left_out.items())
 
 
 def shapes(
-    element: Any, matrix: FloatArray, filled: bool, left_out: dict[str, int], depth: int = 0
+    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0
 ) -> Iterator[tuple[Any, FloatArray, bool]]:
     """Each shape with the (3, 3) matrix to font space, and whether it is filled."""
     if depth > DEEPEST:
@@ -48,7 +49,7 @@ def shapes(
         return  # a comment
     tag, style = element.tag.rpartition("}")[2], styles(element)
     if tag in LEFT_OUT:
-        left_out[LEFT_OUT[tag]] = left_out.get(LEFT_OUT[tag], 0) + 1
+        left_out[LEFT_OUT[tag]] += 1
     if tag in NOT_DRAWN or style.get("display") == "none":
         return
     if element.get("transform"):
@@ -108,12 +109,9 @@ def moved_to(subpath: str, here: complex) -> complex:
 
 def draw_segment(segment: Any, matrix: FloatArray, pen: Any) -> None:
     """Draw a line, quadratic, cubic or arc from the current point."""
-    if isinstance(segment, Line):
-        pen.lineTo(*placed([segment.end], matrix))
-    elif isinstance(segment, QuadraticBezier):
-        pen.qCurveTo(*placed([segment.control, segment.end], matrix))
-    elif isinstance(segment, CubicBezier):
-        pen.curveTo(*placed([segment.control1, segment.control2, segment.end], matrix))
+    if isinstance(segment, Line | QuadraticBezier | CubicBezier):
+        points = placed(segment.bpoints()[1:], matrix)
+        (pen.lineTo, pen.qCurveTo, pen.curveTo)[len(points) - 1](*points)
     elif isinstance(segment, Arc):
         for cubic in arc_cubics(segment):
             pen.curveTo(*placed(cubic, matrix))
@@ -131,7 +129,7 @@ def arc_cubics(arc: Any) -> Iterator[list[complex]]:
         yield [start + handle * arc.derivative(t0), end - handle * arc.derivative(t1), end]
 
 
-def placed(points: list[complex], matrix: FloatArray) -> list[Point]:
+def placed(points: Sequence[complex], matrix: FloatArray) -> list[Point]:
     """Points of the drawing in font space."""
     (a, b, x), (c, d, y) = matrix[:2].tolist()
     return [(a * p.real + b * p.imag + x, c * p.real + d * p.imag + y) for p in map(complex, points)]

@@ -5,20 +5,22 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 from defusedxml.common import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 from fontTools.pens.pointPen import PointToSegmentPen
+from fontTools.pens.recordingPen import RecordingPointPen
 from fontTools.ufoLib import UFOReader
+from fontTools.ufoLib.glifLib import GlyphSet
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
 from .pens import ContourPen
-from .source import Head, OutlineOrError, Source, drawing, opening
+from .source import Head, OutlineOrError, Source, attempt, first_claims, opening
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
 
@@ -36,9 +38,6 @@ class Ufo(Source):
     """
 
     format = "UFO"
-    face_index = 0
-    num_faces = 1
-    location: Mapping[str, float] = MappingProxyType({})
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -49,18 +48,17 @@ class Ufo(Source):
         em = float(info.unitsPerEm or 1000)
         if em <= 0:
             raise FontError(f"units per em cannot be {em:g}")
-        ascender, descender = info.ascender, info.descender
-        self.metrics = FontMetrics(
-            em,
-            float(0.8 * em if ascender is None else ascender),
-            float(-0.2 * em if descender is None else descender),
-        )
+        ascender = 0.8 * em if info.ascender is None else info.ascender
+        descender = -0.2 * em if info.descender is None else info.descender
+        self.metrics = FontMetrics(em, float(ascender), float(descender))
         self._glyphs = reader.getGlyphSet()
+        self._glyphs.glyphClass = _Glyph
         outside = [name for name, file in self._glyphs.contents.items() if Path(file).name != file]
         if outside:
             raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
         self.glyph_names = _exported(list(self._glyphs.contents), reader.readLib())
-        self.cmap: Mapping[int, str] = MappingProxyType(self._code_points())
+        claims = {name: self._claims(name) for name in self._glyphs.contents}
+        self.cmap = first_claims((name, claims[name]) for name in self.glyph_names)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_ufo, (self.path,)
@@ -75,75 +73,37 @@ class Ufo(Source):
         return digest.hexdigest()
 
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
-        found: list[OutlineOrError] = []
-        for head in heads:
-            try:
-                found.append(self._outline(head))
-            except GlyphsplineError as error:
-                found.append(error)
-        return found
+        return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
 
     def _outline(self, head: Head) -> Outline:
         """The contours of the default layer, components decomposed."""
-        pen = ContourPen(_Drawable(self), head.name)
-        with drawing(self.path, head.name):
-            glyph = self._glyph(head.name)
-            glyph.draw(pen)
-            pen.finish()
+        pen = ContourPen(self._glyphs, head.name)
+        glyph = self._glyphs[head.name]
+        glyph.draw(pen)
+        pen.finish()
         return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes)
 
-    def _glyph(self, name: str) -> _Glyph:
-        glyph = _Glyph()
-        self._glyphs.readGlyph(name, glyph, glyph.record, validate=True)
-        return glyph
-
-    def _code_points(self) -> dict[int, str]:
-        """The cmap. Every glyph's file is checked for entities here, before ufoLib reads any."""
-        claims: dict[str, list[int]] = {}
-        for name in self._glyphs.contents:
-            try:
-                root = parsed(self._glyphs.getGLIF(name))
-                claims[name] = [int(item.get("hex"), 16) for item in root.iter("unicode")]
-            except GlyphsplineError as error:
-                raise FontError(error.message, glyph=name) from error
-        found: dict[int, str] = {}
-        for name in self.glyph_names:
-            for code in claims[name]:
-                found.setdefault(code, name)
-        return found
+    def _claims(self, name: str) -> list[int]:
+        """A glyph's code points. Its file is checked for entities here, before ufoLib reads it."""
+        try:
+            root = parsed(self._glyphs.getGLIF(name))
+            return [int(item.get("hex"), 16) for item in root.iter("unicode")]
+        except GlyphsplineError as error:
+            raise FontError(error.message, glyph=name) from error
 
 
-class _Glyph:
-    """A glyph as ufoLib fills it in: a width, and the calls to a point pen, recorded."""
+class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
+    """A glyph of a glyph set as ufoLib fills it in: a width, and the calls to a point pen."""
 
-    def __init__(self) -> None:
-        self.width: float = 0
-        self._calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
-        self.record: Any = self
+    width: float = 0
 
-    def __getattr__(self, method: str) -> Any:
-        if method not in ("beginPath", "addPoint", "endPath", "addComponent"):
-            raise AttributeError(method)
-        return lambda *args, **named: self._calls.append((method, args, named))
+    def __init__(self, name: str, glyphs: GlyphSet) -> None:
+        super().__init__()
+        glyphs.readGlyph(name, self, self, validate=True)
 
     def draw(self, pen: Any) -> None:
         """Draw with a segment pen."""
-        points = PointToSegmentPen(pen)
-        for method, args, named in self._calls:
-            getattr(points, method)(*args, **named)
-
-
-class _Drawable:
-    """The glyph set in which a pen finds components: all glyphs, those not exported too."""
-
-    def __init__(self, ufo: Ufo) -> None:
-        self._ufo = ufo
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._ufo._glyphs.contents
-
-    def __getitem__(self, name: str) -> _Glyph:
-        return self._ufo._glyph(name)
+        self.replay(PointToSegmentPen(pen))
 
 
 def open_ufo(path: str | Path) -> Ufo:

@@ -23,12 +23,11 @@ from fontTools.ttLib import TTFont
 from numba import cfunc, types
 
 from ...compiled import compiled
-from ...errors import GlyphsplineError
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...types import BoolArray, FloatArray, IntArray
 from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS
-from ..source import Head, OutlineOrError, drawing, opening
+from ..source import Head, OutlineOrError, attempt, opening
 from .careful import CarefulReader
 from .containers import unpacked
 from .harfbuzz import HarfBuzz
@@ -51,7 +50,8 @@ WIDE = 3 * COINCIDENT
 The careful reader decides at ``COINCIDENT``, but may take another of several farthest points.
 """
 
-HeadLike: TypeAlias = Head | tuple[str, int, tuple[int, ...]]
+HeadLike: TypeAlias = tuple[str, int, tuple[int, ...]]
+"""A :class:`Head`, or the plain tuple that a task holds."""
 
 UNUSUAL, UNCOUNTED = -1, -2
 """In place of a glyph's number of contours: the careful reader has to read it; the number is not known beforehand."""
@@ -296,7 +296,7 @@ class BulkReader:
     def _careful(self) -> CarefulReader:
         data = self._data or self._path.read_bytes()
         tables = TTFont(BytesIO(data), fontNumber=self._face_index, lazy=True)
-        return CarefulReader(self._path, self._hb, tables, data, self._face_index)
+        return CarefulReader(self._hb, tables, data, self._face_index)
 
     def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
         """Read glyphs; an error takes the place of the glyph that it concerns.
@@ -317,10 +317,10 @@ class BulkReader:
         found: list[OutlineOrError] = []
         spans = pairwise(before.tolist())
         for g, (head, odd, ((c, m, p), (d, n, q))) in enumerate(zip(heads, unusual.tolist(), spans, strict=False)):
+            name, gid, unicodes = head
             if odd:
                 found.append(self._read_carefully(Head(*head), metrics))
                 continue
-            name, gid, unicodes = head
             own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
             found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics))
         return found
@@ -332,7 +332,9 @@ class BulkReader:
             (k + 1,) where in the buffer each of the k glyphs drawn begins, and the end; (k,) expected numbers of
             contours. k is at least 1; a glyph alone that does not fit ends at the capacity.
         """
-        expected = self._expected(gids)
+        expected = np.full(len(gids), UNCOUNTED, dtype=np.int64)
+        if self._records is not None:
+            expected = _expected(*self._records, np.array(gids, dtype=np.int64))
         draw, functions, used = self._hb.font.draw_glyph, _functions(), self._buffer.data
         used[USED] = FIRST
         places: list[float] = [FIRST]
@@ -348,12 +350,6 @@ class BulkReader:
             expected[[not is_whole(gid) for gid in gids[: len(expected)]]] = UNUSUAL
         return np.array(places, dtype=np.int64), expected
 
-    def _expected(self, gids: Sequence[int]) -> IntArray:
-        if self._records is None:
-            return np.full(len(gids), UNCOUNTED, dtype=np.int64)
-        counts: IntArray = _expected(*self._records, np.array(gids, dtype=np.int64))
-        return counts
-
     @cached_property
     def _records(self) -> tuple[Any, IntArray] | None:
         """The ``glyf`` table and the offsets of its records."""
@@ -366,11 +362,7 @@ class BulkReader:
         return np.frombuffer(face.reference_table("glyf").data, dtype=np.uint8), offsets
 
     def _read_carefully(self, head: Head, metrics: FontMetrics) -> OutlineOrError:
-        try:
-            with drawing(self._path, head.name):
-                return self._careful.outline(head, metrics)
-        except GlyphsplineError as error:
-            return error
+        return attempt(self._path, head.name, lambda: self._careful.outline(head, metrics))
 
 
 def _without_compression(path: Path) -> bytes | None:

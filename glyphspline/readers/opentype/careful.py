@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from fontTools.ttLib import TTFont
 
 from ...outlines.outline import FontMetrics, Outline
-from ..source import Head, drawing
+from ..source import Head
 from .fonttools import FontTools
 from .glyf import GlyphRecords
 from .harfbuzz import HarfBuzz
@@ -20,11 +18,10 @@ class CarefulReader:
         hb: the face in HarfBuzz.
     """
 
-    def __init__(self, path: Path, face: HarfBuzz, tables: TTFont, data: bytes, face_index: int) -> None:
+    def __init__(self, face: HarfBuzz, tables: TTFont, data: bytes, face_index: int) -> None:
         self.hb = face
-        self._path = path
         self._records = None
-        if "glyf" in tables and "loca" in tables and "VARC" not in tables:
+        if face.has_records:
             self._records = GlyphRecords(tables.reader["glyf"], tables["loca"].locations, tables.getGlyphOrder())
         self._fonttools = FontTools(data, face_index, face.normalized)
 
@@ -32,11 +29,10 @@ class CarefulReader:
         """Read a glyph.
 
         Raises:
-            GlyphsplineError: the glyph is broken, or its components are nested in a loop.
+            GlyphsplineError: the glyph's components are nested in a loop, or it has too many parts.
+            Exception: the glyph is broken; fontTools' exceptions pass through.
         """
-        name, gid, unicodes = head
-        with drawing(self._path, name):
-            pen, advance = self.hb.draw(gid, self._records), self.hb.advance(gid)
-            if pen is None:
-                pen, advance = self._fonttools.draw(name)
-        return Outline(name, gid, unicodes, advance, pen.contours, metrics, pen.notes)
+        pen, advance = self.hb.draw(head.gid, self._records), self.hb.advance(head.gid)
+        if pen is None:
+            pen, advance = self._fonttools.draw(head.name)
+        return Outline(*head, advance, pen.contours, metrics, pen.notes)

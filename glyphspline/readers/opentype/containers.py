@@ -26,6 +26,8 @@ MAX_UNPACKED = 1 << 28
 """Limit of bytes of a decompressed font. The largest real ones, CJK faces of 65,535 glyphs, have a tenth of it; a
 hostile file of a few hundred kilobytes can ask for gigabytes."""
 
+TOO_LARGE = f"a font that grows beyond {MAX_UNPACKED >> 20} MiB when it is unpacked"
+
 
 def unpacked(data: bytes) -> bytes:
     """Decompress a font; other data is returned as it is.
@@ -56,7 +58,7 @@ def check_woff(data: bytes) -> None:
         offset, packed, length = struct.unpack_from(">3L", data, 44 + 20 * k + 4)
         total += length
         if total > MAX_UNPACKED:
-            raise too_large()
+            raise FontError(TOO_LARGE)
         if packed < length:
             inflater = zlib.decompressobj()
             inflater.decompress(data[offset : offset + packed], length + 1)
@@ -75,7 +77,7 @@ def check_woff2(data: bytes) -> None:
         entry.fromFile(file)
         total += max(entry.length, entry.origLength)
     if total > MAX_UNPACKED:
-        raise too_large()
+        raise FontError(TOO_LARGE)
     inflater, found, packed = brotli.Decompressor(), 0, file.read(struct.unpack_from(">L", data, 20)[0])
     while not inflater.is_finished():
         piece = inflater.process(packed, output_buffer_limit=1 << 20)
@@ -85,8 +87,3 @@ def check_woff2(data: bytes) -> None:
         if not piece and inflater.can_accept_more_data():
             raise FontError("a broken font: its compressed data is cut short")
         packed = b""
-
-
-def too_large() -> FontError:
-    """The error for a font above the limit."""
-    return FontError(f"a font that grows beyond {MAX_UNPACKED >> 20} MiB when it is unpacked")

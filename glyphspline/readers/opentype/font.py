@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
@@ -15,12 +16,11 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
 from ...errors import FontError
-from ...outlines.outline import FontMetrics
 from ..source import Head, OutlineOrError, Source, opening
 from .careful import CarefulReader
 from .containers import FORMATS, unpacked
 from .harfbuzz import HarfBuzz
-from .tables import axes_of, instances_of, location_within, metrics_of, names_of
+from .tables import Location, axes_of, instances_of, location_within, metrics_of, names_of
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
@@ -45,9 +45,7 @@ class Font(Source):
         cmap: code point to glyph name, from the best Unicode table; empty if there is none.
     """
 
-    def __init__(
-        self, path: Path, data: bytes, face_index: int, num_faces: int, location: Mapping[str, float] | str | None
-    ) -> None:
+    def __init__(self, path: Path, data: bytes, face_index: int, num_faces: int, location: Location) -> None:
         self._plain = plain = unpacked(data)
         tables = TTFont(BytesIO(plain), fontNumber=face_index, lazy=True)
         missing = [tag for tag in REQUIRED_TABLES if tag not in tables]
@@ -62,17 +60,18 @@ class Font(Source):
         self.format = FORMATS[data[:4]]
         self.axes, self.instances = axes_of(tables), instances_of(tables)
         within = location_within(location, self.axes, self.instances, path)
-        self.location: Mapping[str, float] = MappingProxyType(within)
+        self.location = MappingProxyType(within)
         self.family, self.style = names_of(tables, path)
         self.metrics = metrics_of(tables)
-        self.glyph_names: tuple[str, ...] = tuple(tables.getGlyphOrder())
+        self.glyph_names = tuple(tables.getGlyphOrder())
         self.num_glyphs = len(self.glyph_names)
         mapped = (tables.getBestCmap() or {}).items()
-        self.cmap: Mapping[int, str] = MappingProxyType({code: name for code, name in mapped if name in self._gids})
+        self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
         face = HarfBuzz(hb.Blob(plain), face_index, self.location)
         if self.location:
-            self.metrics = FontMetrics(self.metrics.units_per_em, *face.extents())
-        self._careful = CarefulReader(path, face, tables, plain, face_index)
+            extents = face.font.get_font_extents("ltr")
+            self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))
+        self._careful = CarefulReader(face, tables, plain, face_index)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
@@ -96,7 +95,7 @@ class Font(Source):
         return BulkReader(self.path, self.face_index, self.location, self._plain, self._careful)
 
 
-def open_font(path: str | Path, face_index: int = 0, location: Mapping[str, float] | str | None = None) -> Font:
+def open_font(path: str | Path, face_index: int = 0, location: Location = None) -> Font:
     """Open a TTF, OTF, TTC, WOFF or WOFF2 file.
 
     Args:

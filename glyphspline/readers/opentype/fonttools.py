@@ -24,6 +24,7 @@ class FontTools:
 
     def __init__(self, data: bytes, face_index: int, normalized: Mapping[str, float]) -> None:
         self._data, self._face_index, self._normalized = data, face_index, normalized
+        self._failure: Exception | None = None
 
     @cached_property
     def _tables(self) -> TTFont:
@@ -31,8 +32,17 @@ class FontTools:
 
     @cached_property
     def _glyphs(self) -> Any:
-        """The glyph set, made when HarfBuzz fails on a glyph: it takes as long as opening a CJK face."""
-        return self._tables.getGlyphSet(location=dict(self._normalized) or None, normalized=True)
+        """The glyph set, made when HarfBuzz fails on a glyph: it takes as long as opening a CJK face.
+
+        Tables that fail as a whole fail once: a count in a hostile one can ask for gigabytes. The error drops its
+        traceback, whose frames would keep them.
+        """
+        if self._failure is None:
+            try:
+                return self._tables.getGlyphSet(location=dict(self._normalized) or None, normalized=True)
+            except Exception as error:
+                self._failure = error
+        raise self._failure.with_traceback(None) from None
 
     @cached_property
     def _static_glyf(self) -> Any:

@@ -30,11 +30,6 @@ class HarfBuzz:
         tags = self.face.table_tags
         self.has_records = "glyf" in tags and "loca" in tags and "VARC" not in tags
 
-    def extents(self) -> tuple[float, float]:
-        """Ascender and descender at the location."""
-        extents = self.font.get_font_extents("ltr")
-        return float(extents.ascender), float(extents.descender)
-
     def advance(self, gid: int) -> float:
         """The horizontal advance of a glyph."""
         return float(self.font.get_glyph_h_advance(gid))

@@ -7,11 +7,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from fontTools.ttLib import TTFont
 
 from ...errors import FontError
 from ...outlines.outline import FontMetrics
+
+Location: TypeAlias = Mapping[str, float] | str | None
+"""A location as a caller gives it: axis tag to user-space value, the name of an instance, or None for the default."""
 
 log = logging.getLogger(__name__)
 
@@ -29,25 +33,16 @@ class Axis:
 
 def axes_of(tables: TTFont) -> tuple[Axis, ...]:
     """The axes in the font's order; empty if the font is not variable."""
-    if "fvar" not in tables:
-        return ()
     return tuple(
-        Axis(
-            axis.axisTag,
-            _name(tables, axis.axisNameID) or axis.axisTag,
-            axis.minValue,
-            axis.defaultValue,
-            axis.maxValue,
-        )
-        for axis in tables["fvar"].axes
+        Axis(a.axisTag, _name(tables, a.axisNameID) or a.axisTag, a.minValue, a.defaultValue, a.maxValue)
+        for a in (tables["fvar"].axes if "fvar" in tables else ())
     )
 
 
 def instances_of(tables: TTFont) -> dict[str, dict[str, float]]:
     """The named instances, such as "Bold", with their locations."""
-    if "fvar" not in tables:
-        return {}
-    named = ((_name(tables, instance.subfamilyNameID), instance) for instance in tables["fvar"].instances)
+    instances = tables["fvar"].instances if "fvar" in tables else ()
+    named = ((_name(tables, instance.subfamilyNameID), instance) for instance in instances)
     return {name: dict(instance.coordinates) for name, instance in named if name}
 
 
@@ -57,10 +52,7 @@ def _name(tables: TTFont, name_id: int) -> str | None:
 
 
 def location_within(
-    asked: Mapping[str, float] | str | None,
-    axes: tuple[Axis, ...],
-    instances: Mapping[str, Mapping[str, float]],
-    path: Path,
+    asked: Location, axes: tuple[Axis, ...], instances: Mapping[str, Mapping[str, float]], path: Path
 ) -> dict[str, float]:
     """Clamp a location to the limits of the axes; the result is in the order of the font's axes.
 
@@ -113,7 +105,6 @@ def metrics_of(tables: TTFont) -> FontMetrics:
         raise FontError(f"units per em cannot be {units_per_em}")
     ascender, descender = tables["hhea"].ascent, tables["hhea"].descent
     os2 = tables.get("OS/2")
-    use_typographic = os2 is not None and (os2.fsSelection & (1 << 7) or ascender == descender == 0)
-    if os2 is not None and use_typographic:
+    if os2 is not None and (os2.fsSelection & (1 << 7) or ascender == descender == 0):
         ascender, descender = os2.sTypoAscender, os2.sTypoDescender
     return FontMetrics(float(units_per_em), float(ascender), float(descender))
