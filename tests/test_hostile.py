@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from io import BytesIO
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,6 +16,7 @@ from fontTools.fontBuilder import FontBuilder
 from fontTools.misc.psCharStrings import T2CharString
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
 
 from glyphspline.batch import RunSpec, convert_font, entries_of
 from glyphspline.batch.spec import Limits
@@ -150,3 +152,25 @@ def test_links_in_the_output_folder_lead_nowhere(tmp_path: Path) -> None:
     assert victim.read_text() == "precious"
     assert "Traceback" not in done.stderr
     assert not os.path.islink(out / "svg" / "O_.svg")
+
+
+def test_tables_that_ask_for_too_much_are_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A count of subroutines that the CFF2 table does not hold: fontTools makes a list of so many offsets."""
+    data = bytearray((ROOT / "fonts_test" / "variable-cff2.otf").read_bytes())
+    cff2 = TTFont(BytesIO(data)).reader.tables["CFF2"].offset
+    subroutines = cff2 + data[cff2 + 2] + int.from_bytes(data[cff2 + 3 : cff2 + 5], "big")
+    data[subroutines : subroutines + 5] = (100_000).to_bytes(4, "big") + b"\4"
+    (tmp_path / "many.otf").write_bytes(data)
+    opened: list[TTFont] = []
+    glyph_set = TTFont.getGlyphSet
+
+    def counted(self: TTFont, **given: object) -> object:
+        opened.append(self)
+        return glyph_set(self, **given)
+
+    monkeypatch.setattr(TTFont, "getGlyphSet", counted)
+    font = open_font(tmp_path / "many.otf")
+    errors = font.outlines(font.glyph_names, errors="return")
+    assert len(errors) == 5
+    assert all("cannot be drawn" in str(error) for error in errors)
+    assert len(opened) == 1
