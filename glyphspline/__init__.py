@@ -39,7 +39,7 @@ _ON_DEMAND = {
     "write_table": ".writers.parquet",
     "write_ufo": ".writers.ufo_folder",
 }
-"""Names whose modules bring font or drawing libraries with them: the curve core opens without those."""
+"""Names whose modules import font or drawing libraries; the curve core does not need those."""
 
 
 def __getattr__(name: str) -> Any:

@@ -61,7 +61,7 @@ class Contour:
 
     def cubics(self) -> FloatArray:
         """(m, 4, 2) all segments as cubic Béziers, by exact degree elevation."""
-        from ..curves.cubics import raised  # here and not above: the package opens without a compiler
+        from ..curves.cubics import raised  # imported here, so that the package opens without a compiler
 
         return raised(self.points, self.degrees)
 

@@ -42,7 +42,7 @@ def sample(
         OptionError: neither or both of ``count`` and ``step``, or a value out of range.
         GlyphsplineError: too many vertices.
     """
-    from .places import sampled  # here and not above: the package opens without a compiler
+    from .places import sampled  # imported here, so that the package opens without a compiler
 
     check_sampling(count, step, max_ratio, corner_angle)
     ends, angle = np.array([0, len(contour)]), np.radians(corner_angle)

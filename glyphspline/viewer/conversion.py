@@ -111,7 +111,7 @@ def is_smooth(contour: ContourResult) -> bool:
 
 
 def through(contour: ContourResult, polygon: FloatArray, options: Options) -> ContourResult:
-    """The closed curve through a polygon, as a conversion by step or count makes it."""
+    """The closed curve through a polygon, computed as in a conversion by step or count."""
     source = Contours([contour.source]).arrays
     found = through_polygons(source, polygon, np.array([0, len(polygon)]), replace(options, measure=True), 0.0)
     return found.contour_results()[0]

@@ -1,1 +1,1 @@
-"""Drawings through matplotlib: PNG, PDF and the atlas."""
+"""Drawings by matplotlib: PNG, PDF and the atlas."""

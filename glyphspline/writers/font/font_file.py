@@ -78,14 +78,9 @@ def to_font(
     target.finish()
     rename(font, family, source.style)
     largest = max((error for error in errors if error is not None), default=None)
-    return compiled(font), FontSummary(family, len(errors), largest, tuple(beyond))
-
-
-def compiled(font: TTFont) -> bytes:
-    """The font's bytes, with bounds and maxima recalculated."""
     file = BytesIO()
     font.save(file, reorderTables=False)
-    return file.getvalue()
+    return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond))
 
 
 class _InPlace:
