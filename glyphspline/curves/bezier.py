@@ -1,4 +1,4 @@
-"""Bézier pieces as arrays of shape (..., degree + 1, 2): what all curves here come down to."""
+"""Bézier pieces as arrays of shape (..., degree + 1, 2), the form that all curves share."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ from ..types import FloatArray
 
 
 def evaluate(pieces: FloatArray, x: FloatArray) -> FloatArray:
-    """Each piece at its own local parameter, by de Casteljau: (m, degree + 1, k) and (m,) give (m, k)."""
+    """Evaluate each piece at its own local parameter, by de Casteljau: (m, degree + 1, k) and (m,) give (m, k)."""
     x = x[:, None, None]
-    points = pieces
-    while points.shape[1] > 1:
-        points = (1 - x) * points[:, :-1] + x * points[:, 1:]
-    return points[:, 0]
+    while pieces.shape[1] > 1:
+        pieces = (1 - x) * pieces[:, :-1] + x * pieces[:, 1:]
+    return pieces[:, 0]
 
 
 def derivative_points(pieces: FloatArray, order: int = 1) -> FloatArray:
-    """Bézier points of the derivative by the local parameter, (..., degree + 1 - order, k)."""
+    """Bézier points of the derivative with respect to the local parameter, (..., degree + 1 - order, k)."""
     for _ in range(order):
         pieces = (pieces.shape[-2] - 1) * np.diff(pieces, axis=-2)
     return pieces
@@ -26,11 +25,10 @@ def derivative_points(pieces: FloatArray, order: int = 1) -> FloatArray:
 def split(pieces: FloatArray, x: float = 0.5) -> tuple[FloatArray, FloatArray]:
     """Both parts of each piece, cut at local parameter x."""
     left, right = [pieces[..., 0, :]], [pieces[..., -1, :]]
-    points = pieces
-    while points.shape[-2] > 1:
-        points = (1 - x) * points[..., :-1, :] + x * points[..., 1:, :]
-        left.append(points[..., 0, :])
-        right.append(points[..., -1, :])
+    while pieces.shape[-2] > 1:
+        pieces = (1 - x) * pieces[..., :-1, :] + x * pieces[..., 1:, :]
+        left.append(pieces[..., 0, :])
+        right.append(pieces[..., -1, :])
     return np.stack(left, axis=-2), np.stack(right[::-1], axis=-2)
 
 
@@ -44,37 +42,34 @@ def signed_curvature(first: FloatArray, second: FloatArray) -> FloatArray:
     speed = np.hypot(first[..., 0], first[..., 1])
     moving = speed > 0
     safe = np.where(moving, speed, 1.0)
-    # Dividing by the speed three times, not by its cube, keeps tiny and huge curves from under- and overflow.
+    # Three divisions by the speed, not one by its cube: tiny and huge curves do not under- or overflow.
     return np.where(moving, cross(first / safe[..., None], second / safe[..., None]) / safe, np.inf)
 
 
 def cubic_approximation(pieces: FloatArray, tolerance: float) -> FloatArray:
     """Cubics (k, 4, 2) within ``tolerance`` of pieces of any degree, compared at equal parameters.
 
-    Each cubic matches ends and end derivatives; its error is bounded by the largest Bézier coefficient
-    of the difference, and a piece is halved until that is small enough.
+    Each cubic matches ends and end derivatives. The largest Bézier coefficient of the difference bounds its error; a
+    piece is halved until the bound is small enough.
     """
     d = pieces.shape[1] - 1
-    result = []
-    for piece in pieces:
-        todo = [piece]
-        while todo:
-            part = todo.pop()
-            inner = part[1] - part[0], part[-1] - part[-2]
-            cubic = np.array([part[0], part[0] + inner[0] * d / 3, part[-1] - inner[1] * d / 3, part[-1]])
-            raised = cubic
-            while len(raised) < len(part):
-                raised = elevate(raised)
-            if np.hypot(*(raised - part).T).max() <= tolerance:
-                result.append(cubic)
-            else:
-                left, right = split(part)
-                todo += [right, left]
+    result, todo = [], list(pieces[::-1])
+    while todo:
+        part = todo.pop()
+        inner = part[1] - part[0], part[-1] - part[-2]
+        cubic = np.array([part[0], part[0] + inner[0] * d / 3, part[-1] - inner[1] * d / 3, part[-1]])
+        raised = cubic
+        while len(raised) < len(part):
+            raised = elevate(raised)
+        if np.hypot(*(raised - part).T).max() <= tolerance:
+            result.append(cubic)
+        else:
+            todo += reversed(split(part))
     return np.array(result)
 
 
 def elevate(piece: FloatArray) -> FloatArray:
-    """The same piece with its degree raised by one: (degree + 1, k) gives (degree + 2, k)."""
+    """A piece with its degree raised by one: (degree + 1, k) gives (degree + 2, k)."""
     d = len(piece)
     weight = np.arange(1, d)[:, None] / d
     inner = weight * piece[:-1] + (1 - weight) * piece[1:]
@@ -82,7 +77,7 @@ def elevate(piece: FloatArray) -> FloatArray:
 
 
 def as_cubic(piece: FloatArray) -> FloatArray:
-    """A piece of degree 1, 2 or 3, (degree + 1, 2), as the same cubic, (4, 2)."""
+    """A piece of degree 1, 2 or 3, (degree + 1, 2), as a cubic, (4, 2)."""
     while len(piece) < 4:
         piece = elevate(piece)
     return piece

@@ -22,10 +22,9 @@ class Spline:
 
     Attributes:
         control_points: (n, 2) if closed, where row i belongs to vertex p_i; (m + degree - 1, 2) if open.
-        knots: (n + 1,) from 0 to the period if closed; the m break points if open, the ends being
-            of multiplicity degree + 1.
-        degree: 2 to 6.
-        closed: periodic, or clamped at both ends.
+        knots: (n + 1,) from 0 to the period if closed; the m break points if open, where the ends have multiplicity
+            degree + 1.
+        degree: 2 to 6. closed: periodic; otherwise clamped at both ends.
     """
 
     control_points: FloatArray
@@ -46,7 +45,7 @@ class Spline:
 
     @classmethod
     def trusted(cls, control_points: FloatArray, knots: FloatArray, degree: int, closed: bool) -> Spline:
-        """The same without the checks, for callers whose arrays are right by construction."""
+        """A spline without the checks, for callers whose arrays are right by construction."""
         spline = cls.__new__(cls)
         spline.__dict__.update(control_points=control_points, knots=knots, degree=degree, closed=closed)
         return spline
@@ -63,7 +62,7 @@ class Spline:
 
     @cached_property
     def span_controls(self) -> IntArray:
-        """(spans, degree + 1) indices of the control points that shape each span."""
+        """(spans, degree + 1) indices of the control points of each span."""
         return span_controls(len(self.knots) - 1, self.degree, self.closed)
 
     @cached_property
@@ -71,7 +70,7 @@ class Spline:
         return bezier_pieces(self.full_knots, self.control_points[self.span_controls])
 
     def to_bezier(self) -> FloatArray:
-        """(pieces, degree + 1, 2) the same curve as Bézier pieces, one a knot span, in curve order."""
+        """The curve as Bézier pieces, one per knot span, in curve order: (pieces, degree + 1, 2)."""
         return self._bezier.copy()
 
     def _locate(self, t: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -83,13 +82,12 @@ class Spline:
         return span, (t - u[span]) / h, h
 
     def __call__(self, t: ArrayLike, derivative: int = 0) -> FloatArray:
-        """The curve or a derivative of it at t: shape ``t.shape + (2,)``."""
+        """The curve or one of its derivatives at t: shape ``t.shape + (2,)``."""
         t = np.asarray(t, dtype=np.float64)
         if derivative > self.degree:
             return np.zeros((*t.shape, 2))
         span, x, h = self._locate(t.ravel())
-        pieces = derivative_points(self._bezier, derivative)
-        values = evaluate(pieces[span], x) / h[:, None] ** derivative
+        values = evaluate(derivative_points(self._bezier, derivative)[span], x) / h[:, None] ** derivative
         return values.reshape(*t.shape, 2)
 
     def curvature(self, t: ArrayLike) -> FloatArray:
@@ -108,8 +106,8 @@ class Spline:
     def draw(self, pen: Any, tolerance: float | None = None) -> None:
         """Draw with a fontTools segment pen: degrees 2 and 3 exactly.
 
-        Other degrees are drawn as cubics that stay within ``tolerance`` of the curve, parameter by
-        parameter (default: 1e-5 of the control polygon's extent).
+        Other degrees become cubics within ``tolerance`` of the curve, compared at equal parameters (default: 1e-5 of
+        the control polygon's extent).
         """
         pieces = self._bezier
         if self.degree > 3:
@@ -127,11 +125,9 @@ class Spline:
         """The same curve as a ``scipy.interpolate.BSpline``, periodic if closed."""
         from scipy.interpolate import BSpline
 
-        d = self.degree
-        controls = self.control_points
+        d, controls = self.degree, self.control_points
         if self.closed:
-            n = len(controls)
-            controls = controls[(np.arange(n + d) - d + (d + 1) // 2) % n]
+            controls = np.take(controls, np.arange(len(controls) + d) - d + (d + 1) // 2, axis=0, mode="wrap")
         return BSpline(self.full_knots, controls, d, extrapolate="periodic" if self.closed else False)
 
 
@@ -145,9 +141,9 @@ def full_knots(knots: FloatArray, degree: int, closed: bool) -> FloatArray:
 
 
 def span_controls(spans: int, degree: int, closed: bool) -> IntArray:
-    """(spans, degree + 1) indices of the control points whose basis functions live on each span.
+    """(spans, degree + 1) indices of the control points whose basis functions are not zero on each span.
 
-    On a closed curve B_i is centred on p_i, so span k = [u_k, u_(k+1)] of a cubic takes k-1 to k+2, modulo n.
+    On a closed curve B_i is centred on p_i, so span k = [u_k, u_(k+1)] of a cubic uses k-1 to k+2, modulo n.
     """
     index = np.arange(spans)[:, None] + np.arange(degree + 1)
     return (index - degree + (degree + 1) // 2) % spans if closed else index
@@ -157,8 +153,7 @@ def bezier_pieces(full: FloatArray, controls: FloatArray) -> FloatArray:
     """Exact Bézier points of every knot span, by blossoming.
 
     Args:
-        full: (spans + 1 + 2 degree,) knots as :func:`full_knots` gives them.
-        controls: (spans, degree + 1, k) control points that shape each span.
+        full: (spans + 1 + 2 degree,) knots of :func:`full_knots`. controls: (spans, degree + 1, k) of each span.
 
     Returns:
         (spans, degree + 1, k): Bézier point j of span [a, b] is the blossom at a (degree - j times) and b (j times).

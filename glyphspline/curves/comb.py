@@ -1,4 +1,4 @@
-"""Samples along cubic pieces for curvature combs, compiled: where they stand, and the curve's frame there."""
+"""Samples along cubic pieces for curvature combs, compiled: their parameters, and the curve's frame there."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from ..types import FloatArray, IntArray
 from .cubics import jet
 
 SLOW = 1e-7
-"""Speed over a piece's size below which its tangent is not trusted. Nearer to zero, rounding sets the direction."""
+"""Ratio of speed to a piece's size below which its tangent is not used: rounding errors decide the direction there."""
 
 NUDGE = 1e-3
-"""How far, in local parameter, a sample moves off a point of no speed: the comb shows the limit beside a cusp."""
+"""Local parameter by which a sample moves off a point of zero speed: the comb shows the limit beside a cusp."""
 
 TABLE = 16
-"""Chords of a piece by which arc length is measured; half as many make teeth visibly uneven on an S-shaped piece."""
+"""Number of chords that measure a piece's arc length; half as many make teeth visibly uneven on an S-shaped piece."""
 
 LEAST = 2
-"""Intervals that even the shortest piece is given: with one, a short piece would show no curvature inside."""
+"""Minimum number of intervals of a piece that is not tame: one interval shows no curvature inside."""
 
 TAME_RATIO, TAME_SINE = 1.2, 0.2
-"""Where the legs of a control polygon differ no more, and turn no more, from one to the next, the curve's speed is
-within a fifth of even and its curvature nearly linear: samples at even parameters are even along the curve, and a short
-piece needs none inside. Most pieces are so, where vertices are dense."""
+"""A piece is tame if the lengths of its control polygon's legs and the sines of the turns between them are within these
+limits. Its speed is then within a fifth of constant and its curvature nearly linear: samples at even parameters are
+even along the curve, and a short piece needs none inside. Most pieces are tame where vertices are dense."""
 
 TIE = 1e-6
-"""Intervals to a piece may be this much longer than asked: rounding errors should not decide how many there are."""
+"""Fraction of an interval that is ignored when their number is rounded up: rounding errors do not decide it."""
 
 TINY = 1e-280
 """Squares below this have lost digits."""
@@ -35,23 +35,23 @@ SHARES, LENGTHS, DX, DY, CHORD, BEND = range(6)
 """Rows of the table of a piece's chords."""
 
 X, Y, NX, NY, CURVATURE, WEIGHT = range(6)
-"""Columns of the samples: point, unit normal to the left, signed curvature, arc length that the sample stands for."""
+"""Columns of the samples: point, unit normal to the left, signed curvature, arc length that the sample represents."""
 
 
 @compiled
 def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tuple[FloatArray, IntArray]:
-    """Samples of all pieces in order, both ends of each included.
+    """Sample all pieces in order, both ends of each included.
 
     Args:
         cubics: (m, 4, 2). spacing: the largest distance along the curve. angle: the largest turn, in radians.
-        flat: tame pieces of no more curvature get samples at their ends alone.
+        flat: tame pieces of less curvature get samples at their ends only.
 
     Returns:
-        (k, 6) samples; (m + 1,) where those of each piece begin.
+        (k, 6) samples; (m + 1,) index of the first sample of each piece.
     """
     m = len(cubics)
     starts, samples, table = np.empty(m + 1, dtype=np.int64), np.empty((4 * m + 64, 6)), np.empty((6, TABLE + 1))
-    used = starts[0] = 0
+    starts[0] = 0
     for j in range(m):
         length, wanted = tame_samples(cubics, j, spacing, angle, flat)
         even = length > 0.0
@@ -69,13 +69,13 @@ def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tu
             sample_evenly(cubics, j, length, n, samples[starts[j] : stop])
         else:
             sample_by_length(cubics, j, table, n, samples[starts[j] : stop])
-        used = starts[j + 1] = stop
-    return samples[:used], starts
+        starts[j + 1] = stop
+    return samples[: starts[m]], starts
 
 
 @compiled(internal=True)
 def tame_samples(cubics: FloatArray, j: int, spacing: float, angle: float, flat: float) -> tuple[float, float]:
-    """Length of a tame piece and the intervals that it asks for; -1 and 0 for another."""
+    """Length of a tame piece and the number of intervals it needs; -1 and 0 for other pieces."""
     ax, ay = cubics[j, 1, 0] - cubics[j, 0, 0], cubics[j, 1, 1] - cubics[j, 0, 1]
     bx, by = cubics[j, 2, 0] - cubics[j, 1, 0], cubics[j, 2, 1] - cubics[j, 1, 1]
     cx, cy = cubics[j, 3, 0] - cubics[j, 2, 0], cubics[j, 3, 1] - cubics[j, 2, 1]
@@ -99,7 +99,7 @@ def tame_samples(cubics: FloatArray, j: int, spacing: float, angle: float, flat:
 
 @compiled(internal=True)
 def sample_evenly(cubics: FloatArray, j: int, length: float, n: int, samples: FloatArray) -> None:
-    """Frames at n + 1 even parameters of a piece that stands still nowhere, into ``samples`` (n + 1, 6)."""
+    """Write frames at n + 1 even parameters of a piece without zero speed to ``samples`` (n + 1, 6)."""
     x0, y0, x1, y1 = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
     x2, y2, x3, y3 = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
     ax, ay, bx, by, cx, cy = x1 - x0, y1 - y0, x2 - x1, y2 - y1, x3 - x2, y3 - y2
@@ -122,8 +122,11 @@ def sample_evenly(cubics: FloatArray, j: int, length: float, n: int, samples: Fl
 
 @compiled(internal=True)
 def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle: float) -> float:
-    """Samples that a piece asks for, by its chords. Rows of the table, TABLE + 1 long: before each chord's end the
-    samples, then the length; the others are scratch."""
+    """Number of intervals that a piece needs, from its chords.
+
+    Writes the table: rows ``SHARES`` and ``LENGTHS`` hold the intervals and the length up to each chord's end; the
+    other rows are scratch.
+    """
     x0, y0, x1, y1 = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
     x2, y2, x3, y3 = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
     for i in range(TABLE + 1):
@@ -139,10 +142,10 @@ def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle
         ax, ay, bx, by = table[DX, i], table[DY, i], table[DX, i + 1], table[DY, i + 1]
         along = ax * bx + ay * by
         whole = table[CHORD, i] * table[CHORD, i + 1] + along
-        # twice the tangent of half the turn: the turn and a little more. Half of it counts for either chord.
+        # Twice the tangent of half the turn is slightly more than the turn. Each of the two chords counts half of it.
         table[BEND, i] = min(abs(ax * by - ay * bx) / max(whole, TINY), np.pi / 2) if along > 0.0 else np.pi / 2
     samples = length = 0.0
-    before = table[BEND, 0]  # the halves at both ends of the piece, as if it went on like that
+    before = table[BEND, 0]  # the piece continues in the same way beyond both ends
     table[SHARES, 0] = table[LENGTHS, 0] = 0.0
     for i in range(TABLE):
         after = table[BEND, min(i, TABLE - 2)]
@@ -155,7 +158,7 @@ def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle
 
 @compiled(internal=True)
 def sample_by_length(cubics: FloatArray, j: int, table: FloatArray, n: int, samples: FloatArray) -> None:
-    """Frames at the n + 1 places that divide a piece evenly by its table, into ``samples`` (n + 1, 6)."""
+    """Write frames at the n + 1 points that divide a piece evenly by its table to ``samples`` (n + 1, 6)."""
     size, whole = size_of(cubics, j), table[SHARES, TABLE]
     cell, behind = 0, 0.0
     for i in range(n + 1):
@@ -179,7 +182,7 @@ def sample_by_length(cubics: FloatArray, j: int, table: FloatArray, n: int, samp
 
 @compiled(internal=True)
 def size_of(cubics: FloatArray, j: int) -> float:
-    """The largest distance, along either axis, of a control point of piece j from its first."""
+    """Largest distance, along either axis, of a control point of piece j from its first."""
     size = 0.0
     for k in range(1, 4):
         for axis in range(2):
@@ -189,10 +192,10 @@ def size_of(cubics: FloatArray, j: int) -> float:
 
 @compiled(internal=True)
 def frame(cubics: FloatArray, j: int, t: float, size: float) -> tuple[float, float, float, float, float]:
-    """Point, unit normal to the left and signed curvature of piece j, of a size.
+    """Point, unit normal to the left and signed curvature of piece j, whose :func:`size_of` is ``size``.
 
-    Where it stands still (a cusp, or a handle on its end), normal and curvature are those beside the point; a piece
-    without extent has zeros.
+    At zero speed (a cusp, or a handle on its end), normal and curvature are those beside the point; a piece without
+    extent has zeros.
     """
     x, y, dx, dy, ex, ey = jet(cubics, j, t)
     speed = np.hypot(dx, dy)
@@ -208,7 +211,7 @@ def frame(cubics: FloatArray, j: int, t: float, size: float) -> tuple[float, flo
 
 @compiled
 def end_curvatures(cubics: FloatArray) -> FloatArray:
-    """(m, 2) signed curvature where each piece begins and ends."""
+    """(m, 2) signed curvature at the start and the end of each piece."""
     found = np.empty((len(cubics), 2))
     for j in range(len(cubics)):
         for end in range(2):
@@ -218,7 +221,7 @@ def end_curvatures(cubics: FloatArray) -> FloatArray:
 
 @compiled
 def control_length(cubics: FloatArray) -> float:
-    """Length of all control polygons, which is no less than that of the curves."""
+    """Total length of the control polygons, an upper bound of the length of the curves."""
     length = 0.0
     for j in range(len(cubics)):
         for k in range(3):

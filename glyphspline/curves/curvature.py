@@ -1,4 +1,4 @@
-"""Curvature along Bézier pieces, as data for combs: points, normals, curvature, and a scale shared by many."""
+"""Curvature along Bézier pieces, as data for combs: points, normals, curvature, and a shared scale."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types import FloatArray, IntArray
-from .bezier import elevate
+from .bezier import as_cubic
 
 SCALE_PERCENTILE = 80.0
-"""Share of the arc length whose curvature the robust scale covers. Near 100 the rounded corners, a tenth of the length
-of many outlines, would flatten every other tooth; near 50 ordinary bowls would already be cut."""
+"""Percentage of the arc length whose curvature is within the robust scale. Near 100, rounded corners (a tenth of the
+length of many outlines) flatten all other teeth; near 50, ordinary bowls are cut."""
 
 STRAIGHT = 1e-9
-"""Curvature times size below which a sample counts as straight in the scale; more would drop flat curves."""
+"""Curvature times size below which the scale ignores a sample as straight; a larger value drops flat curves."""
 
 ANGLE = np.radians(15)
-"""Default turn from sample to sample. Wider, the tips of a rounded corner are joined by visible straight lines."""
+"""Default turn between samples. A larger value shows straight lines between the tips of a rounded corner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Comb:
         points: (k, 2) on the curve.
         normals: (k, 2) unit vectors to the left of the direction of travel; zero on a piece without extent.
         curvature: (k,) signed, in 1/unit; positive turns left. Always finite.
-        weights: (k,) arc length each sample stands for; their sum is the length of the curve.
+        weights: (k,) arc length that each sample represents; their sum is the length of the curve.
         pieces: (m + 1,) samples ``pieces[j]`` up to ``pieces[j + 1]`` belong to piece j.
     """
 
@@ -53,29 +53,29 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
     """
     if not (spacing > 0 and angle > 0):
         raise ValueError(f"spacing and angle are positive, not {spacing!r} and {angle!r}")
-    # Here and not above, as it brings the compiler with it: the package opens without.
-    from .comb import sampled
+    from .comb import sampled  # imports the compiler, which opening the package does not need
 
     if pieces.shape[1] > 4:
         raise ValueError(f"pieces are of degree 1 to 3, not {pieces.shape[1] - 1}")
-    while pieces.shape[1] < 4:
-        points = elevate(np.moveaxis(pieces, 1, 0).reshape(pieces.shape[1], -1))
-        pieces = np.moveaxis(points.reshape(len(points), -1, 2), 0, 1)
-    samples, starts = sampled(np.ascontiguousarray(pieces, dtype=np.float64), float(spacing), float(angle), 0.0)
+    # as_cubic raises the degree along the first axis; pieces and coordinates together are the second.
+    cubics = as_cubic(np.moveaxis(pieces, 1, 0).reshape(pieces.shape[1], -1)).reshape(4, -1, 2)
+    samples, starts = sampled(
+        np.ascontiguousarray(cubics.swapaxes(0, 1), dtype=float), float(spacing), float(angle), 0.0
+    )
     return comb_of(samples, starts)
 
 
 def comb_of(samples: FloatArray, starts: IntArray) -> Comb:
-    """A comb from what :func:`.comb.sampled` gave: (k, 6) samples and where pieces begin among them."""
+    """A comb of the results of :func:`.comb.sampled`: (k, 6) samples and the first sample of each piece."""
     return Comb(samples[:, :2], samples[:, 2:4], samples[:, 4], samples[:, 5], starts)
 
 
 def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) -> float:
-    """A curvature, in 1/unit, that represents many combs: teeth and colours of all are drawn relative to it.
+    """A curvature, in 1/unit, that represents many combs; teeth and colours are relative to it.
 
-    It is the percentile of |κ| over the arc length of everything that is not straight. Counting by length, not by
-    sample, makes it independent of spacing and keeps short sharp places, however curved, from setting it; leaving
-    straight lines out keeps it alike for a font with long stems and one with none. Zero if nothing is curved.
+    It is the percentile of |κ| over the arc length of all that is not straight; zero if nothing is curved. Weights by
+    length make it independent of the spacing, and short sharp places do not set it. Without the straight lines, fonts
+    with and without long stems have similar scales.
     """
     magnitudes, weights = [np.empty(0)], [np.empty(0)]
     for item in combs:
@@ -94,5 +94,5 @@ def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) ->
 
 
 def relative(curvature: FloatArray, scale: float) -> FloatArray:
-    """Curvature in units of the scale, as colours and tooth lengths take it; zero if there is no scale."""
+    """Curvature in units of the scale, for colours and tooth lengths; zero if the scale is zero."""
     return curvature / scale if scale > 0 else np.zeros_like(curvature)

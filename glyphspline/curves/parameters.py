@@ -1,4 +1,4 @@
-"""Parameters for the vertices of a polygon, and the knots of a B-spline that belong to them."""
+"""Parameters of the vertices of a polygon, and the knots of the B-spline through them."""
 
 from __future__ import annotations
 
@@ -18,18 +18,17 @@ CHORD_EXPONENT = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
 def vertex_parameters(
     points: FloatArray, knots: Parametrisation | ArrayLike = "chord", closed: bool = True
 ) -> FloatArray:
-    """The parameter s_i of every vertex, beginning with 0.
+    """The parameter s_i of every vertex; the first is 0.
 
     Args:
-        points: (n, 2) vertices, no two consecutive ones equal.
+        points: (n, 2) vertices, consecutive ones distinct. closed: whether the polygon returns to its first vertex.
         knots: "chord", "uniform", "centripetal", or the parameters themselves, increasing.
-        closed: whether the polygon returns to its first vertex.
 
     Returns:
-        (n + 1,) for a closed polygon, the last entry being the period T; (n,) for an open one.
+        (n + 1,) for a closed polygon, where the last entry is the period T; (n,) for an open one.
 
     Raises:
-        PolygonError: given parameters of the wrong number, not finite, or not increasing.
+        PolygonError: the number of given parameters is wrong, or they are not finite or not increasing.
     """
     n = len(points)
     if isinstance(knots, str):
@@ -38,8 +37,7 @@ def vertex_parameters(
         ends = np.concatenate([points, points[:1]]) if closed else points
         chords = np.hypot(*np.diff(ends, axis=0).T)
         return np.concatenate([[0.0], np.cumsum(chords ** CHORD_EXPONENT[knots])])
-    given = np.asarray(knots, dtype=np.float64)
-    expected = n + closed
+    given, expected = np.asarray(knots, dtype=np.float64), n + closed
     if given.shape != (expected,):
         raise PolygonError(f"{n} vertices need {expected} knots, not an array of shape {given.shape}")
     if not np.isfinite(given).all() or not (np.diff(given) > 0).all():
@@ -50,8 +48,8 @@ def vertex_parameters(
 def closed_knots(parameters: FloatArray, degree: int) -> FloatArray:
     """The (n + 1,) knots of a closed spline whose B_i is centred on vertex parameter s_i, from 0 to T.
 
-    For odd degrees the knots are the parameters. For even ones they are the midpoints between
-    neighbouring parameters, counted from the one before s_0, so that ``B_i`` is centred on s_i either way.
+    For odd degrees the knots are the parameters. For even degrees they are the midpoints of neighbouring parameters,
+    counted from the one before s_0. ``B_i`` is centred on s_i either way.
     """
     if degree % 2:
         return parameters
@@ -61,6 +59,6 @@ def closed_knots(parameters: FloatArray, degree: int) -> FloatArray:
 
 
 def vertex_centres(parameters: FloatArray, degree: int) -> FloatArray:
-    """(n,) the parameter s_i of each vertex, counted from the first knot of :func:`closed_knots`."""
+    """(n,) the parameter s_i of each vertex, relative to the first knot of :func:`closed_knots`."""
     centres = parameters[:-1]
     return centres if degree % 2 else centres + (parameters[-1] - parameters[-2]) / 2
