@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from glyphspline.curves.crossings import chords, count_crossings, farthest_outside
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 
@@ -135,3 +136,13 @@ def polygon(number: int, seed: int = 2012, scale: int = 1) -> tuple[str, FloatAr
     make, (least, most) = KINDS[kind]
     rng = np.random.default_rng([seed, number])
     return kind, make(rng, scale * int(rng.integers(least, most)))
+
+
+def self_crossings(cubics: FloatArray) -> int:
+    """Number of self-crossings of a closed chain of cubics (m, 4, 2)."""
+    return int(count_crossings(cubics, *chords(cubics)))
+
+
+def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
+    """Largest distance of a closed chain of cubics (m, 4, 2) outside the convex hull of a polygon (n, 2)."""
+    return float(farthest_outside(cubics, *chords(cubics), polygon))

@@ -9,8 +9,10 @@ import pytest
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.curves.crossings import chords, overshoot, self_crossings
+from glyphspline.curves.crossings import chords
 from glyphspline.types import FloatArray
+
+from .polygons import overshoot, self_crossings
 
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"
 

@@ -11,12 +11,11 @@ import pytest
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.curves.crossings import self_crossings
 from glyphspline.fitting.measures import certified_rate
 from glyphspline.outlines.overlaps import inked_area, remove_overlaps
 from glyphspline.types import FloatArray
 
-from .polygons import circle_contour, square_contour
+from .polygons import circle_contour, self_crossings, square_contour
 
 FONT = Path(__file__).parent.parent / "fonts_test" / "kouzan-gyosho.ttf"
 

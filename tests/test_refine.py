@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.curves.crossings import overshoot, self_crossings
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.measures import geometric_columns
@@ -20,7 +19,7 @@ from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
 
-from .polygons import circle_contour, random_polygon, square_contour
+from .polygons import circle_contour, overshoot, random_polygon, self_crossings, square_contour
 from .test_distance import true_distance
 
 NONE = np.empty((0, 2))
@@ -44,7 +43,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     pieces, written = steps.beziers(found.controls, found.knots, offsets, 100.0)
     np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
-    measured = steps.measured(canonical, which, places, offsets, written, near)
+    measured = steps.measured(canonical, which, places, offsets, found.controls, written, near)
     bounds = measured.bounds
     bound, gap = sharpen_spans(written, canonical.cubics, bounds, measured.gaps, measured.ends, 0.01)
     truth = true_distance(gs.Contour.from_segments(written), contour)

@@ -12,7 +12,7 @@ import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import certified_distance
-from glyphspline.fitting.measures import survey
+from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.sharp.assembly import certify, cut_closer, cut_contours, put_together
 from glyphspline.fitting.sharp.bezier_fit import fit_cubic
 from glyphspline.fitting.sharp.split_contours import Settings
@@ -133,7 +133,7 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     bounds, _ = certify(chains, exact, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
-    areas = survey(
+    areas = geometry(
         curve, Contours(contours).arrays, exact.vertices, np.zeros(len(contours) + 1, dtype=np.int64)
     ).area_change
     np.testing.assert_allclose(areas, 0, atol=1e-6)

@@ -1,7 +1,7 @@
-"""Self-crossings of closed contours, and how far they leave a convex hull, on a few chords a segment.
+"""Self-crossings of closed contours and their overshoot over a convex hull, from a few chords a segment.
 
-Bézier points rule out most segments: a segment lies in their hull, and one whose legs all run forward along a common
-direction crosses nothing by itself.
+Bézier points rule out most segments: a segment lies in their convex hull, and does not cross itself if all legs run
+forward along a common direction.
 """
 
 from __future__ import annotations
@@ -17,19 +17,9 @@ STEPS = 12
 """Chords a cubic; a straight one takes a single chord. Loops smaller than a twelfth of a segment go uncounted."""
 
 
-def self_crossings(cubics: FloatArray) -> int:
-    """Number of places where a closed chain of cubics (m, 4, 2) crosses itself. Touching is not crossing."""
-    return int(count_crossings(cubics, *chords(cubics)))
-
-
-def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
-    """Largest distance of points of a closed chain of cubics (m, 4, 2) outside the convex hull of a polygon (n, 2)."""
-    return float(farthest_outside(cubics, *chords(cubics), polygon))
-
-
 @compiled(internal=True)
 def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[int, float]:
-    """Both of a closed chain of cubics (m, 4, 2), from the same chords; no overshoot over a polygon of no vertices."""
+    """Self-crossings of a closed chain of cubics (m, 4, 2), and overshoot over a polygon, 0 if that is empty."""
     points, first = chords(cubics)
     beyond = farthest_outside(cubics, points, first, polygon) if len(polygon) > 0 else 0.0
     return count_crossings(cubics, points, first), beyond
@@ -45,9 +35,8 @@ def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
         b = cubics[j]
         bend = 0.0
         for k in range(1, 3):
-            bend = max(
-                bend, abs(b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0]) + abs(b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1])
-            )
+            x, y = b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0], b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1]
+            bend = max(bend, abs(x) + abs(y))
         n = STEPS if bend > 1e-9 * (abs(b[3, 0] - b[0, 0]) + abs(b[3, 1] - b[0, 1])) else 1
         for k in range(n):
             x, y, _, _, _, _ = jet(cubics, j, k / n)

@@ -3,14 +3,13 @@
 Both contours are cut into the same number of *sections*, one after the other, so that section j of the result is
 paired with section j of the source and each is a piece of one cubic. Let A and B be a pair's polynomials, both over
 [0, 1]. Their difference at equal parameters is a cubic with Bézier points A_k - B_k, and lies in the convex hull of
-these. So every point of A has a point of B within ``max |A_k - B_k|``, and the other way round; the largest of these
-numbers bounds the two-sided (Hausdorff) distance of the contours, and their Fréchet distance too. This holds
-for *every* way of cutting that runs once round both: hints and Newton's method only serve to make the bound sharp, and
-sections are halved until it is.
+these. So every point of A has a point of B within ``max |A_k - B_k|``, and vice versa. The largest of these numbers
+bounds the two-sided (Hausdorff) distance of the contours and their Fréchet distance. This holds for *every* subdivision
+that runs once round both: hints and Newton's method only make the bound sharp, and sections are halved until it is.
 
 :func:`certified_distance` pairs any two stretches, from coarse guesses. :func:`measure_spans` pairs the spans of a
-closed curve whose vertices are on the outline: from better guesses and no more sharply than is asked, as every round of
-a smooth fit measures its spans.
+closed curve whose vertices are on the outline: from better guesses and only as sharply as asked, because every round of
+a smooth fit measures all spans.
 
 Floating point: a Bézier point of a section is a convex combination of convex combinations, three for the section and
 three for each halving, of points of size at most L. ``ROUNDING`` times L, more than ``DEEPEST`` such triples can cost,
@@ -70,11 +69,8 @@ def certified_distance(
         sharpness: halve sections until the bound exceeds the gaps seen by no more than this.
         limit: where the bound is above it, pair again with the roles exchanged, and take the better of the two.
     """
-    return Distance(
-        *pair_stretches(
-            np.ascontiguousarray(result), np.ascontiguousarray(source), np.ascontiguousarray(anchors), sharpness, limit
-        )
-    )
+    result, source, anchors = map(np.ascontiguousarray, (result, source, anchors))
+    return Distance(*pair_stretches(result, source, anchors, sharpness, limit))
 
 
 @compiled
@@ -128,9 +124,8 @@ def pair_cubic(
         outline: (m, 4, 2); y, y_end: places on it.
         coarse: search the cubic for the points nearest to the outline's joints; or else begin from a proportional
             guess, and halve every pair once, so that a gap is seen between its ends.
-        enough: bounds up to this are not made sharper. Where a larger gap has been seen, nor are bounds that exceed
-            that by ``sharpness`` or less.
-        bound, gap, where: those of what came before: what is below them need not be known sharply.
+        enough: bounds up to this are not refined; nor are bounds within ``sharpness`` of a larger gap already seen.
+        bound, gap, where: results of earlier sections; smaller values are not refined.
         work, marks: (2, DEEPEST + 2, 4, 2) and (DEEPEST + 2, 3) scratch arrays.
 
     Returns:
@@ -247,9 +242,7 @@ def measure_spans(
 def sharpen_spans(
     pieces: FloatArray, outline: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
 ) -> tuple[float, float]:
-    """Bound and gap of a whole contour, from what :func:`measure_spans` left, the first within ``sharpness`` of the
-    second.
-    """
+    """Bound and gap of a contour from the results of :func:`measure_spans`, within ``sharpness`` of each other."""
     work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
     rounding = ROUNDING * max(extent(pieces), extent(outline))
     left, bound, gap = bounds.copy(), 0.0, 0.0

@@ -1,4 +1,4 @@
-"""From outlines to results: glyphs go through the fit in batches, and one glyph is a batch of one."""
+"""From outlines to results, in batches; a single glyph is a batch of one."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineErr
 
 
 def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]:
-    """Glyphs of one em at a time: the tolerance depends on it."""
+    """Convert glyphs of one em at a time, because the tolerance depends on it."""
     notes: list[list[str]] = [[] for _ in glyphs]
     if options.remove_overlaps:
         from ..outlines.overlaps import remove_overlaps
@@ -81,7 +81,7 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
 
 
 def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options, em: float) -> list[GlyphResult]:
-    """Glyphs whose em is ``em``: all contours end to end through one of the two modes."""
+    """Convert glyphs whose em is ``em``, all contours end to end."""
     tolerance = options.tolerance_for(em)
     given = joined([outline.arrays for outline in glyphs])
     before = offsets_of([len(outline.contours) for outline in glyphs])
@@ -107,11 +107,9 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
     return results
 
 
-def _convert_contours(
-    contours: ContourArrays, options: Options, tolerance: float, em: float
-) -> ConvertedContours:  # fmt: skip
-    """All contours through the mode that the options ask for; an error's ``contour`` is the index."""
-    # Here and not above, as these bring the compiler with them: the package opens without.
+def _convert_contours(contours: ContourArrays, options: Options, tolerance: float, em: float) -> ConvertedContours:
+    """Fit all contours in the mode of the options; an error's ``contour`` is the index."""
+    # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING
     if options.corners == "sharp":
@@ -132,7 +130,7 @@ def enclosing(contours: ContourArrays) -> BoolArray:
     starts = contours.starts[:-1]
     long = np.diff(contours.starts) >= 3
     p, q, r = (contours.points[np.where(long, starts + k, 0)] for k in range(3))
-    kept: BoolArray = long & (p != q).any(axis=1) & (q != r).any(axis=1) & (p != r).any(axis=1)  # nearly all
+    kept: BoolArray = long & (p != q).any(axis=1) & (q != r).any(axis=1) & (p != r).any(axis=1)
     for c in np.flatnonzero(~kept).tolist():
         points = contours.points[contours.starts[c] : contours.starts[c + 1]]
         others = points[(points != points[:1]).any(axis=1)]
@@ -141,9 +139,7 @@ def enclosing(contours: ContourArrays) -> BoolArray:
 
 
 def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -> Iterator[str]:
-    """What a reader has to know of the contours from ``first`` up to ``last``: those out of tolerance, and those that
-    cross themselves where their source does not.
-    """
+    """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance or have new self-crossings."""
     for index, within in enumerate(measures.get("within_tolerance", ())[first:last]):
         if within is False:
             bound = measures["deviation_bound"][first + index]

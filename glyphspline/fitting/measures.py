@@ -1,4 +1,4 @@
-"""Measures of contours, column-wise: what the interpolation knows, and the geometry of source and result."""
+"""Measures of contours, column-wise: those of the interpolation, and the geometry of source and result."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
 
 Columns = dict[str, Sequence[Any]]
-"""By measure its value for each contour."""
+"""For each measure, its value for each contour."""
 
 
 def check_coordinates(contours: ContourArrays) -> None:
@@ -42,10 +42,10 @@ def check_coordinates(contours: ContourArrays) -> None:
 
 
 def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Columns:
-    """What the interpolation itself knows of closed curves, one a contour: the measures of ``results.SOLVED``.
+    """The measures of ``results.SOLVED`` for closed curves, one for each contour.
 
     Args:
-        parts: in the order of the contours, results of a batch, and the numbers in it of the polygons chosen.
+        parts: results of a batch and the indices of the chosen polygons in it, in the order of the contours.
     """
     counts, iterations, fallbacks = np.concatenate([found.whole[which, 1:4] for found, which in parts]).T
     residuals = np.concatenate([found.residuals[found.residual_offsets[which + 1] - 1] for found, which in parts])
@@ -63,55 +63,45 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
 
 
 def distance_columns(gaps: Sequence[float], bounds: Sequence[float], tolerance: float) -> Columns:
-    """Distances seen, and certified bounds of them, against the tolerance, all in font units."""
+    """Measured distances and their certified bounds, compared with the tolerance, all in font units."""
     within = [bound <= tolerance for bound in bounds]
     return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 
 def certified_rate(arc: Interpolation) -> float:
-    """Factor a step by Theorem 2, or by Theorem 1 for an arc of two spans, whose one free vertex moves alone."""
+    """Contraction factor by Theorem 2, or by Theorem 1 for an arc of two spans, which has one free vertex."""
     alone = not arc.spline.closed and len(arc.parameters) == 3
     return arc.rate_bound / 2 if alone else arc.rate_bound
 
 
 def geometric_columns(result: ContourArrays, source: ContourArrays, polygons: Polylines) -> Columns:
     """Length, area, curvature and crossings of results, compared with their sources."""
-    found = survey(result, source, polygons.points, polygons.offsets)
-    return {
-        "overshoot": found.overshoot.tolist(),
-        "length": found.length.tolist(),
-        "area_change": found.area_change.tolist(),
-        "bending_energy": found.bending_energy.tolist(),
-        "max_curvature": found.max_curvature.tolist(),
-        "new_crossings": np.maximum(found.crossings - found.source_crossings, 0).tolist(),
-    }
+    found = geometry(result, source, polygons.points, polygons.offsets)
+    return {name: values.tolist() for name, values in found._asdict().items()}
 
 
-class Survey(NamedTuple):
-    """Measures of C contours, (C,) each; see :class:`.results.Measures`. Crossings are those of the result and of the
-    source, each by itself.
-    """
+class Geometry(NamedTuple):
+    """Measures of C contours, (C,) each; see :class:`.results.Measures`."""
 
+    overshoot: FloatArray
     length: FloatArray
     area_change: FloatArray
     bending_energy: FloatArray
     max_curvature: FloatArray
-    overshoot: FloatArray
-    crossings: IntArray
-    source_crossings: IntArray
+    new_crossings: IntArray
 
 
 @compiled
-def survey(result: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray) -> Survey:
+def geometry(result: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray) -> Geometry:
     """Measure contours.
 
     Args:
-        result: the curves; source: what they were fitted to.
-        polygons: (n, 2) their vertices; offsets: (C + 1,) where each contour's begin.
+        result: the curves. source: the contours that they approximate.
+        polygons: (n, 2) their vertices. offsets: (C + 1,) where each polygon begins.
     """
     C = len(offsets) - 1
     length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
-    crossings, before = np.empty(C, dtype=np.int64), np.empty(C, dtype=np.int64)
+    crossings = np.empty(C, dtype=np.int64)
     for c in range(C):
         cubics, given = contour_cubics(result, c), contour_cubics(source, c)
         length[c], energy[c], curvature[c] = 0.0, 0.0, 0.0
@@ -124,14 +114,15 @@ def survey(result: ContourArrays, source: ContourArrays, polygons: FloatArray, o
             energy[c] += own_energy
             curvature[c] = max(curvature[c], own_curvature)
         change[c] = _area(cubics) - _area(given)
-        crossings[c], beyond[c] = crossings_and_overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
-        before[c], _ = crossings_and_overshoot(given, polygons[:0])
-    return Survey(length, change, energy, curvature, beyond, crossings, before)
+        found, beyond[c] = crossings_and_overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
+        before, _ = crossings_and_overshoot(given, polygons[:0])
+        crossings[c] = max(found - before, 0)
+    return Geometry(beyond, length, change, energy, curvature, crossings)
 
 
 @compiled
 def _area(cubics: FloatArray) -> float:
-    """Signed area of a closed chain, lines among it, exactly: the integral of its Bézier points' products."""
+    """Exact signed area of a closed chain of cubics, as a quadratic form of its Bézier points."""
     total = 0.0
     for b in cubics:
         for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):

@@ -1,4 +1,4 @@
-"""What comes out of the glyph pipeline: arrays of all contours end to end, and objects that are views of them."""
+"""Results of the glyph pipeline: arrays of all contours end to end, and objects that are views of them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ import numpy as np
 
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import (
-    NO_CONTOURS,
-    NO_POLYLINES,
     ContourArrays,
     Polylines,
     joined,
@@ -28,7 +26,7 @@ from .options import Options
 
 @dataclass(frozen=True)
 class Measures:
-    """What is known of one contour's result; None where it was not computed. Lengths in font units.
+    """Measures of one contour's result; None where not computed. Lengths are in font units.
 
     Attributes:
         vertices: of the polygon. segments: Bézier segments of the result. numbers: coordinates to store.
@@ -65,10 +63,10 @@ MEASURES = tuple(field.name for field in fields(Measures))
 """The measures, in the order in which they are written."""
 
 SOLVED = MEASURES[:8]
-"""The first of the measures: those that the interpolation itself knows."""
+"""The measures that the interpolation itself provides."""
 
 MeasureColumns = Mapping[str, Sequence[Any]]
-"""By measure its value for each contour; a measure that was computed of no contour is left out."""
+"""For each measure, its value for each contour. A measure that no contour has is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,13 +86,13 @@ class ContourResult:
 
 @dataclass(frozen=True, eq=False)
 class ConvertedContours:
-    """Results of C contours end to end, of one glyph or of many: what the writers read.
+    """Results of C contours end to end, of one glyph or many: the input of the writers.
 
     Attributes:
         source: the contours. curves: the results as exact Béziers, before rounding.
         polygons: C polygons, whose vertices the curves pass through.
         arcs: A interpolations. controls: their A control polygons.
-        arc_offsets: (C + 1,) where among ``arcs`` those of each contour begin, and A.
+        arc_offsets: (C + 1,) where the arcs of each contour begin in ``arcs``, and A.
         measures: a column of C values for each measure.
     """
 
@@ -127,24 +125,18 @@ class ConvertedContours:
     def contour_results(self) -> list[ContourResult]:
         """An object for each contour."""
         rows = zip(*self.measures.values(), strict=True) if self.measures else [()] * self.source.num_contours
-        each = zip(
-            Contours(self.source), pairwise(self.polygons.offsets.tolist()), pairwise(self.arc_offsets.tolist()),
-            Contours(self.curves), rows, strict=True,
-        )  # fmt: skip
+        known = [Measures(**dict(zip(self.measures, row, strict=True))) for row in rows]
+        vertices, arcs = pairwise(self.polygons.offsets.tolist()), pairwise(self.arc_offsets.tolist())
         return [
-            ContourResult(
-                source,
-                self.polygons.points[i:j],
-                tuple(self.arcs[a:b]),
-                curve,
-                Measures(**dict(zip(self.measures, row, strict=True))),
+            ContourResult(source, self.polygons.points[i:j], tuple(self.arcs[a:b]), curve, measures)
+            for source, (i, j), (a, b), curve, measures in zip(
+                Contours(self.source), vertices, arcs, Contours(self.curves), known, strict=True
             )
-            for source, (i, j), (a, b), curve, row in each
         ]
 
 
 def assembled(chosen: Sequence[tuple[ConvertedContours, int]]) -> ConvertedContours:
-    """One of each contour's results: contour c's is number ``chosen[c][1]`` of ``chosen[c][0]``."""
+    """Results that take contour c from number ``chosen[c][1]`` of ``chosen[c][0]``."""
     first = chosen[0][0] if chosen else NOTHING
     if all(found is first and k == c for c, (found, k) in enumerate(chosen)) and len(chosen) == len(first):
         return first
@@ -165,18 +157,15 @@ def concatenated(parts: Sequence[ConvertedContours]) -> ConvertedContours:
     )
 
 
-NOTHING = ConvertedContours(
-    NO_CONTOURS, NO_CONTOURS, NO_POLYLINES, (), NO_POLYLINES, np.zeros(1, dtype=np.int64), {}
-)  # fmt: skip
+NOTHING = concatenated([])
 """Results of no contours."""
 
 
 class ContourResults(Views[ContourResult]):
-    """The results of a glyph's contours: a sequence of :class:`ContourResult`, made from arrays when one is read.
+    """The results of a glyph's contours: a lazy sequence of :class:`ContourResult`, made from arrays.
 
     Attributes:
-        batch: the results of the whole batch. first, last: of these the glyph's are those from ``first`` up to
-            ``last``.
+        batch: results of all glyphs of the batch. first, last: the glyph's range in it, ``last`` excluded.
     """
 
     __slots__ = ("_part", "batch", "first", "last")
@@ -219,7 +208,7 @@ def _end_to_end(results: tuple[ContourResult, ...]) -> ConvertedContours:
 
 @dataclass(frozen=True, eq=False)
 class GlyphResult:
-    """One glyph, converted: the source outline, the options, a result for each contour, and remarks."""
+    """One converted glyph: the source outline, the options, a result for each contour, and remarks."""
 
     outline: Outline
     options: Options
@@ -238,7 +227,7 @@ class GlyphResult:
 
 
 def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
-    """Whatever has contours as a result whose curves are those contours, for what draws results."""
+    """A result whose curves are the contours of ``thing``, for functions that draw results."""
     if isinstance(thing, GlyphResult):
         return thing
     if isinstance(thing, Contour):
@@ -251,7 +240,7 @@ def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
 
 
 def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:
-    """The contours of many glyphs end to end, and (G + 1,) where those of each begin: a batch is not copied."""
+    """The contours of many glyphs end to end, and (G + 1,) where each glyph begins. A complete batch is not copied."""
     contours = [glyph.contours for glyph in glyphs]
     offsets = offsets_of([len(own) for own in contours])
     parts = [own for own in contours if isinstance(own, ContourResults)]

@@ -102,9 +102,13 @@ def _joined(parts: Sequence[Pieces]) -> Pieces:
 
 
 def cut_closer(
-    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[int, float]], rounds: int,
+    contours: SplitContours,
+    pieces: Pieces,
+    poor: BoolArray,
+    tries: Sequence[tuple[int, float]],
+    rounds: int,
     settings: Settings,
-) -> Pieces:  # fmt: skip
+) -> Pieces:
     """Pieces with others in the place of poor ones: arcs fitted more closely, or else the source's own segments.
 
     Args:
@@ -178,7 +182,7 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
 
 def certify(
     contours: SplitContours, pieces: Pieces, written: ContourArrays, sharpness: float, limit: float
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """Certified bound between each piece, as written, and its stretch of contour; and the largest gap seen.
 
     Args:

@@ -1,7 +1,7 @@
-"""Fitting an arc of one span to a stretch of outline: a plain cubic, whose two inner control points are free.
+"""Fitting an arc of one span to a stretch of outline: a cubic with two free inner control points.
 
-The same as :mod:`.spline_fit` does for more spans, without anything that only those need: of all arcs that are tried,
-most are of one span, and ``effort="fast"`` tries no others.
+This is :mod:`.spline_fit` without the steps that only several spans need. Most candidate arcs have one span, and
+``effort="fast"`` tries no others.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import length, newton_step
 from ...types import FloatArray
-from .spline_fit import HOPELESS, SLIDE
+from .spline_fit import HOPELESS, SLIDE, solve
 
 STEPS = 4
 """Newton steps to a foot, from the foot of the last round."""
@@ -41,10 +41,8 @@ def fit_cubic(
     chord = length(Q[n - 1, 0] - Q[0, 0], Q[n - 1, 1] - Q[0, 1])
     if chord == 0:
         return np.inf
-    x, e, weight = np.empty(n), np.empty(n), np.empty(n)
+    x, e, weight = np.empty(n), np.empty(n), np.ones(n)
     x[0] = 0.0
-    for j in range(n):
-        weight[j] = 1.0
     for j in range(1, n):
         x[j] = x[j - 1] + length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1])
     reach = x[n - 1]
@@ -159,48 +157,20 @@ def _step(
     huge = 1e8 * max(total, 1.0)
     for end in range(2):
         if not (free1 if end else free0):
-            x_there, y_there = (d1[0], d1[1]) if end else (d0[0], d0[1])
-            r = 2 * end  # motion across the direction is dear
-            A[r, r] += huge * y_there * y_there
-            A[r + 1, r] -= huge * x_there * y_there
-            A[r + 1, r + 1] += huge * x_there * x_there
-    _solve(A, g)
+            r, d = 2 * end, d1 if end else d0  # penalise motion across the direction
+            A[r, r] += huge * d[1] * d[1]
+            A[r + 1, r] -= huge * d[0] * d[1]
+            A[r + 1, r + 1] += huge * d[0] * d[0]
+    solve(A, g)
     for end in range(2):
-        # The last handle runs from the inner point to the end, so that it moves the other way.
-        sign = -1.0 if end else 1.0
-        dx, dy = (d1[0], d1[1]) if end else (d0[0], d0[1])
-        _set_handle(
-            handles[2 * end : 2 * end + 2],
-            sign * g[2 * end] / chord,
-            sign * g[2 * end + 1] / chord,
-            dx,
-            dy,
-            free1 if end else free0,
-        )
+        # The last handle runs from the inner point to the end, so it moves the other way.
+        r, sign, direction, free = (2, -1.0, d1, free1) if end else (0, 1.0, d0, free0)
+        _set_handle(handles[r : r + 2], sign * g[r] / chord, sign * g[r + 1] / chord, direction, free)
 
 
 @compiled(internal=True)
-def _solve(A: FloatArray, g: FloatArray) -> None:
-    """Cholesky of the lower half of A in place; g becomes the solution."""
-    n = len(g)
-    for r in range(n):
-        for s in range(r + 1):
-            total = A[r, s]
-            for m in range(s):
-                total -= A[r, m] * A[s, m]
-            A[r, s] = np.sqrt(max(total, 1e-12)) if s == r else total / A[s, s]
-        for m in range(r):
-            g[r] -= A[r, m] * g[m]
-        g[r] /= A[r, r]
-    for r in range(n - 1, -1, -1):
-        for m in range(r + 1, n):
-            g[r] -= A[m, r] * g[m]
-        g[r] /= A[r, r]
-
-
-@compiled(internal=True)
-def _set_handle(handle: FloatArray, x: float, y: float, dx: float, dy: float, free: bool) -> None:
-    """Move a handle; it stays on its old side, and its tangent between SHORTEST and LONGEST."""
+def _set_handle(handle: FloatArray, x: float, y: float, direction: FloatArray, free: bool) -> None:
+    """Move a handle by (x, y); it stays on its old side, and its tangent between SHORTEST and LONGEST."""
     old = length(handle[0], handle[1])
     x, y = handle[0] + x, handle[1] + y
     new = length(x, y)
@@ -208,5 +178,5 @@ def _set_handle(handle: FloatArray, x: float, y: float, dx: float, dy: float, fr
     if x * handle[0] + y * handle[1] <= 0.1 * old * new:
         x, y, new, size = handle[0], handle[1], old, max(old / 2, SHORTEST / 3)
     elif not free:
-        x, y, new = dx, dy, 1.0
+        x, y, new = direction[0], direction[1], 1.0
     handle[0], handle[1] = x / new * size, y / new * size

@@ -1,11 +1,12 @@
-"""Variant 2 on small clamped arcs, compiled: what the sharp fit runs for each of the arcs that it tries.
+"""Variant 2 on small clamped arcs, compiled, for each arc that the sharp fit tries.
 
-Footpoints are found by Newton's method from the last ones, without the certificate of the interpolation: what is kept
-of a fit are only its vertices and end tangents, through which :func:`glyphspline.interpolate` then puts the curve that
-is written.
+Newton's method finds footpoints from the last ones, without the certificate of the interpolation. A fit keeps only the
+vertices and end tangents; :func:`glyphspline.interpolate` computes the curve that is written from them.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,15 +15,36 @@ from ...curves.cubics import jet, newton_step, spline_beziers
 from ...types import FloatArray
 
 PEAK_SHARE = 0.9
-"""Share of a basis function's peak asked for in arcs of two spans, whose one free vertex peaks at 1/2 at most.
+"""Required share of a basis function's peak in arcs of two spans, whose one free vertex peaks at 1/2 at most.
 
-Lemma 2 has no interval there, but does not need one: alone, a vertex has its error multiplied by 1 - B_i < 1.
+Lemma 2 has no interval there and needs none: each step multiplies the error of a single vertex by 1 - B_i < 1.
 """
 
 
+class Arc(NamedTuple):
+    """A clamped cubic spline of k spans.
+
+    Attributes:
+        p: (k + 1, 2) vertices. start, end: (2,) derivatives by chord length at the ends.
+        u: (k + 1,) knots. P: (k + 3, 2) control points. b: (k, 4, 2) Bézier points.
+        M: (k, 4, 4) Bézier weights: the Bézier points of span s are ``M[s] @ P[s : s + 4]``.
+        t: (k + 1,) footpoints as signed shares of the neighbouring span.
+    """
+
+    p: FloatArray
+    start: FloatArray
+    end: FloatArray
+    u: FloatArray
+    P: FloatArray
+    b: FloatArray
+    M: FloatArray
+    t: FloatArray
+
+
 @compiled(internal=True)
-def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
-    """M[s]: the Bézier points of span s are ``M[s] @ P[s : s + 4]`` for a clamped cubic with breaks u[: k + 1]."""
+def bezier_weights(u: FloatArray, M: FloatArray) -> None:
+    """Compute the Bézier weights M of an :class:`Arc` with knots u."""
+    k = len(M)
     for s in range(k):
         before = u[s] - u[s - 1] if s > 0 else 0.0
         h = u[s + 1] - u[s]
@@ -34,7 +56,7 @@ def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
         M[s, 1, 1], M[s, 1, 2] = 1 - w1, w1
         M[s, 2, 1], M[s, 2, 2] = 1 - w2, w2
     for s in range(k + 1):
-        # The point at break s lies between the last inner point of the span before and the first of the span after.
+        # The Bézier point at knot s lies between the inner points on either side of it.
         if s == 0:
             M[0, 0, 0] = 1.0
         elif s == k:
@@ -43,7 +65,7 @@ def bezier_weights(u: FloatArray, k: int, M: FloatArray) -> None:
             weight = (u[s] - u[s - 1]) / (u[s + 1] - u[s - 1])
             for j in range(3):
                 left, right = M[s - 1, 2, j + 1], M[s, 1, j]
-                M[s - 1, 3, j + 1] = (1 - weight) * left + weight * (M[s, 1, j])
+                M[s - 1, 3, j + 1] = (1 - weight) * left + weight * right
                 M[s, 0, j] = (1 - weight) * left + weight * right
 
 
@@ -107,7 +129,7 @@ def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -
     Args:
         a, b: (4,) Bernstein coefficients of B_i on the span before u_i and on the span after it.
         margin: c of the lemma.
-        share: below 1, ask for no more than this share of the peak, ``fallback="peak"``; 1 is ``fallback="knot"``.
+        share: below 1, limit the level to this share of the peak (``fallback="peak"``); 1 is ``fallback="knot"``.
 
     Returns:
         The interval's ends, each as a signed share of its span (-1 is u_{i-1}, +1 is u_{i+1}).
@@ -121,7 +143,7 @@ def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -
     level = min(0.5 + margin, share * top)
     low, high = -1.0, 1.0
     if a[0] < level:
-        before = a[3] >= level or not right  # where it rises to the level: on the span before u_i, or on that after
+        before = a[3] >= level or not right  # B_i rises to the level on the span before u_i
         c = a if before else b
         stop = 1.0 if a[3] >= level and right else (peak if right else peak + 1)
         low = _crossing(c[0], c[1], c[2], c[3], level, 0.0, stop) - (1.0 if before else 0.0)
@@ -134,36 +156,21 @@ def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -
 
 
 @compiled(internal=True)
-def solve_arc(
-    p: FloatArray,
-    k: int,
-    start: FloatArray,
-    end: FloatArray,
-    margin: float,
-    tolerance: float,
-    u: FloatArray,
-    M: FloatArray,
-    P: FloatArray,
-    b: FloatArray,
-    t: FloatArray,
-) -> float:
-    """Variant 2 on a clamped arc with vertices p[: k + 1] and end derivatives ``start``, ``end`` (Algorithm 2).
+def solve_arc(arc: Arc, margin: float, tolerance: float) -> float:
+    """Variant 2 on a clamped arc (Algorithm 2): from vertices and end tangents, compute the rest of the arc.
 
     Args:
-        p: (k + 1, 2) or more rows; k: number of spans.
-        start, end: (2,) derivatives by chord length at the ends.
-        margin: c of Lemma 2.
-        tolerance: the largest error has to fall below it.
-        u, M, P, b, t: results of at least k + 1, k, k + 3, k, k + 1 rows: knots, Bézier weights, control points,
-            Bézier points, and the footpoints as signed shares of the neighbouring span.
+        margin: c of Lemma 2. tolerance: iterate until the largest error is below it.
 
     Returns:
         The largest error left.
     """
+    p, start, end, u, P, b, M, t = arc
+    k = len(b)
     u[0] = 0.0
     for i in range(k):
         u[i + 1] = u[i] + np.hypot(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
-    bezier_weights(u, k, M)
+    bezier_weights(u, M)
     for c in range(2):
         P[0, c], P[k + 2, c] = p[0, c], p[k, c]
         P[1, c] = p[0, c] + (u[1] - u[0]) / 3 * start[c]
@@ -177,7 +184,7 @@ def solve_arc(
     error = 0.0
     e = np.empty((k + 1, 2))
     for _ in range(200):
-        spline_beziers(P[: k + 3], u[: k + 1], False, b)
+        spline_beziers(P, u, False, b)
         error = 0.0
         for i in range(1, k):
             e[i, 0], e[i, 1], t[i] = _foot_error(b, u, i, p[i, 0], p[i, 1], t[i], bounds[i, 0], bounds[i, 1])
@@ -194,7 +201,7 @@ def solve_arc(
 @compiled(internal=True)
 def _foot_error(
     b: FloatArray, u: FloatArray, i: int, x: float, y: float, t: float, low: float, high: float
-) -> tuple[float, float, float]:  # fmt: skip
+) -> tuple[float, float, float]:
     """Vertex less its footpoint, and the footpoint, as a signed share of the span before or after u_i."""
     before, after = u[i] - u[i - 1], u[i + 1] - u[i]
     cx = cy = 0.0

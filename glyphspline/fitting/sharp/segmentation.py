@@ -24,7 +24,7 @@ SEGMENT_PRICE = 1.5
 """Numbers that saving one segment is worth."""
 
 MOST_SPANS = {"fast": 1, "best": 4}
-"""Spans an arc has at most, by effort. More spare few numbers, and each doubles the arcs to be tried."""
+"""Spans an arc has at most, by effort. Larger values save little storage, and each doubles the candidates."""
 
 PRICE_OF_LINE, PRICE_OF_CUBIC = 2.0 + SEGMENT_PRICE, 6.0 + SEGMENT_PRICE
 """Prices of a line and of an arc of one span."""
@@ -69,7 +69,7 @@ def fit_between(
     if k > 1:
         return fit_arc(
             joints.samples[a:b], joints.density[a:b], k, joints.leaving[i], joints.corner[i], joints.arriving[j],
-            joints.corner[j], tolerance, settings.margin, settings.residual, rounds, p, tangents[0], tangents[1],
+            joints.corner[j], tolerance, settings.margin, settings.residual, rounds, p, tangents,
         )  # fmt: skip
     for axis in range(2):
         p[0, axis], p[1, axis] = joints.samples[a, axis], joints.samples[b - 1, axis]

@@ -74,9 +74,7 @@ def convert_sharp(contours: ContourArrays, options: Options, tolerance: float, e
     return assembled([found[c] for c in range(contours.num_contours)])
 
 
-def _converted(
-    source: ContourArrays, options: Options, tolerance: float, share: float, em: float
-) -> ConvertedContours:  # fmt: skip
+def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
     """Contours fitted to within a share of the tolerance, and measured."""
     fit = fit_sharp(source, options, share * tolerance, em)
     where, starts, vertices, _ = fit.pieces

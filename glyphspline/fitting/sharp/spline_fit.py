@@ -1,39 +1,46 @@
-"""Fitting one arc of k spans to a stretch of outline: vertices and end tangents that bring variant 2 nearest to it.
+"""Fitting one arc of k spans to a stretch of outline by variant 2: the unknowns are vertices and end tangents.
 
 The vertices need not lie on the outline. Each round interpolates (variant 2), compares the curve with samples of the
 outline, and moves vertices and end tangents by one Gauss-Newton step on the distances along the normals. Weights that
-grow with the error turn the least squares towards the least maximum.
+grow with the error turn the least-squares fit into a minimax fit.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, length, newton_step
 from ...types import FloatArray, IntArray
-from .clamped_arc import solve_arc
+from .clamped_arc import Arc, solve_arc
 
 SLIDE = 0.001
 """Weight of motion along the curve against motion across it: enough to keep the equations regular."""
 
 HOPELESS = (1e3, 6.0, 2.0, 1.4, 1.2)
-"""Errors, in tolerances, at which a fit is given up after so many rounds. Smaller ones lose fits that would succeed."""
+"""A fit is abandoned after round m if its error exceeds entry m, in tolerances. Lower values lose good fits."""
 
-BAND = 8
-"""Neighbouring control points are at most 3 apart, so unknowns at most 7."""
+
+class Feet(NamedTuple):
+    """Where on a curve the samples of the outline have their nearest points: span, local parameter, distance."""
+
+    span: IntArray
+    x: FloatArray
+    e: FloatArray
 
 
 @compiled(internal=True)
-def project(
-    Q: FloatArray, n: int, b: FloatArray, k: int, known: bool, span: IntArray, x: FloatArray, e: FloatArray
-) -> float:  # fmt: skip
-    """Pair samples Q[:n] of the outline with points of the curve, in order; the largest distance.
+def project(Q: FloatArray, b: FloatArray, known: bool, feet: Feet) -> float:
+    """Pair samples Q of the outline with points of the curve b, in order; the largest distance.
 
-    ``span``, ``x`` receive where on the curve, ``e`` the distances. The ends are paired with the ends. If
-    ``known``, they hold the feet on a curve near this one, to begin from. A foot is the nearest point after the one
-    before, by Newton's method over the pieces.
+    The ends are paired with the ends. Every other foot is the nearest point after the previous foot, by Newton's method
+    across the pieces. If ``known``, ``feet`` holds the feet on a similar curve, as initial guesses; it receives the
+    result.
     """
+    n, k = len(Q), len(b)
+    span, x, e = feet
     worst = 0.0
     for j in range(n):
         s, at = (k - 1, 1.0) if j > 0 else (0 * k, 0.0)
@@ -74,21 +81,11 @@ def project(
 
 
 @compiled(internal=True)
-def _normal_equations(
-    Q: FloatArray,
-    n: int,
-    weight: FloatArray,
-    b: FloatArray,
-    M: FloatArray,
-    k: int,
-    span: IntArray,
-    x: FloatArray,
-    A: FloatArray,
-    rhs: FloatArray,
-) -> None:
-    """Accumulate A (banded, A[r, c - r + BAND - 1] for c ≤ r) and the right side for steps of all control points."""
+def _normal_equations(Q: FloatArray, weight: FloatArray, arc: Arc, feet: Feet, A: FloatArray, rhs: FloatArray) -> None:
+    """Accumulate the lower half of A and the right side for steps of all control points."""
+    b, M, span, x = arc.b, arc.M, feet.span, feet.x
     N = np.empty(4)
-    for j in range(n):
+    for j in range(len(Q)):
         s, at = span[j], x[j]
         cx, cy, dx, dy, _, _ = jet(b, s, at)
         speed = length(dx, dy)
@@ -109,83 +106,67 @@ def _normal_equations(
             for d in range(c + 1):
                 both = N[c] * N[d]
                 q = 2 * (s + d)
-                A[r, q - r + BAND - 1] += both * xx
-                A[r + 1, q - r - 1 + BAND - 1] += both * xy
-                A[r + 1, q - r + BAND - 1] += both * yy
+                A[r, q] += both * xx
+                A[r + 1, q] += both * xy
+                A[r + 1, q + 1] += both * yy
                 if d < c:
-                    A[r, q + 1 - r + BAND - 1] += both * xy
+                    A[r, q + 1] += both * xy
 
 
 @compiled(internal=True)
-def solve_banded(A: FloatArray, rhs: FloatArray, size: int) -> None:
-    """Cholesky of the banded matrix in place; rhs becomes the solution."""
-    for r in range(size):
-        for c in range(max(0, r - BAND + 1), r + 1):
-            total = A[r, c - r + BAND - 1]
-            for m in range(max(0, r - BAND + 1), c):
-                total -= A[r, m - r + BAND - 1] * A[c, m - c + BAND - 1]
-            if c < r:
-                A[r, c - r + BAND - 1] = total / A[c, BAND - 1]
-            else:
-                A[r, BAND - 1] = np.sqrt(max(total, 1e-12))
-    for r in range(size):
-        for m in range(max(0, r - BAND + 1), r):
-            rhs[r] -= A[r, m - r + BAND - 1] * rhs[m]
-        rhs[r] /= A[r, BAND - 1]
-    for r in range(size - 1, -1, -1):
-        for m in range(r + 1, min(size, r + BAND)):
-            rhs[r] -= A[m, r - m + BAND - 1] * rhs[m]
-        rhs[r] /= A[r, BAND - 1]
+def solve(A: FloatArray, rhs: FloatArray) -> None:
+    """Cholesky factor of the lower half of A in place; ``rhs`` becomes the solution."""
+    n = len(rhs)
+    for r in range(n):
+        for c in range(r + 1):
+            total = A[r, c]
+            for m in range(c):
+                total -= A[r, m] * A[c, m]
+            A[r, c] = np.sqrt(max(total, 1e-12)) if c == r else total / A[c, c]
+        for m in range(r):
+            rhs[r] -= A[r, m] * rhs[m]
+        rhs[r] /= A[r, r]
+    for r in range(n - 1, -1, -1):
+        for m in range(r + 1, n):
+            rhs[r] -= A[m, r] * rhs[m]
+        rhs[r] /= A[r, r]
 
 
 @compiled(internal=True)
 def gauss_newton(
-    Q: FloatArray,
-    n: int,
-    weight: FloatArray,
-    b: FloatArray,
-    M: FloatArray,
-    k: int,
-    span: IntArray,
-    x: FloatArray,
-    start: FloatArray,
-    end: FloatArray,
-    free0: bool,
-    free1: bool,
-    A: FloatArray,
-    rhs: FloatArray,
+    Q: FloatArray, weight: FloatArray, arc: Arc, feet: Feet, free0: bool, free1: bool, A: FloatArray, rhs: FloatArray
 ) -> None:
     """Steps (2 (k + 3),) of all control points into ``rhs``; the ends stay, fixed tangents keep their direction."""
-    size = 2 * (k + 3)
+    size = len(rhs)
     for r in range(size):
         rhs[r] = 0.0
-        for c in range(BAND):
+        for c in range(size):
             A[r, c] = 0.0
-    _normal_equations(Q, n, weight, b, M, k, span, x, A, rhs)
+    _normal_equations(Q, weight, arc, feet, A, rhs)
     total = 0.0
-    for j in range(n):
+    for j in range(len(Q)):
         total += weight[j]
-    damping = 1e-4 * total / (k + 3)
+    damping = 1e-4 * total / len(arc.P)
     for r in range(size):
-        A[r, BAND - 1] += damping
+        A[r, r] += damping
     huge = 1e8 * max(total, 1.0)
     for last in range(2):
-        r, v, free = (size - 4, end, free1) if last else (2, start, free0)
+        r, v, free = (size - 4, arc.end, free1) if last else (2, arc.start, free0)
         corner = size - 2 if last else 0
-        A[corner, BAND - 1] += huge
-        A[corner + 1, BAND - 1] += huge
+        A[corner, corner] += huge
+        A[corner + 1, corner + 1] += huge
         if not free:
             l2 = v[0] * v[0] + v[1] * v[1]
-            A[r, BAND - 1] += huge * v[1] * v[1] / l2
-            A[r + 1, BAND - 2] -= huge * v[0] * v[1] / l2
-            A[r + 1, BAND - 1] += huge * v[0] * v[0] / l2
-    solve_banded(A, rhs, size)
+            A[r, r] += huge * v[1] * v[1] / l2
+            A[r + 1, r] -= huge * v[0] * v[1] / l2
+            A[r + 1, r + 1] += huge * v[0] * v[0] / l2
+    solve(A, rhs)
 
 
 @compiled(internal=True)
-def place_vertices(Q: FloatArray, D: FloatArray, n: int, k: int, p: FloatArray) -> None:
-    """Vertices p[: k + 1] on the outline at equal steps of the density's integral D."""
-    j = 0
+def place_vertices(Q: FloatArray, D: FloatArray, p: FloatArray) -> None:
+    """Vertices p on the outline at equal steps of the density's integral D."""
+    n, k, j = len(Q), len(p) - 1, 0
     for i in range(1, k):
         goal = D[0] + (D[n - 1] - D[0]) * i / k
         while j < n - 2 and D[j + 1] < goal:
@@ -198,14 +179,13 @@ def place_vertices(Q: FloatArray, D: FloatArray, n: int, k: int, p: FloatArray) 
 
 
 @compiled(internal=True)
-def respace(
-    b: FloatArray, u: FloatArray, k: int, e: FloatArray, span: IntArray, n: int, p: FloatArray, most: float
-) -> None:
+def respace(arc: Arc, feet: Feet, most: float) -> None:
     """Move inner vertices along the curve so that spans with large errors shrink (error grows like h⁴)."""
+    u, span, e, k = arc.u, feet.span, feet.e, len(arc.b)
     worst = np.empty(k)
     for s in range(k):
         worst[s] = 1e-3 * most
-    for j in range(n):
+    for j in range(len(e)):
         worst[span[j]] = max(worst[span[j]], e[j])
     mean = 0.0
     for s in range(k):
@@ -221,14 +201,14 @@ def respace(
         at += h[i - 1] * scale
         while s < k - 1 and u[s + 1] < at:
             s += 1
-        p[i, 0], p[i, 1], _, _, _, _ = jet(b, s, (at - u[s]) / (u[s + 1] - u[s]))
+        arc.p[i, 0], arc.p[i, 1], _, _, _, _ = jet(arc.b, s, (at - u[s]) / (u[s + 1] - u[s]))
 
 
 @compiled(internal=True)
-def _is_graded(p: FloatArray, k: int, ratio: float) -> bool:
+def _is_graded(p: FloatArray, ratio: float) -> bool:
     """Whether adjacent chords stay within a ratio of each other."""
     before = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1])
-    for i in range(1, k):
+    for i in range(1, len(p) - 1):
         after = np.hypot(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
         if not (after <= ratio * before and before <= ratio * after):
             return False
@@ -237,18 +217,9 @@ def _is_graded(p: FloatArray, k: int, ratio: float) -> bool:
 
 
 @compiled(internal=True)
-def _advance(
-    p: FloatArray,
-    k: int,
-    u: FloatArray,
-    M: FloatArray,
-    P: FloatArray,
-    t: FloatArray,
-    step: FloatArray,
-    start: FloatArray,
-    end: FloatArray,
-) -> None:
+def _advance(arc: Arc, step: FloatArray) -> None:
     """Move vertices and end tangents by the control points' steps; tangents keep at least a tenth of their length."""
+    p, P, M, t, k = arc.p, arc.P, arc.M, arc.t, len(arc.b)
     ax, ay = P[1, 0] + step[2] - p[0, 0], P[1, 1] + step[3] - p[0, 1]
     r = 2 * (k + 1)
     bx, by = p[k, 0] - P[k + 1, 0] - step[r], p[k, 1] - P[k + 1, 1] - step[r + 1]
@@ -262,8 +233,8 @@ def _advance(
             p[i, 1] += N * step[2 * (s + c) + 1]
     h0 = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1])
     h1 = np.hypot(p[k, 0] - p[k - 1, 0], p[k, 1] - p[k - 1, 1])
-    _set_tangent(start, 3 * ax / h0, 3 * ay / h0)
-    _set_tangent(end, 3 * bx / h1, 3 * by / h1)
+    _set_tangent(arc.start, 3 * ax / h0, 3 * ay / h0)
+    _set_tangent(arc.end, 3 * bx / h1, 3 * by / h1)
 
 
 @compiled(internal=True)
@@ -281,21 +252,9 @@ def _set_tangent(v: FloatArray, x: float, y: float) -> None:
 
 @compiled(internal=True)
 def fit_arc(
-    Q: FloatArray,
-    D: FloatArray,
-    k: int,
-    d0: FloatArray,
-    free0: bool,
-    d1: FloatArray,
-    free1: bool,
-    tolerance: float,
-    margin: float,
-    residual: float,
-    rounds: int,
-    p: FloatArray,
-    start: FloatArray,
-    end: FloatArray,
-) -> float:
+    Q: FloatArray, D: FloatArray, k: int, d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, tolerance: float,
+    margin: float, residual: float, rounds: int, p: FloatArray, tangents: FloatArray,
+) -> float:  # fmt: skip
     """Fit k spans to samples of an outline.
 
     Args:
@@ -304,49 +263,47 @@ def fit_arc(
         d0, d1: (2,) unit tangents at the ends, kept as directions unless free0, free1.
         tolerance: stop as soon as every sample is nearer than this.
         margin, residual: of the interpolation. rounds: most Gauss-Newton steps.
-        p, start, end: receive the (k + 1, 2) vertices and the end tangents of the best fit.
+        p, tangents: receive the (k + 1, 2) vertices and the (2, 2) end tangents of the best fit.
 
     Returns:
         The largest distance of a sample from the best fit; infinite if there is none.
     """
     n = len(Q)
-    u, M, P, b, t = np.empty(k + 1), np.empty((k, 4, 4)), np.empty((k + 3, 2)), np.empty((k, 4, 2)), np.empty(k + 1)
-    A, step = np.empty((2 * (k + 3), BAND)), np.empty(2 * (k + 3))
-    span, x, e, weight = np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.empty(n)
-    q, v0, v1 = np.empty((k + 1, 2)), np.empty(2), np.empty(2)
-    v0[0], v0[1], v1[0], v1[1] = d0[0], d0[1], d1[0], d1[1]
-    for j in range(n):
-        weight[j] = 1.0
-    place_vertices(Q, D, n, k, q)
+    arc = Arc(
+        np.empty((k + 1, 2)), d0.copy(), d1.copy(), np.empty(k + 1), np.empty((k + 3, 2)), np.empty((k, 4, 2)),
+        np.empty((k, 4, 4)), np.empty(k + 1),
+    )  # fmt: skip
+    feet, weight = Feet(np.empty(n, dtype=np.int64), np.empty(n), np.empty(n)), np.ones(n)
+    A, step = np.empty((2 * (k + 3), 2 * (k + 3))), np.empty(2 * (k + 3))
+    place_vertices(Q, D, arc.p)
     best, since = np.inf, 0  # rounds since feet were last forgotten
     for m in range(rounds):
-        left = solve_arc(q, k, v0, v1, margin, residual, u, M, P, b, t)
-        if not left < 1.0:
+        if not solve_arc(arc, margin, residual) < 1.0:
             break
-        error = project(Q, n, b, k, since > 0, span, x, e)
+        error = project(Q, arc.b, since > 0, feet)
         since += 1
-        if error < best and _is_graded(q, k, 4.0):
+        if error < best and _is_graded(arc.p, 4.0):
             best = error
             for axis in range(2):
-                start[axis], end[axis] = v0[axis], v1[axis]
+                tangents[0, axis], tangents[1, axis] = arc.start[axis], arc.end[axis]
                 for i in range(k + 1):
-                    p[i, axis] = q[i, axis]
+                    p[i, axis] = arc.p[i, axis]
             if best <= tolerance:
                 break
         if best > HOPELESS[min(m, len(HOPELESS) - 1)] * tolerance:
             break
         if m in (2, 5):
-            respace(b, u, k, e, span, n, q, error)
+            respace(arc, feet, error)
             since = 0
             if m == 2:
                 continue
         if m >= 1:
             total = 0.0
             for j in range(n):
-                weight[j] *= 0.1 + e[j] / error
+                weight[j] *= 0.1 + feet.e[j] / error
                 total += weight[j]
             for j in range(n):
                 weight[j] *= n / total
-        gauss_newton(Q, n, weight, b, M, k, span, x, v0, v1, free0, free1, A, step)
-        _advance(q, k, u, M, P, t, step, v0, v1)
+        gauss_newton(Q, weight, arc, feet, free0, free1, A, step)
+        _advance(arc, step)
     return best

@@ -73,9 +73,7 @@ def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
 
 
 @compiled(internal=True)
-def laid_out(
-    cubics: FloatArray, degrees: IntArray, settings: Settings
-) -> tuple[FloatArray, IntArray, bool, Joints]:  # fmt: skip
+def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple[FloatArray, IntArray, bool, Joints]:
     """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
 
     It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first point.

@@ -1,7 +1,7 @@
-"""Closed curves within a tolerance, for all contours of a glyph at once: vertices put in and taken out until they are.
+"""Closed curves within a tolerance, for all contours of a batch at once, by inserting and removing vertices.
 
-Each round interpolates the contours that are not done in one compiled call, measures what would be written, and puts
-vertices where a span is too far off. The measure is the certificate itself, so that a contour that passes is certified.
+Each round interpolates the unfinished contours in one compiled call, measures the curves as they are written, and
+inserts vertices where a span misses the tolerance. The measure is the certificate: a contour that passes is certified.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 
 from ...errors import GlyphsplineError
 from ...interpolation.batched import BatchedInterpolation
+from ...outlines.contour_arrays import offsets_of
 from ...types import FloatArray, IntArray
 from ..options import Options
 from ..policy import interpolated
@@ -22,19 +23,19 @@ ROUNDS = 80
 """Rounds before giving up."""
 
 EARLY = {"fast": 1, "best": 2}
-"""Rounds in which vertices that seem not to be needed go while others come."""
+"""Rounds that also remove vertices that seem unnecessary."""
 
 PRUNINGS = {"fast": 0, "best": 12}
-"""How often a contour that passed loses such vertices, and gets others until it passes again."""
+"""How often a contour that passed loses such vertices and is refined again until it passes."""
 
 POWERS = (3.0, 2.0, 1.5, 1.0)
-"""In turn: with what power of a span's length its error is taken to grow when a vertex goes."""
+"""In turn, the assumed power of a span's length with which its error grows when a vertex is removed."""
 
 THINNINGS = {"fast": 0, "best": 30}
-"""Trials, at the end, to do without vertices one by one: none comes, those that are needed are put back."""
+"""Final trials that only remove vertices; those that prove necessary are restored."""
 
 THIN_POWER = 1.0
-"""The power for these trials: what it promises is tried out."""
+"""The power for these trials, which may be optimistic because each trial is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,26 +43,21 @@ class Round:
     """One interpolation of some contours, measured; parts of the ragged arrays belong to these.
 
     Attributes:
-        which: (k,) numbers of the contours.
-        places, offsets, points: ragged vertices. found: the curves through them.
-        pieces: ragged (n, 4, 2), the curves as Béziers; written: the same, rounded as they are written.
-        measured: their distances from the outline.
+        trial: the polygons, and the distances of the curves as written from the outline.
+        found: the curves through the polygons. pieces: ragged (n, 4, 2), the curves as Béziers; written: the same,
+            rounded as they are written.
         most: (k,) the largest bound of each contour.
     """
 
-    which: IntArray
-    places: FloatArray
-    offsets: IntArray
-    points: FloatArray
+    trial: steps.Trial
     found: BatchedInterpolation
     pieces: FloatArray
     written: FloatArray
-    measured: steps.Measured
     most: FloatArray
 
     def part(self, values: FloatArray, i: int) -> FloatArray:
         """Part i of a ragged array."""
-        return values[self.offsets[i] : self.offsets[i + 1]]
+        return values[self.trial.offsets[i] : self.trial.offsets[i + 1]]
 
 
 Kept = dict[int, tuple[Round, int]]
@@ -75,11 +71,11 @@ def refined(
 
     Args:
         contours: of a glyph. which: numbers of those to fit.
-        near: (K,) by contour, how near the written curve has to be, in font units.
+        near: (K,) by contour, the distance allowed, in font units.
         early: in place of EARLY.
 
     Returns:
-        The round with the fewest vertices that are near enough; if none is, that with the smallest bound.
+        By contour, the round with the fewest vertices that passed; if none did, that with the smallest bound.
     """
     search = _Search(contours, options, near)
     search.refine(which, EARLY[options.effort] if early is None else early)
@@ -97,7 +93,7 @@ class _Search:
         self.kept: Kept = {}
 
     def refine(self, which: IntArray, early: int) -> None:
-        """Begin with what is known of the outline; add vertices, and take out others, until all contours pass."""
+        """Start from vertices spaced by the outline; insert and remove vertices until all contours pass."""
         contours, options, near = self.contours, self.options, self.near
         left = np.full(len(near), PRUNINGS[options.effort])
         passed = np.zeros(len(near), dtype=np.bool_)
@@ -105,41 +101,36 @@ class _Search:
         places, offsets = steps.first_places(contours, which, self.angle, options.max_ratio, near, options.variant)
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
-            which, places, offsets = done.which, done.places, done.offsets
             passed[which] = done.most <= near[which]
             fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
+            power = POWERS[turn % len(POWERS)]
             which, places, offsets = steps.changed(
-                contours, which, places, offsets, done.points, done.measured.bounds,
-                done.measured.gaps, done.measured.worst, near, ~passed, fewer, self.angle, options.max_ratio,
-                POWERS[turn % len(POWERS)],
-            )  # fmt: skip
+                contours, done.trial, near, ~passed, fewer, self.angle, options.max_ratio, power
+            )
             if len(which) == 0:
                 break
 
     def thin(self, which: IntArray) -> None:
-        """Take out vertices of the contours that passed, as long as they still do."""
+        """Remove vertices of the contours that passed, as long as they still pass."""
         contours, near = self.contours, self.near
         which = np.array([k for k in which.tolist() if _passes(self.kept[k], near[k])], dtype=np.int64)
         if len(which) == 0:
             return
         parts = [self.kept[k] for k in which.tolist()]
-        places = [found.part(found.places, i) for found, i in parts]
-        done = self.attempt(which, np.concatenate(places), np.cumsum([0] + [len(part) for part in places]))
-        keep = np.ones(len(done.places), dtype=np.bool_)
-        good = steps.Good(done.places, done.offsets, done.points, done.measured.gaps, keep, ~keep)
+        places = [found.part(found.trial.places, i) for found, i in parts]
+        trial = self.attempt(which, np.concatenate(places), offsets_of([len(part) for part in places])).trial
+        keep = np.ones(len(trial.places), dtype=np.bool_)
+        good = steps.Good(trial.places, trial.offsets, trial.points, trial.gaps, keep, ~keep)
         for _ in range(THINNINGS[self.options.effort]):
-            which, good = steps.thinned(
-                contours, near, self.angle, self.options.max_ratio, THIN_POWER, done.which, done.places, done.offsets,
-                done.points, done.measured.bounds, done.measured.gaps, good,
-            )  # fmt: skip
+            which, good = steps.thinned(contours, near, self.angle, self.options.max_ratio, THIN_POWER, trial, good)
             if len(which) == 0:
                 break
             counts = np.cumsum(good.keep)[good.offsets[1:] - 1]
-            done = self.attempt(which, good.places[good.keep], np.concatenate([[0], counts]))
+            trial = self.attempt(which, good.places[good.keep], np.concatenate([[0], counts])).trial
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
-        """Interpolate contours through their points at places, measure, and keep what is better than before."""
+        """Interpolate contours through their points at places, measure, and keep improvements."""
         contours, options = self.contours, self.options
         points = steps.polygons(contours, which, places, offsets)
         try:
@@ -149,11 +140,10 @@ class _Search:
             raise
         if found.whole[:, 1].sum() < len(places):  # duplicates were merged
             kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
-            return self.attempt(which, places[np.concatenate(kept)], np.cumsum([0] + [len(part) for part in kept]))
+            return self.attempt(which, places[np.concatenate(kept)], offsets_of([len(part) for part in kept]))
         pieces, written = steps.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
-        measured = steps.measured(contours, which, places, offsets, written, self.near)
-        most = np.maximum.reduceat(measured.bounds, offsets[:-1])
-        done = Round(which, places, offsets, points, found, pieces, written, measured, most)
+        trial = steps.measured(contours, which, places, offsets, points, written, self.near)
+        done = Round(trial, found, pieces, written, np.maximum.reduceat(trial.bounds, offsets[:-1]))
         for i, k in enumerate(which.tolist()):
             if k not in self.kept or _better((done, i), self.kept[k], self.near[k]):
                 self.kept[k] = done, i
@@ -165,8 +155,8 @@ def _passes(found: tuple[Round, int], near: float) -> bool:
 
 
 def _better(new: tuple[Round, int], old: tuple[Round, int], near: float) -> bool:
-    """Whether a part of a round is to be kept in place of another one."""
+    """Whether a part of a round replaces another one."""
     if _passes(old, near):
-        counts = [found.offsets[i + 1] - found.offsets[i] for found, i in (new, old)]
-        return _passes(new, near) and bool(counts[0] < counts[1])
+        counts = [len(found.part(found.trial.places, i)) for found, i in (new, old)]
+        return _passes(new, near) and counts[0] < counts[1]
     return bool(new[0].most[new[1]] < old[0].most[old[1]])

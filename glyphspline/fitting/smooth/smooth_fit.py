@@ -1,4 +1,4 @@
-"""The smooth mode: one closed curve a contour, and those contours again whose curves cross themselves."""
+"""The smooth mode: one closed curve for each contour. Contours whose curves cross themselves are fitted again."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...interpolation.result import Interpolation, reversed_interpolation, turned
-from ...outlines.contour_arrays import ContourArrays, polylines
+from ...outlines.contour_arrays import ContourArrays, offsets_of, polylines
 from ...types import FloatArray, Views
 from ..certified_distance import certified_distance, sharpen_spans
 from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
@@ -55,7 +55,7 @@ def convert_smooth(contours: ContourArrays, options: Options, tolerance: float) 
 
 
 def _rank(found: ConvertedContours, k: int) -> tuple[bool, int]:
-    """The lower, the better: within the tolerance before all, then few crossings."""
+    """Lower is better: first within the tolerance, then the number of crossings."""
     return not found.measures["within_tolerance"][k], found.measures["new_crossings"][k]
 
 
@@ -66,9 +66,9 @@ def _converted(
     kept: Sequence[tuple[Round, int]],
     tolerance: float,
 ) -> ConvertedContours:
-    """Results for some contours from their rounds, measured as they are fitted, in the direction they were given."""
+    """Results for some contours from their rounds: measured in the fitted direction, returned in the given one."""
     flipped = canonical.flipped[which].tolist()
-    points = [found.part(found.points, i) for found, i in kept]
+    points = [found.part(found.trial.points, i) for found, i in kept]
     pieces = [found.part(found.pieces, i) for found, i in kept]
     controls = [found.part(found.found.controls, i) for found, i in kept]
     parts = [canonical.cubics[slice(*canonical.offsets[k : k + 2])] for k in which]
@@ -98,23 +98,21 @@ def _converted(
 
 def _end_to_end(cubics: Sequence[FloatArray]) -> ContourArrays:
     """Closed chains of cubics (m, 4, 2) as contours."""
-    offsets = np.cumsum([0, *map(len, cubics)])
+    offsets = offsets_of([len(part) for part in cubics])
     points = np.concatenate([part[:, :3].reshape(-1, 2) for part in cubics])
     return ContourArrays(points, np.full(offsets[-1], 3), offsets, 3 * offsets)
 
 
-def _certificate(
-    canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float
-) -> tuple[float, float]:  # fmt: skip
+def _certificate(canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
     """Certified bound, and distance seen, of part i of a round from contour k."""
-    measured, start = found.measured, found.offsets[i] + i
+    trial, start = found.trial, found.trial.offsets[i] + i
     written, outline = found.part(found.written, i), canonical.cubics[slice(*canonical.offsets[k : k + 2])]
-    ends = measured.ends[start : start + len(written) + 1]
-    bounds, gaps = found.part(measured.bounds, i), found.part(measured.gaps, i)
+    ends = trial.ends[start : start + len(written) + 1]
+    bounds, gaps = found.part(trial.bounds, i), found.part(trial.gaps, i)
     bound, gap = sharpen_spans(written, outline, bounds, gaps, ends, SHARPNESS * tolerance)
     if bound <= tolerance:
         return bound, gap
-    # Pairing the other way round too is slow, and only seldom better.
+    # Pairing in both directions is slow and seldom better.
     anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
     other = certified_distance(written, outline, anchors, SHARPNESS * tolerance, tolerance)
     return (other.bound, other.measured) if other.bound < bound else (bound, gap)

@@ -19,7 +19,7 @@ from .pruning import put_back, sparse
 from .spacing import seeds
 
 ROUGHLY = 0.1
-"""While vertices are still sought: spans that are too far off need be measured no sharper than this share of near."""
+"""Sharpness of the bounds during the search, as a share of ``near``."""
 
 
 @compiled
@@ -81,14 +81,19 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
     return pieces, written
 
 
-class Measured(NamedTuple):
-    """How far closed curves are from their outlines; ragged, a row a span.
+class Trial(NamedTuple):
+    """Polygons of some contours, and how far the curves through them are from the outlines; ragged, a row a span.
 
     Attributes:
+        which: (k,) numbers of the contours. places, offsets, points: the vertices.
         bounds, gaps, worst, ends: see :func:`..certified_distance.measure_spans`; ends of part i begin at
             ``offsets[i] + i``.
     """
 
+    which: IntArray
+    places: FloatArray
+    offsets: IntArray
+    points: FloatArray
     bounds: FloatArray
     gaps: FloatArray
     worst: FloatArray
@@ -97,10 +102,10 @@ class Measured(NamedTuple):
 
 @compiled
 def measured(
-    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, pieces: FloatArray,
-    near: FloatArray,
-) -> Measured:  # fmt: skip
-    """The distances of closed curves with vertices at ``places`` from their contours.
+    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
+    pieces: FloatArray, near: FloatArray,
+) -> Trial:  # fmt: skip
+    """Measure closed curves with vertices at ``places`` of their contours.
 
     Args:
         pieces: (n, 4, 2) the curves as they are written. near: (K,) by contour, the distance allowed.
@@ -113,22 +118,22 @@ def measured(
             pieces[a:b], contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], places[a:b], near[k],
             ROUGHLY * near[k], bounds[a:b], gaps[a:b], worst[a:b], ends[a + i : b + i + 1],
         )  # fmt: skip
-    return Measured(bounds, gaps, worst, ends)
+    return Trial(which, places, offsets, points, bounds, gaps, worst, ends)
 
 
 @compiled
 def changed(
-    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-    bounds: FloatArray, gaps: FloatArray, worst: FloatArray, near: FloatArray, more: BoolArray, fewer: BoolArray,
+    contours: CanonicalContours, trial: Trial, near: FloatArray, more: BoolArray, fewer: BoolArray,
     corner_angle: float, ratio: float, power: float,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
-    """The contours that change, and their ragged places.
+    """The contours of a trial that change, and their ragged places.
 
     Args:
-        more: (K,) whether to put vertices where a contour is too far off; fewer: (K,) whether to take out those that
-            seem not to be needed. Of all contours, by their numbers in ``which``.
-        power: of a span's length with which its error is taken to grow.
+        more: (K,) whether to insert vertices where a contour misses the tolerance. fewer: (K,) whether to remove
+            vertices that seem unnecessary. Both are indexed by contour.
+        power: the error of a span is assumed to grow with this power of its length.
     """
+    which, places, offsets, points, bounds, gaps, worst, _ = trial
     those, new = np.empty(len(which), dtype=np.int64), np.empty(len(which) + 1, dtype=np.int64)
     values, needed = np.empty(len(places) + 1024), np.empty(len(places), dtype=np.bool_)
     for i in range(len(places)):
@@ -163,11 +168,11 @@ def changed(
 
 
 class Good(NamedTuple):
-    """Polygons that passed, and what is to be tried next; all ragged, with ``offsets``.
+    """Polygons that passed, and the next vertices to try; all ragged, with ``offsets``.
 
     Attributes:
         places, points, gaps: of the polygons and their spans.
-        keep: the vertices that the next trial has. needed: those that no trial leaves out any more.
+        keep: vertices of the next trial. needed: vertices that every further trial keeps.
     """
 
     places: FloatArray
@@ -180,21 +185,21 @@ class Good(NamedTuple):
 
 @compiled
 def thinned(
-    contours: CanonicalContours, near: FloatArray, corner_angle: float, ratio: float, power: float, which: IntArray,
-    places: FloatArray, offsets: IntArray, points: FloatArray, bounds: FloatArray, gaps: FloatArray, good: Good,
+    contours: CanonicalContours, near: FloatArray, corner_angle: float, ratio: float, power: float, trial: Trial,
+    good: Good,
 ) -> tuple[IntArray, Good]:  # fmt: skip
-    """What to try next, to find the vertices that are needed.
+    """The next polygons to try, to find the vertices that are needed.
 
-    A trial that passes takes the place of the good polygon, and vertices of it that look spare are left out of the
-    next trial. Of one that fails, those are put back that were beside the failure, and are needed from then on.
+    A trial that passes replaces the good polygon, and the next trial omits vertices of it that seem unnecessary. If a
+    trial fails, the vertices beside the failure are restored and kept from then on.
 
     Args:
-        places, offsets, points, bounds, gaps: of the trial, ragged, of the contours ``which``.
-        good: the polygons that passed, of the same contours.
+        good: the polygons that passed, of the contours of the trial.
 
     Returns:
         Numbers and polygons of the contours that are not finished.
     """
+    which, places, offsets, points, bounds, gaps, _, _ = trial
     n = len(good.places)
     those, count, at = np.empty_like(which), 0, 0
     new = Good(
