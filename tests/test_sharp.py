@@ -127,10 +127,11 @@ SETTINGS = Settings(0.9, np.radians(12.0), 20.0, 0.02, 0.005, 4, 1, 2)
 
 def test_pieces_that_all_fail_become_the_source_itself() -> None:
     contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
-    chains, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
-    exact = cut_closer(chains, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), 6, SETTINGS)
-    curve = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
-    bounds, _ = certify(chains, exact, curve, 0.01, 1.0)
+    split, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
+    exact = cut_closer(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), 6, SETTINGS)
+    assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
+    curve = assembly.curves
+    bounds, _ = certify(split, assembly, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
     areas = geometry(
@@ -141,10 +142,10 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
 
 def test_one_piece_is_replaced_and_the_others_stay() -> None:
     contours = glyph("永").contours
-    chains, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
+    split, pieces = cut_contours(Contours(contours).arrays, SETTINGS)
     q = int((pieces.where[:, 2] - pieces.where[:, 1]).argmax())
     poor = np.arange(len(pieces.where)) == q
-    closer = cut_closer(chains, pieces, poor, [(2, 0.9)], 6, SETTINGS)
+    closer = cut_closer(split, pieces, poor, [(2, 0.9)], 6, SETTINGS)
     assert len(closer.where) == len(pieces.where)
     assert closer.where[q].tolist() == [*pieces.where[q, :3], pieces.where[q, 3] + 2]
     for k in np.flatnonzero(~poor):

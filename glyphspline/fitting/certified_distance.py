@@ -24,7 +24,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import extent, jet, length, nearest, nearest_place, section, split
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 ROUNDING = 1e-13
 """Share of the largest coordinate added to the bound for floating point."""
@@ -69,46 +69,51 @@ def certified_distance(
         sharpness: halve sections until the bound exceeds the gaps seen by no more than this.
         limit: where the bound is above it, pair again with the roles exchanged, and take the better of the two.
     """
+    ends = np.array([0, len(result)]), np.array([0, len(source)]), np.array([0, len(anchors)])
     result, source, anchors = map(np.ascontiguousarray, (result, source, anchors))
-    return Distance(*pair_stretches(result, source, anchors, sharpness, limit))
+    return Distance(*pair_stretches(result, ends[0], source, ends[1], anchors, ends[2], sharpness, limit))
 
 
 @compiled
 def pair_stretches(
-    result: FloatArray, source: FloatArray, anchors: FloatArray, sharpness: float, limit: float
-) -> tuple[FloatArray, FloatArray]:
-    """Bounds and gaps between each anchor and the next; see :func:`certified_distance`.
+    results: FloatArray, result_offsets: IntArray, sources: FloatArray, source_offsets: IntArray, anchors: FloatArray,
+    anchor_offsets: IntArray, sharpness: float, limit: float,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Bounds and gaps between each anchor and the next, of contours end to end; see :func:`certified_distance`.
 
     A stretch is cut where segments of the one contour end, at the nearest points of the other.
     """
-    n = len(anchors) - 1
+    n = len(anchors) - len(anchor_offsets) + 1
     bounds, gaps = np.empty(n), np.empty(n)
     work, marks = np.empty((2, DEEPEST + 2, 4, 2)), np.empty((DEEPEST + 2, 3))
-    rounding = ROUNDING * max(extent(result), extent(source))
-    for k in range(n):
-        bounds[k], gaps[k] = np.inf, 0.0
-        for exchanged in range(2):
-            one, other = (source, result) if exchanged else (result, source)
-            x, x_end = anchors[k, exchanged], anchors[k + 1, exchanged]
-            y, y_end = anchors[k, 1 - exchanged], anchors[k + 1, 1 - exchanged]
-            bound = gap = where = 0.0
-            last = False
-            while not last:
-                i = int(np.floor(x))
-                s = i % len(one)
-                last = x_end <= i + 1
-                cut, partner = x_end, y_end
-                if not last:
-                    cut = i + 1.0
-                    partner = nearest_place(other, y, y_end, one[s, 3, 0], one[s, 3, 1])
-                bound, gap, where = pair_cubic(
-                    one, s, x - i, cut - i, other, y, partner, True, -1.0, sharpness, bound, gap, where, work, marks
-                )
-                x, y = cut, partner
-            if bound + rounding < bounds[k]:
-                bounds[k], gaps[k] = bound + rounding, gap
-            if bounds[k] <= limit:
-                break
+    for c in range(len(anchor_offsets) - 1):
+        result = results[result_offsets[c] : result_offsets[c + 1]]
+        source = sources[source_offsets[c] : source_offsets[c + 1]]
+        rounding = ROUNDING * max(extent(result), extent(source))
+        for k in range(anchor_offsets[c], anchor_offsets[c + 1] - 1):
+            bounds[k - c], gaps[k - c] = np.inf, 0.0
+            for exchanged in range(2):
+                one, other = (source, result) if exchanged else (result, source)
+                x, x_end = anchors[k, exchanged], anchors[k + 1, exchanged]
+                y, y_end = anchors[k, 1 - exchanged], anchors[k + 1, 1 - exchanged]
+                bound = gap = where = 0.0
+                last = False
+                while not last:
+                    i = int(np.floor(x))
+                    s = i % len(one)
+                    last = x_end <= i + 1
+                    cut, partner = x_end, y_end
+                    if not last:
+                        cut = i + 1.0
+                        partner = nearest_place(other, y, y_end, one[s, 3, 0], one[s, 3, 1])
+                    bound, gap, where = pair_cubic(
+                        one, s, x - i, cut - i, other, y, partner, True, -1.0, sharpness, bound, gap, where, work, marks
+                    )
+                    x, y = cut, partner
+                if bound + rounding < bounds[k - c]:
+                    bounds[k - c], gaps[k - c] = bound + rounding, gap
+                if bounds[k - c] <= limit:
+                    break
     return bounds, gaps
 
 

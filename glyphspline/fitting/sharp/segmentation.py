@@ -18,7 +18,7 @@ from ...types import FloatArray, IntArray
 from .bezier_fit import fit_cubic
 from .corners import Joints
 from .spline_fit import fit_arc
-from .split_contours import Settings, laid_out
+from .split_contours import Settings, SplitContours, laid_out
 
 SEGMENT_PRICE = 1.5
 """Numbers that saving one segment is worth."""
@@ -82,10 +82,10 @@ def fit_between(
 
 
 class Cut(NamedTuple):
-    """A contour cut into lines and arcs.
+    """Contours cut into lines and arcs.
 
     Attributes:
-        rows: (r, 3) joint, next joint and number of spans of each piece; no spans for a line.
+        rows: (r, 4) contour, joint, next joint and number of spans of each piece; no spans for a line.
         vertices: (r, most + 1, 2) and tangents: (r, 2, 2), as far as they are used: a line has no tangents.
         errors: (r,) largest distance of a sample from each arc.
     """
@@ -99,7 +99,7 @@ class Cut(NamedTuple):
 @compiled(internal=True)
 def room(count: int, most: int) -> Cut:
     """Empty arrays for so many pieces of at most so many spans."""
-    rows = np.empty((count, 3), dtype=np.int64)
+    rows = np.empty((count, 4), dtype=np.int64)
     return Cut(rows, np.empty((count, most + 1, 2)), np.empty((count, 2, 2)), np.empty(count))
 
 
@@ -152,18 +152,18 @@ def cheapest(joints: Joints, nodes: IntArray, settings: Settings, result: Cut, c
                 # A near miss may be due to the tangent here: it says little of what begins before.
                 carried[j] = max(carried[j], k if error < NEAR_MISS * tolerance else k + 1)
         rest[i], following[i], kept.errors[i] = best, at, error
-        kept.rows[i, 0], kept.rows[i, 1], kept.rows[i, 2] = nodes[i], nodes[at], k
+        kept.rows[i, 1], kept.rows[i, 2], kept.rows[i, 3] = nodes[i], nodes[at], k
         for j in range(J + 1):
             least[j] = carried[j]
     i = 0
     while i < J:
         result.errors[count] = kept.errors[i]
-        for k in range(3):
+        for k in range(1, 4):
             result.rows[count, k] = kept.rows[i, k]
         for axis in range(2):
             result.tangents[count, 0, axis] = kept.tangents[i, 0, axis]
             result.tangents[count, 1, axis] = kept.tangents[i, 1, axis]
-            for k in range(max(kept.rows[i, 2], 1) + 1):
+            for k in range(max(kept.rows[i, 3], 1) + 1):
                 result.vertices[count, k, axis] = kept.vertices[i, k, axis]
         count += 1
         i = following[i]
@@ -171,30 +171,48 @@ def cheapest(joints: Joints, nodes: IntArray, settings: Settings, result: Cut, c
 
 
 @compiled
-def cut_contour(contours: ContourArrays, c: int, settings: Settings) -> tuple[FloatArray, IntArray, bool, Cut]:
-    """Contour c as it is fitted: its cubics and their degrees, whether they run the other way, and its pieces."""
-    degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
-    cubics, kinds, flipped, joints = laid_out(contour_cubics(contours, c), degrees, settings)
-    m = len(cubics)
-    result, nodes = room(m, settings.most), np.empty(m + 1, dtype=np.int64)
-    i = count = joints.first[0]  # 0, and no literal, for which callees would be compiled once more
-    while i < m:
-        nodes[0] = i
-        last, j = 0, i + 1
-        while not joints.hard[j] and j < m:
-            if joints.corner[j] or j - nodes[last] >= settings.stride:
-                last += 1
-                nodes[last] = j
-            j += 1
-        nodes[last + 1] = j
-        if joints.line[i]:
-            result.rows[count, 0], result.rows[count, 1], result.rows[count, 2], result.errors[count] = i, j, 0, 0.0
-            for axis in range(2):
-                result.vertices[count, 0, axis] = joints.samples[joints.first[i], axis]
-                result.vertices[count, 1, axis] = joints.samples[joints.first[j], axis]
-            count += 1
-        else:
-            count = cheapest(joints, nodes[: last + 2], settings, result, count)
-        i = j
-    own = Cut(result.rows[:count], result.vertices[:count], result.tangents[:count], result.errors[:count])
-    return cubics, kinds, flipped, own
+def cut_all(contours: ContourArrays, settings: Settings) -> tuple[SplitContours, Cut]:
+    """All contours as they are fitted, and cut: those that are flipped run against their own direction."""
+    count, most = len(contours.offsets) - 1, 2 * len(contours.degrees)
+    split = SplitContours(
+        np.empty((most, 4, 2)), np.empty(most, dtype=np.int64), np.empty(count + 1, dtype=np.int64),
+        np.empty(count, dtype=np.bool_),
+    )  # fmt: skip
+    result, nodes = room(most, settings.most), np.empty(most + 1, dtype=np.int64)
+    at = split.offsets[0] = 0
+    done = contours.offsets[0]  # 0, and no literal, for which callees would be compiled once more
+    for c in range(count):
+        own = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
+        cubics, degrees, split.flipped[c], joints = laid_out(contour_cubics(contours, c), own, settings)
+        m, first = len(cubics), done
+        for j in range(m):
+            split.degrees[at + j] = degrees[j]
+            for k in range(4):
+                split.cubics[at + j, k, 0], split.cubics[at + j, k, 1] = cubics[j, k, 0], cubics[j, k, 1]
+        at += m
+        split.offsets[c + 1] = at
+        i = 0
+        while i < m:
+            nodes[0] = i
+            last, j = 0, i + 1
+            while not joints.hard[j] and j < m:
+                if joints.corner[j] or j - nodes[last] >= settings.stride:
+                    last += 1
+                    nodes[last] = j
+                j += 1
+            nodes[last + 1] = j
+            if joints.line[i]:
+                result.rows[done, 1], result.rows[done, 2], result.rows[done, 3], result.errors[done] = i, j, 0, 0.0
+                for axis in range(2):
+                    result.vertices[done, 0, axis] = joints.samples[joints.first[i], axis]
+                    result.vertices[done, 1, axis] = joints.samples[joints.first[j], axis]
+                done += 1
+            else:
+                done = cheapest(joints, nodes[: last + 2], settings, result, done)
+            i = j
+        for r in range(first, done):
+            result.rows[r, 0] = c
+    return (
+        SplitContours(split.cubics[:at], split.degrees[:at], split.offsets, split.flipped),
+        Cut(result.rows[:done], result.vertices[:done], result.tangents[:done], result.errors[:done]),
+    )

@@ -15,7 +15,7 @@ from ...curves.bspline import Spline
 from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...types import FloatArray, IntArray, Views
 from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
@@ -83,13 +83,13 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
     polygons = Polylines(corners, starts[fit.offsets] - fit.offsets, np.ones(source.num_contours, dtype=np.bool_))
     first = fit.offsets[:-1]
     bounds, gaps = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
-    arcs = np.flatnonzero(where[:, 3] > 0)
+    arcs = np.flatnonzero(where[:, 3])
     return ConvertedContours(
         source,
         fit.curve,
         polygons,
-        Views(len(arcs), lambda: [fit.interpolation(q) for q in arcs.tolist()]),
-        _control_polygons(fit, arcs),
+        Views(len(arcs), fit.interpolations),
+        fit.controls,
         np.searchsorted(arcs, fit.offsets),
         _solved_columns(fit)
         | distance_columns(gaps.tolist(), bounds.tolist(), tolerance)
@@ -117,26 +117,6 @@ def _solved_columns(fit: SharpFit) -> Columns:
     }
 
 
-def _control_polygons(fit: SharpFit, arcs: IntArray) -> Polylines:
-    """The control polygons of the arcs."""
-    spans = fit.pieces.where[arcs, 3]
-    offsets = offsets_of(np.where(spans == 1, 4, spans + 3))
-    points = np.empty((offsets[-1], 2))
-    single = arcs[spans == 1]
-    points[offsets[:-1][spans == 1][:, None] + np.arange(4)] = _single_spans(fit.pieces, single)
-    for k, q in enumerate(arcs.tolist()):
-        if spans[k] > 1:
-            points[offsets[k] : offsets[k + 1]] = fit.splines[q].spline.control_points
-    return Polylines(points, offsets, np.zeros(len(arcs), dtype=np.bool_))
-
-
-def _single_spans(pieces: Pieces, which: IntArray) -> FloatArray:
-    """(k, 4, 2) control points of the arcs ``which``, of one span each."""
-    p0, p1 = pieces.vertices[pieces.starts[which]], pieces.vertices[pieces.starts[which] + 1]
-    chord, tangents = np.hypot(*(p1 - p0).T)[:, None], pieces.tangents[which]
-    return np.stack([p0, p0 + chord / 3 * tangents[:, 0], p1 - chord / 3 * tangents[:, 1], p1], axis=1)
-
-
 @dataclass(frozen=True, eq=False)
 class SharpFit:
     """Contours as lines and arcs.
@@ -145,7 +125,7 @@ class SharpFit:
         pieces: the lines and arcs of all contours.
         offsets: (C + 1,) where in ``pieces`` each contour begins.
         splines: the interpolations of those arcs that have more than one span, by their piece.
-        curve: the contours they make, before rounding.
+        curve: the contours they make, before rounding. controls: the control polygons of all arcs.
         bounds, gaps: (P,) certified distance of each piece, as written, from the source, and the largest one seen.
     """
 
@@ -153,26 +133,34 @@ class SharpFit:
     offsets: IntArray
     splines: dict[int, Interpolation]
     curve: ContourArrays
+    controls: Polylines
     bounds: FloatArray
     gaps: FloatArray
 
-    def interpolation(self, q: int) -> Interpolation:
-        """Arc q; one of a single span interpolates its two ends as it is."""
-        if q in self.splines:
-            return self.splines[q]
-        controls = _single_spans(self.pieces, np.array([q]))[0]
-        knots = np.array([0.0, np.hypot(*(controls[3] - controls[0]))])
-        return Interpolation(
-            spline=Spline.trusted(controls, knots, 3, False),
-            parameters=knots,
-            intervals=np.stack([knots, knots], axis=1),
-            iterations=0,
-            residuals=np.zeros(1),
-            converged=True,
-            fallbacks=0,
-            rate_bound=0.0,
-            merged=np.empty(0, dtype=np.int64),
-        )
+    def interpolations(self) -> list[Interpolation]:
+        """All arcs; one of a single span interpolates its two ends as it is."""
+        arcs = np.flatnonzero(self.pieces.where[:, 3]).tolist()
+        first, points = self.controls.offsets.tolist(), self.controls.points
+        return [
+            self.splines[q] if q in self.splines else _single_span(points[i : i + 4])
+            for q, i in zip(arcs, first[:-1], strict=True)
+        ]
+
+
+def _single_span(controls: FloatArray) -> Interpolation:
+    (x0, y0), _, _, (x1, y1) = controls.tolist()
+    knots = np.array([0.0, np.hypot(x1 - x0, y1 - y0)])
+    return Interpolation(
+        spline=Spline.trusted(controls, knots, 3, False),
+        parameters=knots,
+        intervals=knots.repeat(2).reshape(2, 2),
+        iterations=0,
+        residuals=np.zeros(1),
+        converged=True,
+        fallbacks=0,
+        rate_bound=0.0,
+        merged=np.empty(0, dtype=np.int64),
+    )
 
 
 def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:
@@ -202,11 +190,12 @@ def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance
     """The pieces with curves put through them, measured against the source."""
     count = len(split.flipped)
     splines = _interpolated(pieces, options)
-    curve = put_together(pieces, count, *_splines(splines.values()))
-    written = curve._replace(points=np.round(curve.points, options.precision) + 0.0)
-    bounds, gaps = certify(split, pieces, written, SHARPNESS * tolerance, tolerance)
+    assembly = put_together(pieces, count, *_splines(splines.values()))
+    curves = assembly.curves
+    written = curves._replace(points=np.round(curves.points, options.precision) + 0.0)
+    bounds, gaps = certify(split, assembly, written, SHARPNESS * tolerance, tolerance)
     offsets = np.searchsorted(pieces.where[:, 0], np.arange(count + 1))
-    return SharpFit(pieces, offsets, splines, curve, bounds, gaps)
+    return SharpFit(pieces, offsets, splines, curves, assembly.controls, bounds, gaps)
 
 
 def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...interpolation.result import Interpolation, reversed_interpolation, turned
-from ...outlines.contour_arrays import ContourArrays, offsets_of, polylines
-from ...types import FloatArray, Views
+from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ...types import FloatArray, IntArray, Views
 from ..certified_distance import certified_distance, sharpen_spans
 from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from ..options import Options
@@ -71,13 +71,18 @@ def _converted(
     points = [found.part(found.trial.points, i) for found, i in kept]
     pieces = [found.part(found.pieces, i) for found, i in kept]
     controls = [found.part(found.found.controls, i) for found, i in kept]
-    parts = [canonical.cubics[slice(*canonical.offsets[k : k + 2])] for k in which]
-    polygons, closed = polylines(points, [True] * len(points)), [True] * len(points)
-    geometry = geometric_columns(_end_to_end(pieces), _end_to_end(parts), polygons)
+    offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
+    geometry = geometric_columns(
+        _contours(np.concatenate(pieces), offsets),
+        _contours(canonical.cubics, canonical.offsets).chosen(which),
+        Polylines(np.concatenate(points), offsets, closed),
+    )
     changes = zip(geometry["area_change"], flipped, strict=True)
     geometry["area_change"] = [-change if back else change for change, back in changes]
     distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in zip(which, kept, strict=True)]
     bounds, gaps = [bound for bound, _ in distances], [gap for _, gap in distances]
+    for n in [n for n, back in enumerate(flipped) if back]:
+        points[n], controls[n], pieces[n] = turned(points[n]), turned(controls[n]), pieces[n][::-1, ::-1]
 
     def arcs() -> list[Interpolation]:
         each = zip(kept, flipped, strict=True)
@@ -85,10 +90,10 @@ def _converted(
 
     return ConvertedContours(
         contours.chosen(which),
-        _end_to_end([part[::-1, ::-1] if back else part for part, back in zip(pieces, flipped, strict=True)]),
-        polylines([turned(part) if back else part for part, back in zip(points, flipped, strict=True)], closed),
+        _contours(np.concatenate(pieces), offsets),
+        Polylines(np.concatenate(points), offsets, closed),
         Views(len(which), arcs),
-        polylines([turned(part) if back else part for part, back in zip(controls, flipped, strict=True)], closed),
+        Polylines(np.concatenate(controls), offsets, closed),
         np.arange(len(which) + 1),
         solved_columns([(found.found, np.array([i])) for found, i in kept])
         | distance_columns(gaps, bounds, tolerance)
@@ -96,11 +101,9 @@ def _converted(
     )
 
 
-def _end_to_end(cubics: Sequence[FloatArray]) -> ContourArrays:
-    """Closed chains of cubics (m, 4, 2) as contours."""
-    offsets = offsets_of([len(part) for part in cubics])
-    points = np.concatenate([part[:, :3].reshape(-1, 2) for part in cubics])
-    return ContourArrays(points, np.full(offsets[-1], 3), offsets, 3 * offsets)
+def _contours(cubics: FloatArray, offsets: IntArray) -> ContourArrays:
+    """Closed chains of cubics (n, 4, 2) end to end as contours."""
+    return ContourArrays(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3), offsets, 3 * offsets)
 
 
 def _certificate(canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
