@@ -87,6 +87,11 @@ def test_every_room_is_on_the_plan() -> None:
     assert {room(module) for module in MODULES} == PLAN.keys()
 
 
+def test_files_of_one_name_are_in_one_place_only() -> None:
+    names = [path.name for path in MODULES.values() if path.name != "__init__.py"]
+    assert len(names) == len(set(names)), sorted(name for name in set(names) if names.count(name) > 1)
+
+
 @pytest.mark.parametrize("module", MODULES)
 def test_a_file_imports_only_what_its_room_may(module: str) -> None:
     allowed = PLAN[room(module)] | {room(module)}
@@ -123,7 +128,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.commands, glyphspline.batch.run, glyphspline.batch.schedule\n"
+        "import sys, glyphspline.cli.commands, glyphspline.batch.font_run, glyphspline.batch.schedule\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )

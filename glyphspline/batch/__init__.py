@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ..errors import OutputError
     from .atlas_run import make_atlas
+    from .font_run import convert_font
     from .font_search import find_fonts, folders_for
     from .galleries import write_gallery
     from .manifest import entries_of
-    from .run import convert_font
     from .spec import Limits, RunSpec
     from .summary import Summary
 
@@ -20,7 +20,7 @@ _HOMES = {
     "OutputError": "..errors",
     "RunSpec": ".spec",
     "Summary": ".summary",
-    "convert_font": ".run",
+    "convert_font": ".font_run",
     "entries_of": ".manifest",
     "find_fonts": ".font_search",
     "folders_for": ".font_search",

@@ -13,7 +13,7 @@ from ..readers import Source
 from ..writers.figures.atlas import Glyph, write_atlas
 from ..writers.svg.curvature_map import curvature_scale
 from .files import make_folder
-from .run import SCALE_SAMPLE
+from .font_run import SCALE_SAMPLE
 
 PROFILED = 12
 """Up to this number of glyphs, each gets a page of its own by default."""
