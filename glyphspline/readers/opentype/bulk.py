@@ -186,7 +186,8 @@ def _contours(
             at += 1 + 2 * kind
         found = c - g - first
         unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
-        before[g + 1] = before[g]
+        for k in range(3):  # assigning the row at once would compile 40 functions for the message of an error
+            before[g + 1, k] = before[g, k]
         if not unusual[g]:
             before[g + 1, 0], before[g + 1, 1], before[g + 1, 2] = first + found, m, p
     return points, degrees, offsets, starts, before, unusual
