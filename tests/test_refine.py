@@ -10,8 +10,8 @@ import pytest
 import glyphspline as gs
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
+from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.measures import geometric_columns
-from glyphspline.fitting.policy import interpolated
 from glyphspline.fitting.smooth import steps
 from glyphspline.fitting.smooth.canonical_contours import canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
@@ -40,7 +40,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     places = np.linspace(0, len(canonical.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
     found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
-    pieces, written = steps.beziers(found.controls, found.knots, offsets, 100.0)
+    pieces, written = beziers(found.controls, found.knots, offsets, 100.0)
     np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
     measured = steps.measured(canonical, which, places, offsets, found.controls, written, near)

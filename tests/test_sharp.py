@@ -177,6 +177,17 @@ def test_overlaps_that_cannot_be_united_are_left_in_with_a_note(shift: float, re
     assert reason in note
 
 
+def test_a_broken_glyph_of_a_batch_costs_no_note_of_another() -> None:
+    pytest.importorskip("pathops")
+    a, b = (gs.Contour(square_contour(100).points + d, LINES) for d in (1e8, 1e8 + 50))
+    broken = gs.Contour(np.array([[0.0, 0], [np.nan, 0], [0, 1]]), np.ones(3, dtype=np.int64))
+    glyphs = [gs.Outline("far", contours=(a, b)), gs.Outline("broken", contours=(broken,))]
+    far, error = gs.convert_many(glyphs, options(remove_overlaps=True), errors="return")
+    assert isinstance(far, gs.GlyphResult)
+    assert [note[:20] for note in far.notes] == ["overlaps were left i"]
+    assert isinstance(error, gs.GlyphsplineError)
+
+
 def test_a_glyph_whose_overlaps_stay_is_converted_and_says_so() -> None:
     pytest.importorskip("pathops")
     a, b = (gs.Contour(square_contour(100).points + d, LINES) for d in (1e8, 1e8 + 50))

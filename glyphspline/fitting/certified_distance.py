@@ -29,6 +29,9 @@ from ..types import FloatArray, IntArray
 ROUNDING = 1e-13
 """Share of the largest coordinate added to the bound for floating point."""
 
+SHARPNESS = 0.02
+"""The certified bound may exceed the distances seen by this share of the tolerance."""
+
 DEEPEST = 14
 """Maximum subdivision depth; pairs still above the limit there count as too far apart."""
 

@@ -69,11 +69,10 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
     if options.remove_overlaps:
         from ..outlines.overlaps import remove_overlaps
 
-        for k, outline in enumerate(glyphs):
-            glyphs[k], note = remove_overlaps(outline)
-            notes[k] += [note] if note else []
+        united = [remove_overlaps(outline) for outline in glyphs]
+        glyphs, notes = [outline for outline, _ in united], [[note] if note else [] for _, note in united]
     results: dict[int, GlyphResult] = {}
-    for em in {outline.metrics.units_per_em for outline in glyphs}:
+    for em in dict.fromkeys(outline.metrics.units_per_em for outline in glyphs):
         those = [k for k, outline in enumerate(glyphs) if outline.metrics.units_per_em == em]
         found = _convert_em([glyphs[k] for k in those], [notes[k] for k in those], options, em)
         results |= zip(those, found, strict=True)

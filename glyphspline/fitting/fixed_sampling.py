@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from ..errors import GlyphsplineError
 from ..interpolation.result import Interpolation
-from ..outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ..outlines.places import sampled
 from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
-from .certified_distance import certified_distance
+from .certified_distance import SHARPNESS, pair_stretches
+from .closed_curves import beziers, interpolated
 from .measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from .options import Options
-from .policy import interpolated
 from .results import ConvertedContours
-from .smooth.steps import beziers
-
-SHARPNESS = 0.02
-"""The certified bound may exceed the distances seen by this share of the tolerance."""
 
 
 def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
@@ -75,15 +70,15 @@ def through_polygons(
     knots = found.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
     pieces, written = beziers(controls, knots, ends, 10.0**options.precision)
     closed = np.ones(len(counts), dtype=np.bool_)
-    curves = ContourArrays(pieces[:, :3].reshape(-1, 2), np.full(len(pieces), 3), ends, 3 * ends)
+    curves, arcs = cubic_contours(pieces, ends), Views(len(counts), found.results)
     polygons = Polylines(points, ends, closed)
     measures: dict[str, Sequence[Any]] = solved_columns([(found, np.arange(len(counts)))])
     if options.measure:
         if places is not None:
-            measures |= _distances(contours, written, places, ends, found.results(), tolerance)
+            measures |= _distances(contours, written, places, ends, arcs, tolerance)
         measures |= geometric_columns(curves, contours, polygons)
     return ConvertedContours(
-        contours, curves, polygons, Views(len(counts), found.results), Polylines(controls, ends, closed),
+        contours, curves, polygons, arcs, Polylines(controls, ends, closed),
         np.arange(len(counts) + 1), measures,
     )  # fmt: skip
 
@@ -105,14 +100,13 @@ def _distances(
     tolerance: float,
 ) -> dict[str, Sequence[Any]]:
     """Certified distances of the curves, as they are written, from the contours."""
-    cubics = all_cubics(contours)
-    bounds, gaps = [], []
-    each = zip(arcs, pairwise(contours.offsets.tolist()), pairwise(ends.tolist()), strict=True)
-    for arc, (a, b), (i, j) in each:
-        anchors = _anchors(places[i:j], arc, b - a)
-        distance = certified_distance(written[i:j], cubics[a:b], anchors, SHARPNESS * tolerance, tolerance)
-        bounds.append(distance.bound)
-        gaps.append(distance.measured)
+    vertices, segments = np.split(places, ends[1:-1]), np.diff(contours.offsets).tolist()
+    anchors = np.concatenate([_anchors(*each) for each in zip(vertices, arcs, segments, strict=True)])
+    found = pair_stretches(
+        written, ends, all_cubics(contours), contours.offsets, anchors, ends + np.arange(len(ends)),
+        SHARPNESS * tolerance, tolerance,
+    )  # fmt: skip
+    bounds, gaps = (np.maximum.reduceat(values, ends[:-1]).tolist() for values in found)
     return distance_columns(gaps, bounds, tolerance)
 
 

@@ -59,6 +59,11 @@ class Polylines(NamedTuple):
         return Polylines(self.points[offsets[0] : offsets[-1]], offsets - offsets[0], self.closed[first:last])
 
 
+def cubic_contours(cubics: FloatArray, offsets: IntArray) -> ContourArrays:
+    """Closed chains of cubics (m, 4, 2) end to end as contours, with offsets (C + 1,)."""
+    return ContourArrays(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3), offsets, 3 * offsets)
+
+
 def offsets_of(lengths: Sequence[int] | IntArray) -> IntArray:
     """(C + 1,) first index of each of C parts end to end, and their total length."""
     offsets = np.zeros(len(lengths) + 1, dtype=np.int64)

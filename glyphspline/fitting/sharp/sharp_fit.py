@@ -17,6 +17,7 @@ from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...types import FloatArray, IntArray, Views
+from ..certified_distance import SHARPNESS
 from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
 from ..results import ConvertedContours, assembled
@@ -32,9 +33,6 @@ LONG_LINE = 0.02
 
 SHARE = 0.97
 """Share of the tolerance that the fit may use. The rest is for what its samples miss; the certificate decides."""
-
-SHARPNESS = 0.02
-"""The certified bound may exceed the distances seen by this share of the tolerance."""
 
 STRIDE = {"fast": 2, "best": 1}
 """Arcs end at every so many smooth joints of the source."""

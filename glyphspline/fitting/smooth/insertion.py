@@ -6,7 +6,8 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.sorting import in_order
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import FloatArray
+from ..closed_curves import chords_of
 from .canonical_contours import TABLE, length_at, place_at, points_at
 
 MOST_VERTICES = 2000
@@ -17,7 +18,6 @@ SHORTEST = 1e-5
 
 NEAR_RATIO = 0.98
 """Share of the ratio allowed that a chord cut off beside a shorter one has to it."""
-
 
 MARGIN = 0.3
 """Share of a span at either end where it is not divided."""
@@ -96,27 +96,3 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
         if count == n:
             return places
         places = in_order(new[:count])
-
-
-@compiled(internal=True)
-def chords_of(points: FloatArray, ratio: float) -> tuple[FloatArray, bool]:
-    """(n,) distance from each vertex to the next, the last to the first; whether adjacent ones are within a ratio."""
-    n = len(points)
-    chords = np.empty(n)
-    for i in range(n):
-        j = (i + 1) % n
-        chords[i] = np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
-    even = True
-    for i in range(n):
-        a, b = chords[i - 1], chords[i]
-        even = even and not (a > ratio * b or b > ratio * a)
-    return chords, even
-
-
-@compiled
-def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
-    """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
-    even = np.empty(len(offsets) - 1, dtype=np.bool_)
-    for k in range(len(offsets) - 1):
-        _, even[k] = chords_of(points[offsets[k] : offsets[k + 1]], ratio)
-    return even

@@ -14,8 +14,8 @@ from ...errors import GlyphsplineError
 from ...interpolation.batched import BatchedInterpolation
 from ...outlines.contour_arrays import offsets_of
 from ...types import FloatArray, IntArray
+from ..closed_curves import beziers, interpolated
 from ..options import Options
-from ..policy import interpolated
 from . import steps
 from .canonical_contours import CanonicalContours
 
@@ -141,7 +141,7 @@ class _Search:
         if found.whole[:, 1].sum() < len(places):  # duplicates were merged
             kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
             return self.attempt(which, places[np.concatenate(kept)], offsets_of([len(part) for part in kept]))
-        pieces, written = steps.beziers(found.controls, found.knots, offsets, 10.0**options.precision)
+        pieces, written = beziers(found.controls, found.knots, offsets, 10.0**options.precision)
         trial = steps.measured(contours, which, places, offsets, points, written, self.near)
         done = Round(trial, found, pieces, written, np.maximum.reduceat(trial.bounds, offsets[:-1]))
         for i, k in enumerate(which.tolist()):

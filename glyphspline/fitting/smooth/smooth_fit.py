@@ -7,17 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...interpolation.result import Interpolation, reversed_interpolation, turned
-from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
-from ...types import FloatArray, IntArray, Views
-from ..certified_distance import certified_distance, sharpen_spans
+from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
+from ...types import Views
+from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
 from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours, assembled
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
-
-SHARPNESS = 0.02
-"""The certified bound may exceed the distances seen by this share of the tolerance."""
 
 AGAIN = ((1.0, 3), (0.5, 3), (0.25, 3))
 """For contours that cross themselves: shares of the tolerance, and rounds in which vertices are taken out as well.
@@ -73,8 +70,8 @@ def _converted(
     controls = [found.part(found.found.controls, i) for found, i in kept]
     offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
     geometry = geometric_columns(
-        _contours(np.concatenate(pieces), offsets),
-        _contours(canonical.cubics, canonical.offsets).chosen(which),
+        cubic_contours(np.concatenate(pieces), offsets),
+        cubic_contours(canonical.cubics, canonical.offsets).chosen(which),
         Polylines(np.concatenate(points), offsets, closed),
     )
     changes = zip(geometry["area_change"], flipped, strict=True)
@@ -90,7 +87,7 @@ def _converted(
 
     return ConvertedContours(
         contours.chosen(which),
-        _contours(np.concatenate(pieces), offsets),
+        cubic_contours(np.concatenate(pieces), offsets),
         Polylines(np.concatenate(points), offsets, closed),
         Views(len(which), arcs),
         Polylines(np.concatenate(controls), offsets, closed),
@@ -99,11 +96,6 @@ def _converted(
         | distance_columns(gaps, bounds, tolerance)
         | geometry,
     )
-
-
-def _contours(cubics: FloatArray, offsets: IntArray) -> ContourArrays:
-    """Closed chains of cubics (n, 4, 2) end to end as contours."""
-    return ContourArrays(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3), offsets, 3 * offsets)
 
 
 def _certificate(canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:

@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import spline_beziers
 from ...types import BoolArray, FloatArray, IntArray
 from ..certified_distance import measure_spans
 from .canonical_contours import CanonicalContours, points_at
@@ -62,23 +61,6 @@ def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, o
         for j in range(b - a):
             points[a + j, 0], points[a + j, 1] = own[j, 0], own[j, 1]
     return points
-
-
-@compiled
-def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
-    """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
-
-    Knots of part k begin at ``offsets[k] + k``.
-    """
-    pieces, written = np.empty((len(controls), 4, 2)), np.empty((len(controls), 4, 2))
-    for k in range(len(offsets) - 1):
-        a, b = offsets[k], offsets[k + 1]
-        spline_beziers(controls[a:b], knots[a + k : b + k + 1], True, pieces[a:b])
-    for i in range(len(pieces)):
-        for j in range(4):
-            for axis in range(2):
-                written[i, j, axis] = np.rint(pieces[i, j, axis] * unit) / unit
-    return pieces, written
 
 
 class Trial(NamedTuple):
