@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import sys
+from collections.abc import Collection
+from numbers import Integral, Real
+from typing import Any
+
 
 class GlyphsplineError(Exception):
     """What the package raises by design. ``font``, ``glyph`` and ``contour`` say where, as far as it is known.
@@ -55,3 +61,34 @@ class FontError(GlyphsplineError):
 
 class OutputError(GlyphsplineError, OSError):
     """A file or folder that cannot be written, or one of a run that cannot be read."""
+
+
+def require(good: bool, rule: str, value: object) -> None:
+    """Raise an OptionError, such as "step is a positive distance, not 0", unless ``good``."""
+    if not good:
+        raise OptionError(f"{rule}, not {value!r}")
+
+
+def require_choice(name: str, value: object, choices: Collection[object] = (True, False)) -> None:
+    """Raise an OptionError unless ``value`` is one of ``choices``: strings, or bools."""
+    good = isinstance(value, str | bool) and value in choices
+    require(good, f"{name} is {' or '.join(map(repr, choices))}", value)
+
+
+def is_whole(value: Any, least: int, largest: int) -> bool:
+    """Whether a value is an integer from ``least`` to ``largest``. A bool is not."""
+    return _is_a(Integral, value) and bool(least <= value <= largest)
+
+
+def is_number(value: Any, least: float, largest: float = sys.float_info.max) -> bool:
+    """Whether a value is a finite number from ``least`` to ``largest``. A bool is not."""
+    return _is_a(Real, value) and bool(least <= value <= largest)
+
+
+def is_positive(value: Any, largest: float = sys.float_info.max) -> bool:
+    """Whether a value is a finite number above 0 and up to ``largest``."""
+    return is_number(value, math.ulp(0.0), largest)
+
+
+def _is_a(kind: type, value: object) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)

@@ -17,6 +17,8 @@ WRONG: list[dict[str, Any]] = [
     {"step": 0.0}, {"step": float("nan")}, {"step": "20"}, {"count": 2}, {"count": 5.5}, {"count": 10**9},
     {"corners": "round"}, {"corner_angle": 0.0}, {"corner_angle": 181.0}, {"effort": "slow"},
     {"margin": -0.1}, {"margin": 0.6}, {"fallback": None}, {"max_ratio": 1.2}, {"max_ratio": float("inf")},
+    {"max_ratio": 1e7}, {"corner_angle": float("nan")}, {"corner_angle": True}, {"step": 10**400},
+    {"variant": 2.0}, {"margin": "0.1"},
     {"precision": 10}, {"precision": -1}, {"residual_tolerance": 0.0}, {"max_iterations": -1}, {"measure": "yes"},
 ]  # fmt: skip
 

@@ -60,7 +60,15 @@ def test_sampling_needs_one_valid_measure() -> None:
         {"count": 2},
         {"step": 0.0},
         {"step": float("nan")},
+        {"count": True},
+        {"count": 5.0},
+        {"step": "20"},
+        {"step": True},
         {"count": 9, "max_ratio": 1.0},
+        {"count": 9, "max_ratio": 1e7},
+        {"count": 9, "max_ratio": float("nan")},
+        {"count": 9, "corner_angle": 0.0},
+        {"count": 9, "corner_angle": float("inf")},
     ):
         with pytest.raises(gs.GlyphsplineError):
             gs.sample(circle_contour(), **bad)

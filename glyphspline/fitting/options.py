@@ -2,41 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from numbers import Integral, Real
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
-from ..errors import OptionError
+from ..errors import OptionError, is_positive, is_whole, require, require_choice
+from ..interpolation.method import Fallback, Method
+from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]
-Fallback = Literal["knot", "peak"]
-
-CHOICES: dict[str, tuple[Any, ...]] = {
-    "variant": (0, 1, 2, 3, 4),
-    "corners": get_args(Corners),
-    "effort": get_args(Effort),
-    "fallback": get_args(Fallback),
-    "measure": (False, True),
-    "remove_overlaps": (False, True),
-}
-"""Options that are one of a few values."""
-
-COUNTS = {"count": (3, 200_000), "precision": (0, 9), "max_iterations": (0, 10**9)}
-"""Options that are whole numbers: the least and the largest."""
-
-LARGEST_RATIO = 1e6
-
-NUMBERS = {
-    "tolerance": ("a positive distance", 0.0, math.inf),
-    "step": ("a positive distance", 0.0, math.inf),
-    "residual_tolerance": ("a positive distance", 0.0, math.inf),
-    "corner_angle": ("an angle in degrees, above 0 and up to 180", 0.0, math.nextafter(180.0, math.inf)),
-    "margin": ("a number from 0 to 0.5", -math.ulp(0.0), math.nextafter(0.5, 1.0)),
-    "max_ratio": ("a ratio of 2 or more", math.nextafter(2.0, 0.0), LARGEST_RATIO),
-}
-"""Options that are numbers: what they are, and the limits between which they lie."""
 
 
 @dataclass(frozen=True)
@@ -63,29 +37,35 @@ class Options:
         OptionError: a value out of its range or of the wrong kind, or options that contradict each other.
     """
 
-    variant: int = 2
+    variant: int = Method.variant
     tolerance: float | None = None
     step: float | None = None
     count: int | None = None
     corners: Corners = "smooth"
-    corner_angle: float = 12.0
+    corner_angle: float = CORNER_ANGLE
     effort: Effort = "fast"
     margin: float = 0.02
     fallback: Fallback = "peak"
-    max_ratio: float = 4.0
+    max_ratio: float = MAX_RATIO
     precision: int = 2
     residual_tolerance: float | None = None
-    max_iterations: int = 1000
+    max_iterations: int = Method.max_iterations
     measure: bool = False
     remove_overlaps: bool = False
 
     def __post_init__(self) -> None:
-        for name, choices in CHOICES.items():
-            _check_choice(name, getattr(self, name), choices)
-        for name, (least, largest) in COUNTS.items():
-            _check_count(name, getattr(self, name), least, largest)
-        for name, (what, low, high) in NUMBERS.items():
-            _check_number(name, getattr(self, name), what, low, high)
+        Method(
+            self.variant, margin=self.margin, fallback=self.fallback, residual_tolerance=self.residual_tolerance,
+            max_iterations=self.max_iterations,
+        )  # fmt: skip
+        check_sampling(self.count, self.step, self.max_ratio, self.corner_angle)
+        positive = self.tolerance is None or is_positive(self.tolerance)
+        require(positive, "tolerance is a positive distance", self.tolerance)
+        require(is_whole(self.precision, 0, 9), "precision is a whole number from 0 to 9", self.precision)
+        require_choice("corners", self.corners, get_args(Corners))
+        require_choice("effort", self.effort, get_args(Effort))
+        require_choice("measure", self.measure)
+        require_choice("remove_overlaps", self.remove_overlaps)
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
         if len(given) > 1:
             raise OptionError(f"give one of tolerance, step and count, not {' and '.join(given)}")
@@ -105,23 +85,3 @@ class Options:
     def solver_tolerance(self) -> float:
         """The solver's tolerance in font units."""
         return 0.5 * 10.0**-self.precision if self.residual_tolerance is None else self.residual_tolerance
-
-
-def _check_choice(name: str, value: Any, choices: tuple[Any, ...]) -> None:
-    fits = any(value == choice and isinstance(value, bool) == isinstance(choice, bool) for choice in choices)
-    if not fits:
-        raise OptionError(f"{name} is one of {', '.join(map(str, choices))}, not {value!r}")
-
-
-def _check_count(name: str, value: Any, least: int, largest: int) -> None:
-    if value is None and name == "count":
-        return
-    if isinstance(value, bool) or not (isinstance(value, Integral) and least <= int(value) <= largest):
-        raise OptionError(f"{name} is a whole number from {least} to {largest}, not {value!r}")
-
-
-def _check_number(name: str, value: Any, what: str, low: float, high: float) -> None:
-    if value is None and name in ("tolerance", "step", "residual_tolerance"):
-        return
-    if isinstance(value, bool) or not (isinstance(value, Real) and low < float(value) < high):
-        raise OptionError(f"{name} is {what}, not {value!r}")

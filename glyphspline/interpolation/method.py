@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
-from numbers import Integral, Real
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
 from numpy.typing import ArrayLike
 
 from ..curves.bspline import DEGREES
 from ..curves.parameters import CHORD_EXPONENT, Parametrisation
-from ..errors import OptionError
+from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
 
 Fallback: TypeAlias = Literal["knot", "peak"]
 Finish: TypeAlias = Literal["iterate", "solve"]
@@ -20,6 +18,9 @@ Tangents: TypeAlias = tuple[ArrayLike | None, ArrayLike | None]
 
 STEPWISE = (0, 4)
 """Variants that the passes of many vertices at once do not have."""
+
+MOST_ITERATIONS = 10**9
+"""Upper bound of ``max_iterations``."""
 
 RELATIVE_TOLERANCE = 1e-6
 """The default of ``residual_tolerance``, as a share of the polygon's extent."""
@@ -69,20 +70,19 @@ class Method:
     diagnostics: bool = False
 
     def __post_init__(self) -> None:
-        _check(_whole(self.variant) and 0 <= self.variant <= 4, "variant is 0 to 4", self.variant)
-        _check(_whole(self.degree) and self.degree in DEGREES, "degree is 2 to 6", self.degree)
-        _check(_number(self.margin) and 0 <= self.margin <= 0.5, "margin is 0 to 0.5", self.margin)
-        rules = ", ".join(CHORD_EXPONENT)
-        _check(self.knots is None or _one_of(self.knots, *CHORD_EXPONENT), f"knots are {rules} or an array", self.knots)
-        _check(_one_of(self.fallback, "knot", "peak"), 'fallback is "knot" or "peak"', self.fallback)
-        tolerance = self.residual_tolerance
-        positive = tolerance is None or (_number(tolerance) and tolerance > 0)
-        _check(positive, "residual_tolerance is a positive distance or None", tolerance)
-        whole = _whole(self.max_iterations) and self.max_iterations >= 0
-        _check(whole, "max_iterations is a whole number, 0 or more", self.max_iterations)
-        _check(_truth(self.closed), "closed is True or False", self.closed)
-        _check(_one_of(self.finish, "iterate", "solve"), 'finish is "iterate" or "solve"', self.finish)
-        _check(_truth(self.diagnostics), "diagnostics is True or False", self.diagnostics)
+        require(is_whole(self.variant, 0, 4), "variant is 0 to 4", self.variant)
+        require(is_whole(self.degree, DEGREES[0], DEGREES[-1]), "degree is 2 to 6", self.degree)
+        require(is_number(self.margin, 0, 0.5), "margin is 0 to 0.5", self.margin)
+        known = self.knots is None or (isinstance(self.knots, str) and self.knots in CHORD_EXPONENT)
+        require(known, f"knots are {', '.join(CHORD_EXPONENT)} or an array", self.knots)
+        require_choice("fallback", self.fallback, get_args(Fallback))
+        positive = self.residual_tolerance is None or is_positive(self.residual_tolerance)
+        require(positive, "residual_tolerance is a positive distance or None", self.residual_tolerance)
+        rule = f"max_iterations is a whole number from 0 to {MOST_ITERATIONS}"
+        require(is_whole(self.max_iterations, 0, MOST_ITERATIONS), rule, self.max_iterations)
+        require_choice("closed", self.closed)
+        require_choice("finish", self.finish, get_args(Finish))
+        require_choice("diagnostics", self.diagnostics)
         if not self.closed and self.degree != 3:
             raise OptionError("an open arc is cubic (degree=3)")
 
@@ -110,24 +110,3 @@ def method_of(*values: Any) -> Method:
         return _known(*values)
     except TypeError:  # a value that cannot be hashed
         return Method(*values)
-
-
-def _check(good: bool, rule: str, value: object) -> None:
-    if not good:
-        raise OptionError(f"{rule}, not {value!r}")
-
-
-def _whole(value: object) -> bool:
-    return isinstance(value, Integral) and not isinstance(value, bool)
-
-
-def _number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _truth(value: object) -> bool:
-    return isinstance(value, bool)
-
-
-def _one_of(value: object, *words: str) -> bool:
-    return isinstance(value, str) and value in words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import GlyphsplineError, OptionError
+from ..errors import GlyphsplineError, OptionError, is_number, is_positive, is_whole, require
 from ..types import FloatArray
 from .outline import Contour
 
@@ -14,13 +14,19 @@ CORNER_ANGLE = 12.0
 MOST_VERTICES = 200_000
 """Maximum number of vertices of a polygon."""
 
+MAX_RATIO = 4.0
+"""Bound on the ratio of adjacent spacings up to which every basis function rises above 1/2."""
+
+LARGEST_RATIO = 1e6
+"""Upper bound of ``max_ratio``."""
+
 
 def sample(
     contour: Contour,
     *,
     count: int | None = None,
     step: float | None = None,
-    max_ratio: float = 4.0,
+    max_ratio: float = MAX_RATIO,
     corner_angle: float = CORNER_ANGLE,
 ) -> FloatArray:
     """Sample a contour to a polygon whose vertices lie on it.
@@ -44,6 +50,8 @@ def sample(
     """
     from .places import sampled  # imported here, so that the package opens without a compiler
 
+    if (count is None) == (step is None):
+        raise OptionError("sample by count or by step")
     check_sampling(count, step, max_ratio, corner_angle)
     ends, angle = np.array([0, len(contour)]), np.radians(corner_angle)
     points, _, _, refused = sampled(contour.cubics(), ends, step or 0.0, count or 0, max_ratio, angle, MOST_VERTICES)
@@ -56,15 +64,11 @@ def check_sampling(count: int | None, step: float | None, max_ratio: float, corn
     """Validate the parameters of :func:`sample`.
 
     Raises:
-        OptionError: neither or both of ``count`` and ``step``, or a value out of range.
+        OptionError: a value out of range or of the wrong kind.
     """
-    if (count is None) == (step is None):
-        raise OptionError("sample by count or by step")
-    if count is not None and not 3 <= count <= MOST_VERTICES:
-        raise OptionError(f"count is 3 to {MOST_VERTICES}, not {count}")
-    if step is not None and not 0 < step < np.inf:
-        raise OptionError(f"step is a positive length, not {step}")
-    if not 2 <= max_ratio < np.inf:
-        raise OptionError(f"max_ratio is 2 or more, not {max_ratio}")
-    if not 0 < corner_angle <= 180:
-        raise OptionError(f"corner_angle is an angle up to 180 degrees, not {corner_angle}")
+    rule = f"count is a whole number from 3 to {MOST_VERTICES}"
+    require(count is None or is_whole(count, 3, MOST_VERTICES), rule, count)
+    require(step is None or is_positive(step), "step is a positive distance", step)
+    require(is_number(max_ratio, 2, LARGEST_RATIO), f"max_ratio is a ratio from 2 to {LARGEST_RATIO:g}", max_ratio)
+    rule = "corner_angle is an angle in degrees, above 0 and up to 180"
+    require(is_positive(corner_angle, 180), rule, corner_angle)
