@@ -1,4 +1,4 @@
-"""Many glyphs of a font into a folder of files, with workers, and so that an interrupted run goes on."""
+"""Conversion of many glyphs to a folder of files, with workers; interrupted runs are resumed."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ..errors import OutputError
-    from .atlas_run import make_atlas
-    from .font_run import convert_font
-    from .font_search import find_fonts, folders_for
-    from .galleries import write_gallery
-    from .manifest import entries_of
-    from .spec import Limits, RunSpec
-    from .summary import Summary
+    from ..errors import OutputError as OutputError
+    from .atlas_run import make_atlas as make_atlas
+    from .font_run import convert_font as convert_font
+    from .font_search import find_fonts as find_fonts
+    from .font_search import folders_for as folders_for
+    from .galleries import write_gallery as write_gallery
+    from .manifest import entries_of as entries_of
+    from .spec import Limits as Limits
+    from .spec import RunSpec as RunSpec
+    from .summary import Summary as Summary
 
 _HOMES = {
     "Limits": ".spec",
@@ -27,24 +29,10 @@ _HOMES = {
     "make_atlas": ".atlas_run",
     "write_gallery": ".galleries",
 }
-"""Where names are, imported when they are asked for: workers can start before the font libraries are there."""
+"""Modules of the names, imported on first use: workers start before the font libraries are imported."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOMES[name], __name__), name)
-
-
-__all__ = [
-    "Limits",
-    "OutputError",
-    "RunSpec",
-    "Summary",
-    "convert_font",
-    "entries_of",
-    "find_fonts",
-    "folders_for",
-    "make_atlas",
-    "write_gallery",
-]

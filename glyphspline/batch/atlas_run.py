@@ -1,4 +1,4 @@
-"""The atlas of a font: glyphs converted one after the other, straight onto its pages."""
+"""Conversion of glyphs one by one to the pages of an atlas."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .files import make_folder
 from .font_run import SCALE_SAMPLE
 
 PROFILED = 12
-"""Up to this number of glyphs, each gets a page of its own by default."""
+"""Up to this number of glyphs, each has a profile page by default."""
 
 
 def make_atlas(
@@ -33,7 +33,7 @@ def make_atlas(
     Args:
         source: the opened font. names: its glyphs, in order. path: the PDF.
         options: of the conversion.
-        profiles: glyphs that get a page with κ(s); None takes all of up to ``PROFILED``, else none.
+        profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
         observer: called with the number of glyphs done and of all.
 
     Returns:

@@ -1,7 +1,4 @@
-"""The calls that a worker answers.
-
-The process that makes them does not need the compiled code, which takes a second to import: workers import it here.
-"""
+"""The functions that workers call. The scheduling process imports this module without the compiled code."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The same work on a dask.distributed cluster: fonts travel by content, files come back.
+"""Runs on a dask.distributed cluster: the bytes of fonts are sent to the workers, and the files are sent back.
 
-dask itself repeats the work of a lost worker. Its workers cannot be killed from here: the time limit does not hold
-there, the limits of size do.
+dask repeats the calls of a lost worker. Its workers cannot be killed from here, so the time limit does not apply; the
+limits of size do.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class ClusterExecutor(Executor):
 
 
 def call_there(fn: Callable[..., Any], font: bytes, job: Job, tasks: Sequence[Task]) -> tuple[Any, Files]:
-    """On a worker of the cluster: the call, and the files that it has written."""
+    """Make the call on a worker of the cluster; returns its result and the files it has written."""
     path = local_font(font, job.path.suffix)
     with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
         out = Path(folder)
@@ -80,7 +80,7 @@ def call_there(fn: Callable[..., Any], font: bytes, job: Job, tasks: Sequence[Ta
 
 
 def local_font(font: bytes, suffix: str) -> Path:
-    """A file with the font's bytes, which all calls on this machine share."""
+    """A file with the font's bytes, shared by all calls on this machine."""
     path = Path(tempfile.gettempdir()) / f"glyphspline-{sha256(font).hexdigest()}{suffix}"
     if not path.is_file() or path.is_symlink() or path.read_bytes() != font:
         write_whole(str(path), font)

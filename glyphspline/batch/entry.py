@@ -33,7 +33,7 @@ def manifest_line(
 
 
 def journal_line(sizes: Iterable[int], line: str) -> bytes:
-    """The line of the journal: the sizes of the glyph's files, in the order of the manifest's line, and that line."""
+    """The journal's line: the sizes of the glyph's files in the order of its manifest line, a tab, and that line."""
     return f"{','.join(map(str, sizes))}\t{line}\n".encode()
 
 
@@ -58,7 +58,7 @@ def contour_texts(measures: MeasureColumns, offsets: IntArray) -> list[str]:
 
 
 def _written(column: Sequence[float | None]) -> tuple[str, Sequence[object]]:
-    """A column as :func:`number` writes each value: a form for ``%``, and what it formats."""
+    """A format for ``%`` and its arguments, which write the values of a column as :func:`number` does."""
     values = np.array(column)
     if values.dtype.kind == "i":
         return "%d", column
@@ -68,5 +68,5 @@ def _written(column: Sequence[float | None]) -> tuple[str, Sequence[object]]:
 
 
 def columns_of(contours: Sequence[Mapping[str, float | None]]) -> MeasureColumns:
-    """The measures of a line's contours, parsed, as columns."""
+    """The measures of the contours of a parsed line as columns."""
     return {name: [contour.get(name) for contour in contours] for name in MEASURES}

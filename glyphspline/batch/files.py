@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
@@ -16,13 +16,13 @@ LONGEST_NAME = 150
 """Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
 
 PARTIAL = ".part"
-"""How temporary files end. They begin with a dot, so that no glob over results meets them."""
+"""Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
 
 O_BINARY = getattr(os, "O_BINARY", 0)
-"""Windows would write other line ends."""
+"""On Windows: do not translate line ends."""
 
 _PLAIN = re.compile(r"[a-z0-9_]{1,75}")
-"""Names that the rules do not change: most names of a large font, where applying them takes half a second."""
+"""Names that the UFO rules do not change. For a large font, applying the rules to all names takes half a second."""
 
 _NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
 
@@ -51,24 +51,35 @@ def _stem(name: str, taken: set[str]) -> str:
 
 
 def _tame(name: str) -> str:
-    """Names that the UFO rules do not cover: too long in bytes, empty, or with half characters."""
+    """Make a valid name where the UFO rules do not: the name is too long in bytes, empty, or has lone surrogates."""
     clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
     return clipped.decode(errors="ignore").rstrip(". ") or "_"
+
+
+@contextmanager
+def writing(path: Path | str) -> Iterator[None]:
+    """Turn an OSError within into an OutputError that names the file."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
 
 
 def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
 
-    The temporary name is the process's: a file system makes and forgets the same name faster than ever new ones.
-    Durable is one that is on the disk before it has its name, which takes some milliseconds.
+    Each process reuses one temporary name, which file systems handle faster than new names. ``durable`` syncs the file
+    to the disk before it is renamed, which takes some milliseconds.
 
     Raises:
-        OutputError: it cannot be written; nothing is left under the final name but what was there.
+        OutputError: it cannot be written; a file of this name remains unchanged.
     """
     data = content.encode() if isinstance(content, str) else content
     partial = f"{path.rpartition('/')[0]}/.{os.getpid()}{PARTIAL}"
-    try:
-        # O_EXCL does not follow a link that somebody has put where the temporary file goes.
+    with writing(path):
+        # O_EXCL does not follow a link planted under the temporary name.
         handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | O_BINARY, 0o666)
         try:
             try:
@@ -84,8 +95,6 @@ def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> in
             with suppress(OSError):
                 os.unlink(partial)
             raise
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=path) from error
     return len(data)
 
 

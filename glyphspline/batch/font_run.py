@@ -27,10 +27,10 @@ from .summary import Summary, facts_of
 from .whole import check_possible, missing, write_fonts
 
 SCALE_SAMPLE = 200
-"""Glyphs from which the shared curvature scale is taken, evenly spread over those selected."""
+"""Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
 
 SCALE_CHUNK = 4
-"""Glyphs of the sample in a chunk: a run over a few glyphs should use all workers from its start."""
+"""Glyphs of the sample in a chunk: few, so that a run over few glyphs uses all workers."""
 
 Observer = Callable[[int, int, int], None]
 """Called with the number of glyphs done in the folder, of all glyphs, and of those that failed."""
@@ -49,17 +49,17 @@ def convert_font(
 ) -> Summary:
     """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and a gallery.
 
-    A run with the same options that was begun or finished in the folder is continued; its other glyphs stay.
+    An earlier run in the folder with the same options is continued; its other glyphs remain.
 
     Args:
         source: the opened font; workers open it again by its path.
         glyphs: names, as :meth:`Source.select` gives them.
-        out: the folder, made if need be.
+        out: the folder; it is created if it does not exist.
         spec: how to convert and what to write.
         jobs: worker processes; None takes all cores, 0 does everything in this process.
-        executor: where the work is done instead, such as a :class:`.cluster.ClusterExecutor`; it stays open.
+        executor: used instead of worker processes, such as a :class:`.cluster.ClusterExecutor`; it is not closed.
         restart: remove the files of an earlier run first.
-        observer: called as glyphs get done.
+        observer: called after each chunk of glyphs.
 
     Raises:
         OutputError: the folder cannot be written, or was made with other options and ``restart`` is not given.
@@ -100,14 +100,14 @@ def convert_font(
 def workers_for(
     source: Source, glyphs: Sequence[str], finished: Container[int], spec: RunSpec, jobs: int | None
 ) -> Executor:
-    """Workers, which start while tasks are listed; none if all glyphs are finished."""
+    """Workers, which start while the tasks are listed; none if all glyphs are finished."""
     names = {name for gid, name in enumerate(source.glyph_names) if gid not in finished}
     expected = len(names.intersection(glyphs))
     return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
 def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
-    """Make the folders, and read what an earlier run has finished."""
+    """Make the folders, and read the record of an earlier run."""
     make_folder(out)
     old = None if restart else read_run(out)
     if old is not None:
@@ -141,7 +141,7 @@ def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
 
 
 def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
-    """The job with the curvature scale that its maps share: of the folder's run.json, or computed now."""
+    """The job with the run's curvature scale: from the folder's run.json, or computed now."""
     old = read_run(job.out)
     if old is not None:
         return replace(job, curvature_scale=old["curvature_scale"])
@@ -174,7 +174,7 @@ def convert_tasks(
 
 
 def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:
-    """Write the manifest, count what is in it, and write the gallery's page and tables."""
+    """Write the manifest with the gallery's page and tables, and count its glyphs in the summary."""
     gallery = Gallery(out) if with_gallery else None
     with finish(out, record) as lines:
         for gid, line in lines:
@@ -187,6 +187,6 @@ def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) ->
 
 
 def _noted(line: bytes) -> Note:
-    """The note on a glyph that an earlier run has done."""
+    """The note on a glyph converted in an earlier run."""
     entry = json.loads(line)
     return entry["glyph"], entry["status"], "", facts_of(columns_of(entry["contours"]))

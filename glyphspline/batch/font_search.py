@@ -13,19 +13,19 @@ from ..errors import GlyphsplineError
 from .files import LONGEST_NAME
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
-"""What in a folder is taken for a font; a file that is named itself is tried whatever its suffix."""
+"""Suffixes of fonts in a folder. A file given by its own name may have any suffix."""
 
 
 def find_fonts(inputs: Iterable[str]) -> list[Path]:
-    """The font files that are meant, each once, in the order of their paths.
+    """The font files of the inputs, each once, sorted by path.
 
     Args:
         inputs: files, UFO folders, other folders (searched to the bottom), globs (``**`` too), and ``@list``: a text
             file with one of these a line, relative to where the command was called; empty lines and lines with ``#``
-            are passed over.
+            are ignored.
 
     Raises:
-        GlyphsplineError: an input that is not there, or a list that cannot be read.
+        GlyphsplineError: an input does not exist, or a list cannot be read.
     """
     return sorted({path for item in inputs for path in _found(item)})
 
@@ -66,7 +66,7 @@ def _listed(path: Path) -> list[str]:
 
 
 def folders_for(fonts: Iterable[Path]) -> list[str]:
-    """A folder name for each font, made of its file name; no two are alike without regard to case."""
+    """A folder name for each font from its file name; the names differ in more than case."""
     taken: set[str] = set()
     found = []
     for font in fonts:

@@ -1,4 +1,4 @@
-"""The gallery of folders that runs have written: one run, or several side by side."""
+"""The gallery of one or several finished runs."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ _PATH = re.compile(r"[MLQCZlqc0-9 .e+-]*")
 
 
 def write_gallery(folder: Path, font: Path | None = None) -> None:
-    """Write ``index.html`` from what runs have left in a folder, or in the folders below it.
+    """Write ``index.html`` for a run's folder, or for all runs in the folders below it.
 
-    Of a run without the format "gallery" the results are read from its drawings, and the source outlines from its
-    font; polygons and control polygons are not in any of its files.
+    For a run without the format "gallery" the results are read from its drawings and the source outlines from its
+    font; its gallery shows no polygons.
 
     Args:
         folder: of one run, or of several.
-        font: the font of a run; None: the file of its name in the current folder, in the run's or in the one above, if
-            it is the same to the byte. Without it such a gallery shows the results alone.
+        font: the font of a run. By default the file of its name in the current folder, in the run's or its parent, if
+            the bytes are the same. Without a font such a gallery shows only the results.
 
     Raises:
         OutputError: there is no finished run, or one that cannot be read; or ``font`` is not the run's.
@@ -54,7 +54,7 @@ def _write_one(folder: Path, font: Path | None) -> None:
 
 
 def _with_drawings(folder: Path, run: Mapping[str, Any], font: Path | None) -> Iterator[dict[str, Any]]:
-    """The entries of a run's manifest. Data files of glyphs that have none are written."""
+    """The entries of a run's manifest, after writing the data files of glyphs that have none."""
     source: Source | None = None
     searched = False
     for entry in entries_of(folder):
@@ -75,7 +75,7 @@ def _with_drawings(folder: Path, run: Mapping[str, Any], font: Path | None) -> I
 
 
 def _font_of(folder: Path, run: Mapping[str, Any], given: Path | None) -> Source | None:
-    """The font of a run, known by the checksum of its bytes; None if it cannot be found."""
+    """The font of a run, identified by its checksum; None if it is not found."""
     facts = run.get("font", {})
     name = Path(str(facts.get("file", ""))).name
     for path in [given] if given else [place / name for place in (Path(), folder, folder.parent)]:
@@ -93,7 +93,7 @@ def _font_of(folder: Path, run: Mapping[str, Any], given: Path | None) -> Source
 
 
 def result_path(folder: Path, files: Mapping[str, str]) -> str:
-    """Path data of a result, from its drawing or its map; "" if neither can be read or holds any."""
+    """Path data of a result from its drawing or its map; "" if neither has any."""
     for kind in ("svg", "curvature"):
         if kind not in files:
             continue

@@ -1,8 +1,7 @@
-"""What the process that hands out a run's glyphs and the workers exchange."""
+"""The messages between the process that schedules a run and its workers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -15,7 +14,7 @@ from .summary import NO_FACTS, Facts
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker needs to know of a run: how to open the source, and what to do with its glyphs.
+    """A run as a worker needs it: how to open the source, and how to convert its glyphs.
 
     ``is_font`` says that the source is a font file, whose outlines are read in bulk.
     """
@@ -40,11 +39,11 @@ class Task(NamedTuple):
 
 
 class Done(NamedTuple):
-    """One glyph, finished.
+    """A finished glyph.
 
     Attributes:
-        line: its line of the journal. seconds: its share of the time that its batch took.
-        facts: of its measures, for the summary. row: of the gallery's table; "" where it is still to be made.
+        line: of the journal. seconds: its share of the time of its batch.
+        facts: for the summary. row: of the gallery's table; "" if not made yet.
     """
 
     gid: int
@@ -57,13 +56,6 @@ class Done(NamedTuple):
 
 
 def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
-    """A glyph that could not be converted, or whose worker was lost."""
+    """The message for a glyph that could not be converted, or whose worker was lost."""
     line = manifest_line(task.name, task.gid, task.unicodes, None, "failed", "", "", error)
     return Done(task.gid, task.name, "failed", journal_line((), line), seconds, NO_FACTS, "")
-
-
-def finished(
-    task: Task, status: str, line: str, sizes: Sequence[int], seconds: float, facts: Facts, row: str
-) -> Done:  # fmt: skip
-    """A glyph that was converted: ``line`` of the manifest, and the sizes of its files."""
-    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, facts, row)

@@ -1,11 +1,11 @@
-"""The manifest and its journal: what is finished, in what order, and how a run finds out after an interruption.
+"""The manifest and its journal, by which an interrupted run is resumed.
 
-While a run is under way, each finished glyph is a line of the journal, in any order: the sizes of its files, a tab,
-its manifest line. At the end the manifest is written whole, in glyph index order, and the journal goes. A line that
-was cut off, or whose files are not there in those sizes, counts as not written.
+During a run each finished glyph appends a line to the journal, in any order: the sizes of its files, a tab, its
+manifest line. At the end the manifest is written in glyph index order, and the journal is removed. A truncated line, or
+one whose files are missing or differ in size, is ignored.
 
-Nothing waits for the disk but ``run.json`` and, at the end, the manifest and ``SIZES``, which has the sizes of the
-files of each of its glyphs. So a power cut may take what the system had not stored yet, and the sizes tell.
+Only ``run.json`` and, at the end, the manifest and ``SIZES`` are synced to the disk. A power cut may lose other files;
+``SIZES`` has the sizes of the files of each glyph of the manifest, by which such a loss is found.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import OutputError
-from .files import PARTIAL, sizes
+from .files import O_BINARY, PARTIAL, sizes, writing
 from .job import Done
 from .spec import SUFFIXES
 from .summary import Facts, Summary
@@ -29,20 +29,20 @@ MANIFEST = "manifest.jsonl"
 JOURNAL = ".journal.jsonl"
 SIZES = ".sizes.txt"
 
-
 _SIZES_LINE = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
 
 Note = tuple[str, str, str, Facts]
-"""Of a glyph done now: its name, its status, its row of the gallery's table, and its facts."""
+"""Name, status, row of the gallery's table and facts of a glyph converted in this run."""
 
 
 @dataclass
 class Record:
-    """Where the lines of finished glyphs are: for each glyph index a file and an offset in it.
+    """An index of finished glyphs; their lines stay on disk.
 
-    Only this is held in memory, not the lines, and ``counts``: the summary of the manifest as it was found. Of glyphs
-    done now there is ``notes``: what is in their lines for table and summary, so that those need not be read again.
-    ``sizes`` are those of the files of glyphs that the manifest has, as the journal writes them.
+    Attributes:
+        where: glyph index to the file and the offset of its line. failed: indices of glyphs that failed.
+        counts: summary of an earlier run's lines. notes: on glyphs converted in this run.
+        sizes: of the files of each glyph of the manifest, in the journal's format.
     """
 
     where: dict[int, tuple[str, int]] = field(default_factory=dict)
@@ -52,12 +52,12 @@ class Record:
     sizes: dict[int, bytes] = field(default_factory=dict)
 
     def finished(self) -> set[int]:
-        """Glyphs that need not be done again. Those that failed are tried again: the cause may be gone."""
+        """Glyphs that are not converted again. Glyphs that failed are: the cause may be gone."""
         return self.where.keys() - self.failed
 
 
 def read_record(out: Path) -> Record:
-    """What an earlier run has finished in a folder, by its manifest and its journal."""
+    """Read the record of an earlier run from the manifest and journal of a folder."""
     record = Record(sizes=_known_sizes(out / SIZES))
     present = {name: sizes(out / name) for name in SUFFIXES}
     for name in (MANIFEST, JOURNAL):
@@ -75,7 +75,7 @@ def read_record(out: Path) -> Record:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[int] | None, Any]]:
-    """Offset, file sizes (None in a manifest) and content of each whole line of a manifest or journal."""
+    """Offset, file sizes (None in a manifest) and parsed content of each complete line of a manifest or journal."""
     try:
         with open(path, "rb") as file:
             offset = 0
@@ -85,14 +85,14 @@ def _lines(path: Path) -> Iterator[tuple[int, list[int] | None, Any]]:
                     if line.endswith(b"\n"):
                         yield offset, _numbers(head) if tab else None, json.loads(text)
                 except ValueError:
-                    pass  # a line that was cut off and then continued by the next run
+                    pass  # a truncated line that the next run continued
                 offset += len(line)
     except FileNotFoundError:
         return
 
 
 def _known_sizes(path: Path) -> dict[int, bytes]:
-    """What ``SIZES`` has, by glyph index; nothing of lines that are not as they should be."""
+    """The content of ``SIZES`` by glyph index; malformed lines are ignored."""
     try:
         found = map(_SIZES_LINE.fullmatch, path.read_bytes().splitlines())
     except FileNotFoundError:
@@ -109,7 +109,7 @@ def _is_entry(entry: Any) -> bool:
 
 
 def _written(out: Path, files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
-    """Whether all files of an entry are there, and as long as they were written, or not empty if that is not known."""
+    """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None."""
     there = [present.get(folder, {}).get(name) for folder, _, name in (path.rpartition("/") for path in files.values())]
     if not (all(there) if lengths is None else there == lengths):
         return False
@@ -117,7 +117,7 @@ def _written(out: Path, files: dict[str, str], lengths: list[int] | None, presen
 
 
 def _stored(path: str, size: int) -> bool:
-    """Whether a file's end is there: what was not stored may be zeros after a power cut. No file of ours ends so."""
+    """Whether a file's last byte is not 0. Data lost in a power cut may read as zeros; no output file ends with 0."""
     try:
         with open(path, "rb", buffering=0) as file:
             file.seek(size - 1)
@@ -127,7 +127,7 @@ def _stored(path: str, size: int) -> bool:
 
 
 def remove_written(out: Path) -> None:
-    """Remove the files that the manifest and journal of an earlier run name, and none outside its own folders."""
+    """Remove the files listed in the manifest and journal of an earlier run, only inside the folders of formats."""
     for name in (MANIFEST, JOURNAL):
         for _, _, entry in _lines(out / name):
             for path in entry["files"].values() if _is_entry(entry) else ():
@@ -137,18 +137,16 @@ def remove_written(out: Path) -> None:
 
 
 class Journal:
-    """The journal, open for appending. A link in its place is not followed."""
+    """The journal, open for appending. A symbolic link of its name is not followed."""
 
     def __init__(self, out: Path, record: Record) -> None:
-        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
         self.path = out / JOURNAL
         self.record = record
-        try:
+        with writing(self.path):
             self._file = open(os.open(self.path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
             self._offset = os.fstat(self._file.fileno()).st_size
-            self._write(b"\n")  # ends a line that was cut off
-        except OSError as error:
-            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(self.path)) from error
+            self._write(b"\n")  # ends a truncated line
 
     def _write(self, data: bytes) -> None:
         view = memoryview(data)
@@ -164,13 +162,11 @@ class Journal:
             self.record.where[glyph.gid] = (JOURNAL, at)
             self.record.notes[glyph.gid] = (glyph.name, glyph.status, glyph.row, glyph.facts)
             at += len(glyph.line)
-        try:
+        with writing(self.path):
             self._write(b"".join([glyph.line for glyph in done]))
-        except OSError as error:
-            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(self.path)) from error
 
     def close(self) -> None:
-        """Close the file; it stays."""
+        """Close the file."""
         self._file.close()
 
 
@@ -193,25 +189,22 @@ def entries_of(out: Path) -> Iterator[dict[str, Any]]:
 
 @contextmanager
 def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
-    """Write manifest and sizes in glyph index order, giving each glyph's index and line as it passes.
+    """Write manifest and sizes in glyph index order, yielding each glyph's index and line.
 
-    It gets its name, and the journal goes, when the block is left, with all lines taken and no error: what else is to
-    be written at the end of a run is written in the block, or it would never be made up for.
+    The manifest gets its name, and the journal is removed, when the block ends without an error. All other files of
+    the end of a run have to be written inside the block; otherwise an interruption would leave them missing.
     """
     partial, partial_sizes = (out / f".{name.strip('.')}-{os.getpid()}{PARTIAL}" for name in (MANIFEST, SIZES))
     try:
-        with open(partial, "xb") as manifest, open(partial_sizes, "xb") as lengths:
-            yield _written_to(manifest, lengths, out, record)
-            for file in (manifest, lengths):
-                file.flush()
-                os.fsync(file.fileno())
-        os.replace(partial_sizes, out / SIZES)
-        os.replace(partial, out / MANIFEST)
-        (out / JOURNAL).unlink(missing_ok=True)
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(out / MANIFEST)) from error
+        with writing(out / MANIFEST):
+            with open(partial, "xb") as manifest, open(partial_sizes, "xb") as lengths:
+                yield _written_to(manifest, lengths, out, record)
+                for file in (manifest, lengths):
+                    file.flush()
+                    os.fsync(file.fileno())
+            os.replace(partial_sizes, out / SIZES)
+            os.replace(partial, out / MANIFEST)
+            (out / JOURNAL).unlink(missing_ok=True)
     finally:
         for path in (partial, partial_sizes):
             path.unlink(missing_ok=True)

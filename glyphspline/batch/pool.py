@@ -1,11 +1,10 @@
 """Worker processes that can be killed and replaced, behind the interface of ``concurrent.futures``.
 
-The pools of the standard library break when one process dies, and cannot end one that hangs. Here a process that dies,
-or gives no sign of life for too long, costs only its current call: the call's future gets the error, and a new process
-replaces the old one.
+The pools of the standard library break when one process dies, and cannot kill one that hangs. Here only the current
+call of such a process fails: its future gets the error, and a new process replaces the old one.
 
-A busy process already has its next call if enough are queued. Otherwise it would wait for a millisecond between two
-calls, the time of two or three glyphs.
+A busy process gets its next call in advance if enough are queued. Otherwise it would wait a millisecond between calls,
+the time of two or three glyphs.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from typing import Any
 from ..errors import GlyphsplineError
 
 POLL = 0.25
-"""Seconds between looks for processes that have hung."""
+"""Seconds between checks for hung processes."""
 
 SMALL = 32_768
 """Bytes of a call that a pipe buffers: sending them does not block."""
@@ -42,11 +41,11 @@ class WorkerLostError(GlyphsplineError):
 
 
 class TimeLimitError(GlyphsplineError):
-    """The process showed no sign of life for longer than allowed, and was killed."""
+    """The process gave no sign of life within the time limit and was killed."""
 
 
 class WorkerStartError(GlyphsplineError):
-    """A process died before its first call, as every other would."""
+    """A process died before its first call; others would too."""
 
 
 _last_sign: Any = None
@@ -61,8 +60,8 @@ def sign_of_life() -> None:
 def start_forkserver(preload: Sequence[str]) -> None:
     """Start the process from which workers are forked, if it does not run yet, without waiting for its imports.
 
-    It is started with Ctrl-C blocked, and so are its workers: the signal is for this process, and an import that it
-    interrupts would print a traceback.
+    SIGINT is blocked in it and in its workers: only this process handles Ctrl-C. An interrupted import would print a
+    traceback.
     """
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -76,14 +75,14 @@ def start_forkserver(preload: Sequence[str]) -> None:
 def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
     """The main loop of a worker process: receive calls and send results until the pipe is closed.
 
-    No call arrives, and no time limit counts, before everything is imported, which usually happened before the fork.
+    Calls and time limits begin after all imports, which usually happen before the fork.
     """
     global _last_sign
     _last_sign = sign
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
     for name in preload:
         import_module(name)
-    gc.freeze()  # the garbage collector need not scan what was imported, nor copy its pages
+    gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:
@@ -131,7 +130,7 @@ class WorkerPool(Executor):
         seconds: time limit between signs of life.
         preload: modules to import before the first call: once, in the process from which the workers are forked. If
             that runs already, for an earlier pool, each worker imports what it lacks.
-        expected: number of calls that will certainly come: processes for them start at once.
+        expected: number of calls known to come; processes for them start at once.
     """
 
     def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
@@ -188,7 +187,7 @@ class WorkerPool(Executor):
             self._fail_all(WorkerLostError("the pool was closed"))
 
     def _assign(self) -> None:
-        """Send calls to idle processes; then, while there are enough for all, the next calls to busy ones."""
+        """Send calls to idle processes; then, if enough are queued, send busy ones their next calls."""
         ready = [worker for worker in self._workers if worker.ready]
         for worker in ready:
             if not worker.has:

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from .job import Job, Task
 
 LARGEST_CHUNK = 40
-"""Glyphs handed to a worker at once: enough to make the exchange cheap, few enough for a smooth progress bar."""
+"""Maximum number of glyphs in a call: enough to make the exchange cheap, few enough for a smooth progress bar."""
 
 AHEAD = 4
-"""Chunks in flight for each worker, so that none waits: two that it has, and two in the queue."""
+"""Chunks in flight for each worker, so that none waits: two in the worker, and two in the queue."""
 
 TRIALS = 3
 """Attempts at a glyph whose worker died: the glyph need not be the cause."""
@@ -48,7 +48,7 @@ def workers(
     Args:
         seconds: time limit of a batch, after which its worker is killed.
         options, formats: of the run; the compiled code that they need is loaded before the first call.
-        expected: number of calls that will certainly come.
+        expected: number of calls known to come.
     """
     if jobs == 0:
         return InProcess()
@@ -75,8 +75,8 @@ def spread(
 ) -> Iterator[tuple[Sequence[Task], Result | WorkerLostError | TimeLimitError]]:
     """Call a function on chunks of glyphs; yield each chunk with its result as it completes.
 
-    Only a few chunks are in flight at a time. If a worker is lost or killed, each glyph of its chunk is tried on its
-    own, so that only the glyph to blame ends with an error.
+    Only a few chunks are in flight at a time. If a worker is lost or killed, the glyphs of its chunk are
+    tried one by one, so that only the glyph that causes it fails.
     """
     again: deque[tuple[Sequence[Task], int]] = deque()
     fresh = ((chunk, 1) for chunk in chunks)

@@ -28,14 +28,14 @@ SUFFIXES = {
     "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", GALLERY: SUFFIX,
     RESULTS: ".json",
 }  # fmt: skip
-"""Formats of one file a glyph, each in a folder of its name. "source" belongs to the gallery; formats of the whole font
-are made from "results"."""
+"""Formats with one file a glyph, each in a folder of its name. "source" is part of the gallery; formats with one file a
+font are made from "results"."""
 
 WHOLE = ("ufo", "otf", "ttf", "parquet")
-"""Formats of one file a font."""
+"""Formats with one file a font."""
 
 FORMATS = (*(name for name in SUFFIXES if name not in ("source", RESULTS)), *WHOLE)
-"""Formats to ask for."""
+"""Formats that a run can have."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class RunSpec:
 
     Attributes:
         options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
-        limits: for each glyph; they decide only what fails, so they are no part of ``run.json``.
+        limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
     """
 
     options: Options = field(default_factory=Options)
@@ -85,19 +85,19 @@ class RunSpec:
 
     @property
     def folders(self) -> tuple[str, ...]:
-        """The folders written to: one a format of single glyphs, and those that other formats need."""
+        """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
         return (*own, *(["source"] if GALLERY in own else []), *([RESULTS] if self.whole else []))
 
     @property
     def whole(self) -> tuple[str, ...]:
-        """The formats of one file a font among those asked for."""
+        """The run's formats with one file a font."""
         return tuple(name for name in self.formats if name in WHOLE)
 
     def fitting(self, units_per_em: float) -> Options:
-        """The options to convert with: where a font is to be written, its rounding is taken out of the tolerance."""
+        """The options of the conversion. If a font is written, its rounding is subtracted from the tolerance."""
         flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
-        if not flavours or self.options.step is not None or self.options.count is not None:
+        if not flavours or self.options.is_fixed:
             return self.options
         from ..writers.font.font_glyphs import fitting_tolerance
 
@@ -106,7 +106,7 @@ class RunSpec:
 
 
 def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> dict[str, Any]:
-    """The content of ``run.json``: nothing in it depends on the machine, the clock or the number of workers."""
+    """The content of ``run.json``, independent of the machine, the clock and the number of workers."""
     metrics = asdict(source.metrics)
     return {
         "glyphspline": __version__,

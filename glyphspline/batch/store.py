@@ -1,4 +1,4 @@
-"""A glyph's whole result as JSON text and back, to the last bit: numbers that arrays hold are kept as their bytes."""
+"""Exact serialisation of a result as JSON; arrays are stored as their bytes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KINDS: dict[str, type] = {
     kind.__name__: kind
     for kind in (Contour, ContourResult, FontMetrics, GlyphResult, Interpolation, Measures, Options, Outline, Spline)
 }
-"""All that a result is made of; nothing else is ever made of a file's content."""
+"""The classes in a result. Reading a file creates objects of these classes only."""
 
 TYPES = {"float64": "<f8", "int64": "<i8"}
 

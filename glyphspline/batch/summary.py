@@ -12,14 +12,13 @@ from ..fitting.results import MeasureColumns
 from .entry import columns_of
 
 SHOWN = 10
-"""How many of the worst, the slowest and the failed are kept by name; a CJK face may have thousands."""
+"""Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
 
 SLOW = 0.5
-"""Seconds from which the slowest glyphs are worth a line."""
-
+"""Seconds from which the slowest glyphs are listed."""
 
 Facts = tuple[bool, bool, float | None]
-"""Of a glyph: whether a contour did not converge, whether one is outside the tolerance, the largest deviation."""
+"""For a glyph: whether a contour did not converge, whether one is outside the tolerance, the largest deviation."""
 
 NO_FACTS: Facts = (False, False, None)
 
@@ -34,13 +33,13 @@ def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) 
 
 @dataclass
 class Summary:
-    """Counts over a whole folder, and the extremes of it by glyph name.
+    """Counts of a folder's glyphs, and the extreme ones by name.
 
     Attributes:
         statuses: glyphs by status. not_converged, outside_tolerance: glyphs with such a contour.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
-        slowest: (seconds, glyph) of those done now. done: glyphs done now; the others were done by an earlier run.
-        remarks: on files of the whole font.
+        slowest: (seconds, glyph). done: number of glyphs converted in this run, not in an earlier one.
+        remarks: on formats with one file a font.
     """
 
     statuses: Counter[str] = field(default_factory=Counter)
@@ -68,16 +67,16 @@ class Summary:
             keep_largest(self.worst, (deviation, glyph))
 
     def time(self, seconds: float, glyph: str) -> None:
-        """Note how long a glyph took."""
+        """Count a glyph converted in this run, and its time."""
         self.done += 1
         keep_largest(self.slowest, (seconds, glyph))
 
     def facts(self) -> dict[str, Any]:
-        """The summary as JSON has it."""
+        """The summary as JSON data."""
         return {**asdict(self), "statuses": dict(self.statuses)}
 
     def lines(self) -> Iterator[str]:
-        """The summary for people."""
+        """The summary as lines of text."""
         counts = ", ".join(f"{self.statuses[status]} {status}" for status in ("ok", "empty", "failed"))
         yield f"{counts}; {self.done} done now"
         if self.not_converged:
@@ -96,11 +95,11 @@ class Summary:
 
     @property
     def failed(self) -> int:
-        """How many glyphs failed."""
+        """Number of glyphs that failed."""
         return self.statuses["failed"]
 
 
 def keep_largest(items: list[tuple[float, str]], item: tuple[float, str]) -> None:
-    """Put an item in its place in a list of the largest, largest first, that grows no longer than ``SHOWN``."""
+    """Insert an item into a descending list of at most ``SHOWN`` largest items."""
     if len(items) < SHOWN or item[0] > items[-1][0]:
         items[:] = heapq.nlargest(SHOWN, [*items, item], key=lambda each: each[0])

@@ -1,4 +1,4 @@
-"""Formats of one file a font, written at the end of a run from the stored results of its glyphs, one by one."""
+"""Formats with one file a font, written at the end of a run from the stored results of its glyphs."""
 
 from __future__ import annotations
 
@@ -11,33 +11,29 @@ from ..errors import OutputError
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
-from .files import PARTIAL, write_whole
+from .files import PARTIAL, write_whole, writing
 from .manifest import entries_of
 from .spec import RESULTS, RunSpec
 from .store import from_text
 
 
 def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
-    """Write the formats asked for of all glyphs in the folder's manifest; returns remarks for people.
+    """Write these formats for all glyphs of the folder's manifest; returns remarks for the summary.
 
     Raises:
-        OutputError: a file cannot be written, or a stored result not be read.
+        OutputError: a file cannot be written, or a stored result cannot be read.
         GlyphsplineError: the source cannot become such a font.
     """
     remarks = []
     for name in spec.whole:
         path = out / f"{file_stem(source)}.{name}"
-        try:
+        with writing(path):
             remarks += WRITERS[name](source, stored(source, out, spec.options), path, spec)
-        except OutputError:
-            raise
-        except OSError as error:
-            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
     return remarks
 
 
 def missing(source: Source, out: Path, spec: RunSpec) -> bool:
-    """Whether any of the files is not there."""
+    """Whether any of the files does not exist."""
     return any(not (out / f"{file_stem(source)}.{name}").exists() for name in spec.whole)
 
 
@@ -47,7 +43,7 @@ def file_stem(source: Source) -> str:
 
 
 def stored(source: Source, out: Path, options: Options) -> Iterator[GlyphResult]:
-    """The results of a finished run in glyph index order, empty glyphs too; those that failed are left out."""
+    """The results of a finished run in glyph index order, with empty glyphs and without failed ones."""
     for entry in entries_of(out):
         file = entry["files"].get(RESULTS)
         if entry["status"] == "empty":
@@ -104,11 +100,7 @@ WRITERS: dict[str, Callable[[Source, Iterator[GlyphResult], Path, RunSpec], list
 
 
 def check_possible(spec: RunSpec) -> None:
-    """Find out before the run, not after it, that a library is not installed.
-
-    Raises:
-        GlyphsplineError: it is not.
-    """
+    """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
     if "parquet" in spec.whole:
         from ..writers.parquet import arrow
 

@@ -1,4 +1,4 @@
-"""What a worker does, in batches: tasks to outlines to results to files and lines of the manifest."""
+"""The work of a worker, in batches: tasks to outlines to results to files and lines of the manifest."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from ..writers.svg.curvature_map import combs, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.source_drawing import SourceData, source_data, source_document
-from .entry import contour_texts, manifest_line
+from .entry import contour_texts, journal_line, manifest_line
 from .files import write_whole
-from .job import Done, Job, Task, failed, finished
+from .job import Done, Job, Task, failed
 from .pool import sign_of_life
 from .spec import RESULTS, SUFFIXES, Limits
 from .store import to_text
@@ -37,8 +37,8 @@ from .summary import Facts, facts_of
 Location = tuple[tuple[str, float], ...]
 
 BATCH = 40_000
-"""Segments of outlines, and vertices, that are converted at once: some 40 glyphs of a CJK face. The time limit and the
-memory of a worker are for one batch."""
+"""Segments and vertices converted at once: some 40 glyphs of a CJK face. A worker's time limit and memory are for one
+batch."""
 
 
 class Read(NamedTuple):
@@ -50,10 +50,10 @@ class Read(NamedTuple):
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
-    """Convert and write glyphs. A glyph that cannot be converted fails alone.
+    """Convert and write glyphs. A glyph that cannot be converted does not affect the others.
 
     Raises:
-        OutputError: the output folder cannot be written to, which would stop every other glyph, too.
+        OutputError: the output folder cannot be written to; every other glyph would fail too.
     """
     read, done = readable(job, tasks)
     for batch in batches(read):
@@ -63,7 +63,7 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
 
 
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
-    """Combs of a few glyphs, for the scale that all curvature maps of the run share; glyphs that fail are left out."""
+    """Combs of a few glyphs, for the run's curvature scale; glyphs that fail are skipped."""
     found = []
     for glyph in readable(job, tasks)[0]:
         sign_of_life()
@@ -76,7 +76,7 @@ def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
 
 
 def readable(job: Job, tasks: Sequence[Task]) -> tuple[list[Read], list[Done]]:
-    """The glyphs whose outlines can be read and are not too large, and those that fail here."""
+    """Read glyphs; those whose outlines cannot be read or are too large fail."""
     read, done = [], []
     found = outlines(job, tasks)
     good = [outline for outline in found if isinstance(outline, Outline)]
@@ -92,7 +92,7 @@ def readable(job: Job, tasks: Sequence[Task]) -> tuple[list[Read], list[Done]]:
 
 
 def outlines(job: Job, tasks: Sequence[Task]) -> Sequence[Outline | GlyphsplineError]:
-    """The glyphs' outlines, or what is wrong with them."""
+    """The outline of each glyph, or its error."""
     if job.is_font:
         reader = bulk_reader(job.path, job.face_index, job.location)
         return reader.outlines([(task.name, task.gid, task.unicodes) for task in tasks], job.metrics)
@@ -102,7 +102,7 @@ def outlines(job: Job, tasks: Sequence[Task]) -> Sequence[Outline | GlyphsplineE
 
 @lru_cache(maxsize=1)
 def bulk_reader(path: Path, face_index: int, location: Location) -> BulkReader:
-    """The reader of a font, opened once a process. It is much quicker to open than the font."""
+    """The reader of a font, opened once a process; it opens much faster than the font."""
     return BulkReader(path, face_index, location)
 
 
@@ -127,7 +127,7 @@ def cost_of(outline: Outline, vertices: float, limits: Limits) -> float:
 
 
 def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
-    """About how many vertices ``step`` or ``count`` ask for: control polygons are longer than their contours."""
+    """Estimated number of vertices for ``step`` or ``count``, from the lengths of control polygons."""
     if options.step is None or not outlines:
         return [float(len(outline.contours) * (options.count or 0)) for outline in outlines]
     points, _, _, starts = joined([outline.arrays for outline in outlines])
@@ -154,7 +154,7 @@ def batches(read: Sequence[Read]) -> Iterator[list[Read]]:
 
 
 def convert_and_write(job: Job, batch: Sequence[Read]) -> list[Done]:
-    """Convert a batch and write its files; after an unforeseen error, each glyph on its own."""
+    """Convert a batch and write its files; after an unexpected error, glyph by glyph."""
     started = time.perf_counter()
     try:
         results = converted(job, batch)
@@ -182,10 +182,10 @@ def converted(job: Job, batch: Sequence[Read]) -> list[GlyphResult | Glyphspline
 
 
 class Glyph(NamedTuple):
-    """What the writers take.
+    """The input of the writers.
 
     Attributes:
-        path: of the result. source: None where no format shows the source.
+        path: of the result. source: None without a gallery.
         measures: of the contours, as JSON without the brackets. facts: of these, for the summary.
     """
 
@@ -208,7 +208,7 @@ def drawn(job: Job, results: Sequence[GlyphResult]) -> list[Glyph]:
 
 
 def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seconds: float) -> Done:
-    """Write a glyph's files, none if it is empty. ``seconds``: what it has taken so far."""
+    """Write a glyph's files, none if it is empty. ``seconds``: time already spent on it."""
     started = time.perf_counter()
     empty = not glyph.result.contours
     files = {} if empty else {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in formats}
@@ -217,11 +217,11 @@ def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seco
     line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures)
     row = line_row(line) if GALLERY in formats else ""
     seconds += time.perf_counter() - started
-    return finished(task, status, line, sizes, seconds, glyph.facts, row)
+    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, glyph.facts, row)
 
 
 def reason(error: Exception) -> str:
-    """What went wrong, without the file's path, which is no part of a manifest."""
+    """The message of an error without the file's path, which may not be in a manifest."""
     if isinstance(error, GlyphsplineError):
         return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
     if isinstance(error, MemoryError):
@@ -229,53 +229,36 @@ def reason(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-Files = dict[str, str]
-
-
-def _source(job: Job, glyph: Glyph, files: Files) -> bytes:
+def _source(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
     return source_document(glyph.result, glyph.source)
 
 
-def _svg(job: Job, glyph: Glyph, files: Files) -> bytes:
-    return svg_document(glyph.result, glyph.path, job.spec.view_box)
-
-
-def _curvature(job: Job, glyph: Glyph, files: Files) -> bytes:
+def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert job.curvature_scale is not None
     return map_document(glyph.result, glyph.path, job.curvature_scale)
 
 
-def _png(job: Job, glyph: Glyph, files: Files) -> bytes:
-    from ..writers.figures.raster import to_png  # matplotlib, only when asked for
+def _raster(job: Job, glyph: Glyph, kind: str) -> bytes:
+    from ..writers.figures import raster  # imports matplotlib
 
-    return to_png(glyph.result, scale=job.curvature_scale)
-
-
-def _pdf(job: Job, glyph: Glyph, files: Files) -> bytes:
-    from ..writers.figures.raster import to_pdf
-
-    return to_pdf(glyph.result, scale=job.curvature_scale)
+    return (raster.to_png if kind == "png" else raster.to_pdf)(glyph.result, scale=job.curvature_scale)
 
 
-def _gallery(job: Job, glyph: Glyph, files: Files) -> bytes:
+def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
     source, polygon, control = (part.text for part in glyph.source)
     shown = {"source": source, "result": glyph.path.text, "polygon": polygon, "control": control}
     return glyph_text(shown, files, glyph.measures)
 
 
-def _results(job: Job, glyph: Glyph, files: Files) -> str:
-    return to_text(glyph.result)
-
-
-WRITERS: dict[str, Callable[[Job, Glyph, Files], str | bytes]] = {
+WRITERS: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
     "source": _source,
-    "svg": _svg,
+    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.view_box),
     "curvature": _curvature,
-    "png": _png,
-    "pdf": _pdf,
+    "png": lambda job, glyph, files: _raster(job, glyph, "png"),
+    "pdf": lambda job, glyph, files: _raster(job, glyph, "pdf"),
     GALLERY: _gallery,
-    RESULTS: _results,
+    RESULTS: lambda job, glyph, files: to_text(glyph.result),
 }
-"""The formats of one file a glyph, in the order in which they are written and listed."""
+"""The formats with one file a glyph, in the order in which they are written and listed."""

@@ -1,4 +1,4 @@
-"""The shell: ``glyphspline convert | atlas | info | report | view | demo``."""
+"""The command line: ``glyphspline convert | atlas | info | report | view | demo``."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ __all__ = ["app", "main"]
 
 
 def main() -> None:
-    """The command ``glyphspline``. Its options are imported now: workers, which import what they were started by
-    once more, have no use for them.
-    """
+    """Run the command. Imports happen here because worker processes import this module again without needing them."""
     from . import commands
 
     commands.main()

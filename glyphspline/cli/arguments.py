@@ -1,49 +1,21 @@
-"""The options of the shell, one name each, and how they become :class:`Options`, a selection and a location."""
+"""The options of the command line, and their conversion to :class:`Options`, a selection and a location."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..fitting.options import Corners, Effort, Options
+from ..interpolation.method import Fallback
+from ..writers.svg.document import ViewBox
+
 if TYPE_CHECKING:
     from ..batch import RunSpec
     from ..readers import Selection, Source
-
-# Values of an option are what `--help` shows, so the members of these are lower-case.
-
-
-class Corners(str, Enum):  # noqa: UP042 - typer shows the values of this kind
-    """What becomes of corners."""
-
-    smooth = "smooth"
-    sharp = "sharp"
-
-
-class Effort(str, Enum):  # noqa: UP042
-    """How hard to look for few vertices."""
-
-    fast = "fast"
-    best = "best"
-
-
-class Fallback(str, Enum):  # noqa: UP042
-    """What to do where Lemma 2 has no interval."""
-
-    knot = "knot"
-    peak = "peak"
-
-
-class View(str, Enum):  # noqa: UP042
-    """What region a drawing shows."""
-
-    em = "em"
-    metrics = "metrics"
-    ink = "ink"
-
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
 
@@ -80,7 +52,7 @@ Tolerance = Annotated[
 Step = Annotated[float | None, typer.Option("--step", help="Instead: distance between vertices, in font units.")]
 Count = Annotated[int | None, typer.Option("--count", help="Instead: this number of vertices a contour.")]
 HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
-ViewBox = Annotated[View, typer.Option("--view-box", help="Region an SVG drawing shows.")]
+Region = Annotated[ViewBox, typer.Option("--view-box", help="Region an SVG drawing shows.")]
 Precision = Annotated[int, typer.Option("--precision", help="Decimals written, 0 to 9.")]
 RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
 Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
@@ -102,24 +74,21 @@ Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the 
 Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
 
 
-def spec_of(given: Mapping[str, Any]) -> RunSpec:
-    """What the options of a conversion say, by their parameters' names."""
-    from ..batch import RunSpec
-    from ..fitting.options import Options
+def options_of(given: Mapping[str, Any]) -> Options:
+    """The options of a conversion, from a command's arguments by name."""
+    return Options(**{field.name: given[field.name] for field in fields(Options) if field.name in given})
 
-    named = ("variant", "tolerance", "step", "count", "margin", "precision", "measure", "remove_overlaps")
-    options = Options(
-        **{name: given[name] for name in named},
-        corners=given["corners"].value,
-        effort=given["effort"].value,
-        fallback=given["fallback"].value,
-    )
+
+def spec_of(given: Mapping[str, Any]) -> RunSpec:
+    """The options of a run, from a command's arguments by name."""
+    from ..batch import RunSpec
+
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    return RunSpec(options, formats, given["view_box"].value)
+    return RunSpec(options_of(given), formats, given["view_box"])
 
 
 def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:
-    """The glyphs asked for."""
+    """The selected glyphs."""
     from ..errors import GlyphsplineError
 
     text = given["text"]
@@ -132,7 +101,7 @@ def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:
 
 
 def location_of(text: str | None) -> dict[str, float] | str:
-    """``wght=700,wdth=80`` as a dictionary; without ``=`` it is the name of an instance."""
+    """``wght=700,wdth=80`` as a dictionary; text without ``=`` is the name of an instance and returned as it is."""
     from ..errors import GlyphsplineError
 
     if text and "=" not in text:

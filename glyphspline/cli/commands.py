@@ -1,7 +1,4 @@
-"""The shell: ``glyphspline convert | atlas | info | report | view | demo``.
-
-What is heavy is imported by the command that needs it.
-"""
+"""The commands ``glyphspline convert | atlas | info | report | view | demo``; each imports its heavy modules itself."""
 
 from __future__ import annotations
 
@@ -25,10 +22,10 @@ if TYPE_CHECKING:
     from ..readers import Source
 
 PATIENCE = 300.0
-"""Seconds that ``info`` takes at most."""
+"""Time limit of ``info`` in seconds."""
 
 MEMORY = 16 << 30
-"""Bytes of address space a process may have. Compiled code and the stacks of threads take a few of these GB."""
+"""Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
 
 app = typer.Typer(
     help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
@@ -52,13 +49,13 @@ def convert(
     location: opt.Location = None,
     variant: opt.Variant = 2,
     margin: opt.Margin = 0.02,
-    fallback: opt.WhereNone = opt.Fallback.peak,
-    corners: opt.CornerMode = opt.Corners.smooth,
+    fallback: opt.WhereNone = "peak",
+    corners: opt.CornerMode = "smooth",
     tolerance: opt.Tolerance = None,
     step: opt.Step = None,
     count: opt.Count = None,
-    effort: opt.HowHard = opt.Effort.fast,
-    view_box: opt.ViewBox = opt.View.em,
+    effort: opt.HowHard = "fast",
+    view_box: opt.Region = "em",
     precision: opt.Precision = 2,
     remove_overlaps: opt.RemoveOverlaps = False,
     measure: opt.Measure = False,
@@ -96,7 +93,7 @@ def info(
         from ..readers.facts import file_facts
         from .describe import lines_of
 
-        # In a process of its own: a font can be made so that counting its contours takes years.
+        # In a separate process with a time limit: counting the contours of a hostile font can take years.
         with workers(1, PATIENCE) as executor:
             facts = executor.submit(file_facts, font, face_index, opt.location_of(location)).result()
     typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else "\n".join(lines_of(facts)))
@@ -132,17 +129,16 @@ def atlas(
     location: opt.Location = None,
     variant: opt.Variant = 2,
     margin: opt.Margin = 0.02,
-    fallback: opt.WhereNone = opt.Fallback.peak,
-    corners: opt.CornerMode = opt.Corners.smooth,
+    fallback: opt.WhereNone = "peak",
+    corners: opt.CornerMode = "smooth",
     tolerance: opt.Tolerance = None,
     step: opt.Step = None,
     count: opt.Count = None,
-    effort: opt.HowHard = opt.Effort.fast,
+    effort: opt.HowHard = "fast",
     quiet: opt.Quiet = False,
 ) -> None:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours."""
-    unsaid = {"precision": 2, "measure": False, "remove_overlaps": False, "formats": "svg", "view_box": opt.View.em}
-    given = {**locals(), **unsaid}
+    given = dict(locals())
     with errors():
         from ..batch import make_atlas
         from ..readers import open_font
@@ -153,8 +149,8 @@ def atlas(
             stop("none of the glyphs asked for is in the font")
         chosen = None if profiles is None else source.select(text=profiles)
         with progress(quiet) as observer:
-            told = (lambda done, total: observer(done, total, 0)) if observer else None
-            pages, failed = make_atlas(source, names, out, opt.spec_of(given).options, profiles=chosen, observer=told)
+            each = (lambda done, total: observer(done, total, 0)) if observer else None
+            pages, failed = make_atlas(source, names, out, opt.options_of(given), profiles=chosen, observer=each)
         if not quiet:
             say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
     raise typer.Exit(1 if failed else 0)
@@ -173,7 +169,7 @@ def view(
             from ..viewer import serve
         except ImportError as error:
             stop(f"the viewer needs Starlette and uvicorn ({error.name}): pip install 'glyphspline[view]'")
-        serve(font, face_index, port=port, browser=browser, told=lambda address: say(f"{address} (Ctrl-C ends it)"))
+        serve(font, face_index, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
 @app.command()
@@ -226,7 +222,7 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
 @contextmanager
 def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
-    """Where the work is done: in so many processes (None: one a core, 0: this one), or on a cluster."""
+    """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
     if scheduler is not None:
         from ..batch.cluster import ClusterExecutor
 
@@ -250,7 +246,7 @@ def run(
     quiet: bool,
     json_log: bool = False,
 ) -> Summary:
-    """A run with progress on a terminal and a summary at its end."""
+    """Convert glyphs with progress on a terminal, then print the summary."""
     from ..batch import convert_font
 
     with json_lines() if json_log else progress(quiet) as observer:
@@ -311,7 +307,7 @@ def progress(quiet: bool) -> Iterator[Any]:
 
 @contextmanager
 def errors() -> Iterator[None]:
-    """What can go wrong becomes one line on standard error and exit status 2."""
+    """Print an expected error as one line on standard error and exit with status 2."""
     from ..errors import GlyphsplineError
 
     try:
@@ -326,18 +322,18 @@ def errors() -> Iterator[None]:
 
 
 def say(line: str) -> None:
-    """A line for people, on standard error."""
+    """Print a line on standard error."""
     typer.echo(line, err=True)
 
 
 def stop(message: str) -> NoReturn:
-    """End with a message and status 2: the call or the font is unusable."""
+    """Exit with a message and status 2: the call or the font is unusable."""
     say(f"glyphspline: {message}")
     raise typer.Exit(2)
 
 
 def limit_memory() -> None:
-    """Keep this process, and those it starts, from taking the whole machine when a font asks for it."""
+    """Limit the memory of this process and its children, as a hostile font can ask for any amount."""
     try:
         import resource
     except ImportError:  # not on Windows

@@ -1,4 +1,4 @@
-"""What ``glyphspline info`` says of a font file, for people."""
+"""The text output of ``glyphspline info``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 SHOWN = 5
-"""Glyph names in a line."""
+"""Maximum number of glyph names in a line."""
 
 
 def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:

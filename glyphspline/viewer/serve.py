@@ -15,14 +15,19 @@ HOST = "127.0.0.1"
 
 
 def serve(
-    path: Path, face_index: int = 0, *, port: int = 0, browser: bool = True, told: Callable[[str], None] | None = None
+    path: Path,
+    face_index: int = 0,
+    *,
+    port: int = 0,
+    browser: bool = True,
+    announce: Callable[[str], None] | None = None,
 ) -> None:
     """Serve until interrupted.
 
     Args:
         path: the font file. face_index: which font of a collection.
         port: to listen on; 0 takes any free port. browser: open a page in the visitor's browser.
-        told: called with the address once it is known.
+        announce: called with the address once it is known.
 
     Raises:
         FontError: the font cannot be opened. GlyphsplineError: the port is taken.
@@ -39,8 +44,8 @@ def serve(
         port = listener.getsockname()[1]
         app = make_app(path, face_index, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
         address = f"http://{HOST}:{port}/"
-        if told:
-            told(address)
+        if announce:
+            announce(address)
         if browser:
             webbrowser.open(address)
         config = uvicorn.Config(app, log_level="warning", access_log=False, server_header=False, lifespan="off")

@@ -1,7 +1,7 @@
-"""Loads compiled code once, in the process from which workers are forked, instead of in each of them.
+"""Loads compiled code once, in the process from which workers are forked.
 
-Importing a module of this package converts two contours by one mode, and compiles the code that no cache holds yet: a
-cold start happens before the workers' time limits count, and only once.
+Importing a module of this package converts two contours in one mode, which compiles functions that are not cached. This
+happens once, before the workers' time limits begin.
 """
 
 from __future__ import annotations
@@ -25,13 +25,12 @@ def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[st
     """Names of the modules of this package that a run with these options needs; None: nothing is converted."""
     if options is None:
         return []
-    fixed = options.step is not None or options.count is not None
     drawings = ["drawings"] if {"curvature", "gallery"} & set(formats) else []
-    return [f"{__name__}.{name}" for name in ("fixed" if fixed else options.corners, *drawings)]
+    return [f"{__name__}.{name}" for name in ("fixed" if options.is_fixed else options.corners, *drawings)]
 
 
 def converted(options: Options) -> GlyphResult:
-    """A leaf of two cubics that meet in corners, and a square, after all modules of a worker are imported."""
+    """Convert a leaf with two corners and a square, after importing all modules of a worker."""
     from ...readers.opentype.bulk import load_compiled
     from ...writers.svg.document import to_svg
     from .. import worker  # noqa: F401
