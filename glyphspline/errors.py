@@ -80,7 +80,7 @@ def is_whole(value: Any, least: int, largest: int) -> bool:
     return _is_a(Integral, value) and bool(least <= value <= largest)
 
 
-def is_number(value: Any, least: float, largest: float = sys.float_info.max) -> bool:
+def is_number(value: Any, least: float = -sys.float_info.max, largest: float = sys.float_info.max) -> bool:
     """Whether a value is a finite number from ``least`` to ``largest``. A bool is not."""
     return _is_a(Real, value) and bool(least <= value <= largest)
 

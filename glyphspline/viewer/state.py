@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, cast, get_args
+from typing import Any, Literal, get_args
 
-from ..errors import GlyphsplineError
-from ..fitting.options import Corners, Options
+from ..errors import GlyphsplineError, is_number, require, require_choice
+from ..fitting.options import Options
 
 Sampling = Literal["tolerance", "step", "count"]
 
@@ -45,17 +44,18 @@ def read_state(given: Any, units_per_em: float) -> State:
     """
     if not isinstance(given, Mapping) or not isinstance(given.get("glyph"), str):
         raise GlyphsplineError("a request is an object that names its glyph")
-    sampling = cast(Sampling, _choice(given, "sampling", get_args(Sampling), "tolerance"))
+    sampling = given.get("sampling", "tolerance")
+    require_choice("sampling", sampling, get_args(Sampling))
     amount = _number(given, "amount", units_per_em / 1000)
     if sampling == "count":
         amount = float(min(max(round(amount), 3), MOST_VERTICES))
     else:
         amount = max(amount, FINEST[sampling] * units_per_em)
     options = Options(
-        variant=int(_choice(given, "variant", (0, 1, 2, 3, 4), 2)),
-        margin=min(max(_number(given, "margin", 0.02), 0.0), 0.25),
-        corners=cast(Corners, _choice(given, "corners", get_args(Corners), "smooth")),
-        fallback=cast(Literal["knot", "peak"], _choice(given, "fallback", ("knot", "peak"), "peak")),
+        variant=given.get("variant", Options.variant),
+        margin=min(max(_number(given, "margin", Options.margin), 0.0), 0.25),
+        corners=given.get("corners", Options.corners),
+        fallback=given.get("fallback", Options.fallback),
         measure=given.get("measure") is True,
         tolerance=amount if sampling == "tolerance" else None,
         step=amount if sampling == "step" else None,
@@ -66,16 +66,8 @@ def read_state(given: Any, units_per_em: float) -> State:
 
 def _number(given: Mapping[str, Any], key: str, default: float) -> float:
     value = given.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise GlyphsplineError(f"{key} is a number, not {value!r}")
+    require(is_number(value), f"{key} is a number", value)
     return float(value)
-
-
-def _choice(given: Mapping[str, Any], key: str, choices: tuple[Any, ...], default: Any) -> Any:
-    value = given.get(key, default)
-    if isinstance(value, bool) or value not in choices:
-        raise GlyphsplineError(f"{key} is one of {', '.join(map(str, choices))}, not {value!r}")
-    return value
 
 
 def _location(given: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
@@ -91,10 +83,8 @@ def _moved(given: Mapping[str, Any]) -> Moved:
         raise GlyphsplineError(f"moved is a list of at most {MOST_MOVED} vertices")
     found = []
     for item in moved:
-        if not isinstance(item, list) or len(item) != 4 or not all(isinstance(v, int | float) for v in item):
-            raise GlyphsplineError("a moved vertex is [contour, vertex, x, y]")
+        if not isinstance(item, list) or len(item) != 4 or not all(map(is_number, item)):
+            raise GlyphsplineError("a moved vertex is [contour, vertex, x, y], finite numbers")
         contour, vertex, x, y = item
-        if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(contour) and math.isfinite(vertex)):
-            raise GlyphsplineError("a moved vertex is not finite")
         found.append((int(contour), int(vertex), float(x), float(y)))
     return tuple(found)
