@@ -13,6 +13,7 @@ from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import certified_distance
 from glyphspline.fitting.measures import geometry
+from glyphspline.fitting.options import Corners
 from glyphspline.fitting.sharp.assembly import certify, cut_closer, cut_contours, put_together
 from glyphspline.fitting.sharp.bezier_fit import fit_cubic
 from glyphspline.fitting.sharp.split_contours import Settings
@@ -175,6 +176,14 @@ def test_overlaps_that_cannot_be_united_are_left_in_with_a_note(shift: float, re
     assert same is outline
     assert note is not None
     assert reason in note
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_a_contour_without_points_is_left_out(corners: Corners) -> None:
+    nothing = gs.Contour(np.empty((0, 2)), np.empty(0, dtype=np.int64))
+    result = gs.convert(gs.Outline("empty", contours=(nothing,)), gs.Options(corners=corners))
+    assert len(result.contours) == 0
+    assert result.notes == ("contour 0 has fewer than three distinct points and is left out",)
 
 
 def test_a_broken_glyph_of_a_batch_costs_no_note_of_another() -> None:

@@ -126,10 +126,10 @@ def _convert_contours(contours: ContourArrays, options: Options, tolerance: floa
 
 def enclosing(contours: ContourArrays) -> BoolArray:
     """(C,) whether three of a contour's points are distinct."""
-    starts = contours.starts[:-1]
-    long = np.diff(contours.starts) >= 3
-    p, q, r = (contours.points[np.where(long, starts + k, 0)] for k in range(3))
-    kept: BoolArray = long & (p != q).any(axis=1) & (q != r).any(axis=1) & (p != r).any(axis=1)
+    if len(contours.points) == 0:
+        return np.zeros(contours.num_contours, dtype=np.bool_)
+    first = contours.points.take(contours.starts[:-1, None] + np.arange(3), axis=0, mode="wrap")  # mostly enough
+    kept: BoolArray = (first != first[:, [1, 2, 0]]).any(axis=2).all(axis=1) & (np.diff(contours.starts) >= 3)
     for c in np.flatnonzero(~kept).tolist():
         points = contours.points[contours.starts[c] : contours.starts[c + 1]]
         others = points[(points != points[:1]).any(axis=1)]

@@ -124,8 +124,8 @@ class ConvertedContours:
 
     def contour_results(self) -> list[ContourResult]:
         """An object for each contour."""
-        rows = zip(*self.measures.values(), strict=True) if self.measures else [()] * self.source.num_contours
-        known = [Measures(**dict(zip(self.measures, row, strict=True))) for row in rows]
+        unknown = [None] * len(self)
+        known = map(Measures, *(self.measures.get(name, unknown) for name in MEASURES))
         vertices, arcs = pairwise(self.polygons.offsets.tolist()), pairwise(self.arc_offsets.tolist())
         return [
             ContourResult(source, self.polygons.points[i:j], tuple(self.arcs[a:b]), curve, measures)

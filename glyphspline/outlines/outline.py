@@ -39,6 +39,13 @@ class Contour:
         object.__setattr__(self, "degrees", degrees)
 
     @classmethod
+    def trusted(cls, points: FloatArray, degrees: IntArray) -> Contour:
+        """A contour without the checks, for callers whose arrays are right by construction."""
+        contour = cls.__new__(cls)
+        contour.__dict__.update(points=points, degrees=degrees)
+        return contour
+
+    @classmethod
     def from_segments(cls, segments: Iterable[FloatArray]) -> Contour:
         """Join segments of shape (degree + 1, 2); each must begin where its predecessor ends."""
         parts = [np.asarray(segment, dtype=np.float64) for segment in segments]
@@ -106,7 +113,7 @@ class Contours(Views[Contour]):
 def _views(contours: ContourArrays) -> list[Contour]:
     points, degrees, offsets, starts = contours
     ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
-    return [Contour(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
+    return [Contour.trusted(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
 
 
 def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:
