@@ -36,7 +36,7 @@ class ContourArrays(NamedTuple):
         return ContourArrays(points, degrees, offsets - offsets[0], starts - starts[0])
 
     def chosen(self, which: Sequence[int]) -> ContourArrays:
-        """Some contours in the given order; the arrays themselves if those are all."""
+        """The chosen contours in the given order; ``self`` if these are all contours in order."""
         if list(which) == list(range(self.num_contours)):
             return self
         return joined([self.part(c, c + 1) for c in which])

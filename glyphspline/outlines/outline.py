@@ -82,7 +82,7 @@ class Contour:
         return Contour(np.round(self.points, digits) + 0.0, self.degrees)
 
     def reversed(self) -> Contour:
-        """The same shape in the opposite direction, with the same start point."""
+        """The contour in the opposite direction from the same start point."""
         return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
 
     def draw(self, pen: Any) -> None:
@@ -145,7 +145,7 @@ class Outline:
         advance: horizontal advance in font units.
         contours: its contours in the font's order; any iterable is accepted; empty for a space.
         metrics: units per em, ascender and descender of its font.
-        notes: what the reader left out and why, one sentence each.
+        notes: one sentence for each part that the reader left out.
     """
 
     name: str

@@ -20,7 +20,7 @@ SCANLINES = 1000
 """Scan lines on which the inked area of a glyph is measured."""
 
 AREA_TOLERANCE = 2e-3
-"""Largest accepted relative change of the inked area. Scan lines are exact to 1e-3; lost contours change more."""
+"""Maximum relative change of the inked area. Scan lines are exact to 1e-3; a lost contour changes it by more."""
 
 
 def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:

@@ -16,7 +16,7 @@ TABLE = 32
 """Steps per segment in the table of arc lengths."""
 
 TIE = 1e-6
-"""Slack of rounding and comparison: halves and ratios at their bound are common on straight lines."""
+"""Tolerance of rounding and comparison: exact halves and ratios at their bound are common on straight lines."""
 
 ROUNDS = 64
 """Maximum number of halvings of a spacing; a contour that needs more is refused."""

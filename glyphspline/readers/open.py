@@ -1,4 +1,4 @@
-"""Opening of every kind of source; the content of a path decides which reader it gets."""
+"""Opens a source of any kind; the content of the path decides which reader is used."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
 
 @cache
 def standard_input() -> Path:
-    """Copy standard input to a file that exists as long as this process; workers open it too.
+    """Copy standard input to a file, which this process removes at its end; workers open it too.
 
     Raises:
         FontError: standard input is empty or too large.

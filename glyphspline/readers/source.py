@@ -1,4 +1,4 @@
-"""Sources of glyphs: what fonts, UFOs and SVG drawings have in common."""
+"""The common interface of fonts, UFOs and SVG drawings."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class Source(ABC):
     Pickling keeps ``path``, ``face_index`` and ``location`` and opens the source again.
 
     Attributes:
-        path: the file as the caller named it. format: its kind, in words.
+        path: the file, as given. format: the kind of file.
         face_index: which font of a collection; 0 otherwise. num_faces: number of fonts.
         location: place in the design space, axis tag to user-space value; empty at the default.
-        family, style: names for people, never empty.
+        family, style: never empty.
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
         cmap: code point to glyph name.
@@ -59,7 +59,7 @@ class Source(ABC):
 
     @abstractmethod
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
-        """Read glyphs; an error takes the place of the glyph that it concerns."""
+        """Read glyphs; the result has an error in place of each broken glyph."""
 
     def outline(self, name: str) -> Outline:
         """Read the outline of a glyph, components decomposed, at the font's location.
@@ -81,7 +81,7 @@ class Source(ABC):
 
         Args:
             glyphs: names or glyph indices.
-            errors: "return" puts the error of a glyph that cannot be read in its place in the list.
+            errors: "return" returns errors in place of broken glyphs.
 
         Raises:
             FontError: the source has no such glyph.

@@ -1,4 +1,4 @@
-"""The gallery's data files: a script for each glyph, with its drawing, and tables by which glyphs are sorted."""
+"""The gallery's data files: a script with the drawing of each glyph, and tables of measures."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .glyph_measures import MEASURES, glyph_measures
 FOLDER = "gallery"
 
 SUFFIX = ".glyph.js"
-"""Of a glyph's file. No other file of the gallery ends so, whatever a glyph is called."""
+"""Suffix of a glyph's file; no other file of the gallery has it."""
 
 COLUMNS = (
     "glyph", "gid", "unicodes", "advance", "status", "file", "error", "contours",
     *SOLVED, *(name for name in MEASURES if name not in SOLVED),
 )  # fmt: skip
-"""What a row of the table has, in order; nulls at a row's end are left out."""
+"""Columns of the table; nulls at the end of a row are omitted."""
 
 DIGITS = 5
 """Significant digits of the table's measures."""
@@ -36,7 +36,7 @@ def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: 
     """A glyph's data file.
 
     Args:
-        drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" for what is not known.
+        drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown.
         files: by format, relative to the run's folder.
         contours: the measures of its contours as JSON without the brackets; nulls are left out.
     """
@@ -66,12 +66,12 @@ def number(value: float | None, digits: int = 7) -> str:
 
 
 def line_row(line: str | bytes) -> str:
-    """The row of the table that belongs to a line of the manifest."""
+    """The row of the table for a line of the manifest."""
     return row_of(json.loads(line))
 
 
 def row_of(entry: Mapping[str, Any]) -> str:
-    """The same of a line that is parsed. A manifest may come from anywhere: files are links only inside its folder."""
+    """The row of the table for a parsed line. A manifest is not trusted: only files inside its folder become links."""
     contours = entry.get("contours") or ()
     measures = glyph_measures(contours)
     file = (entry.get("files") or {}).get(FOLDER)
@@ -87,7 +87,7 @@ def row_of(entry: Mapping[str, Any]) -> str:
 
 
 def inside(path: object) -> bool:
-    """Whether a path stays in the run's folder."""
+    """Whether a path is inside the run's folder."""
     pure = PurePosixPath(str(path))
     return isinstance(path, str) and not pure.is_absolute() and ".." not in pure.parts and "\\" not in path
 
@@ -103,7 +103,7 @@ def script(data: Any) -> str:
 
 
 def as_json(data: Any) -> str:
-    """JSON that can stand in a script and in a page: ASCII, and no "<" that could end either."""
+    """ASCII JSON for a script or a page, without "<", which could end it."""
     return escaped(_encoded(data))
 
 

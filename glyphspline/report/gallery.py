@@ -1,7 +1,7 @@
-"""The gallery: one page, and beside it in ``gallery/`` the data of all glyphs in script files that it loads as needed.
+"""The gallery: one page, and script files in ``gallery/`` with the data of all glyphs, loaded as needed.
 
-Scripts, because a page opened from disk may not read other files in any other way. ``run.js`` says what was run,
-``table-N.js`` have the measures that glyphs are sorted by, ``*.glyph.js`` a glyph's drawing each.
+A page opened from disk can read other files only as scripts. ``run.js`` describes the run, ``table-N.js`` contain the
+measures by which glyphs are sorted, and each ``*.glyph.js`` contains a glyph's drawing.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ TABLE = 5000
 SCRIPTS = (
     "shapes.js", "zoom.js", "gallery_data.js", "gallery_table.js", "gallery_grid.js", "gallery_detail.js", "gallery.js",
 )  # fmt: skip
-"""In the order in which they build on one another."""
+"""In the order of their dependencies."""
 
 LAYERS = {
     "source": ("Source", "s"), "result": ("Result", "r"), "polygon": ("Polygon", "p"), "vertices": ("Vertices", "v"),
     "control": ("Control polygon", "k"), "comb": ("Curvature comb", "c"), "colour": ("Colour", "l"),
 }  # fmt: skip
-"""What can be switched on and off: its name, and the key that does it."""
+"""The layers that can be hidden: name and key."""
 
 
 def write_report(out_dir: Path, entries: Iterable[Mapping[str, Any]], run: Mapping[str, Any]) -> None:
@@ -52,7 +52,7 @@ def write_report(out_dir: Path, entries: Iterable[Mapping[str, Any]], run: Mappi
 
 
 class Gallery:
-    """A run's gallery as it is written, glyph after glyph in the order of the manifest.
+    """Writer of a run's gallery, glyph by glyph in the order of the manifest.
 
     Args:
         out_dir: the run's folder.
@@ -65,18 +65,18 @@ class Gallery:
         (out_dir / FOLDER).mkdir(exist_ok=True)
 
     def add(self, row: str) -> None:
-        """The next glyph's row of the table."""
+        """Add the next glyph's row of the table."""
         self._rows.append(row)
         self._count += 1
         if len(self._rows) == TABLE:
             self._end_table()
 
     def close(self, run: Mapping[str, Any]) -> None:
-        """Write what is left, and the page to look at. ``run`` is the content of ``run.json``."""
+        """Write the rest of the tables, and the page. ``run`` is the content of ``run.json``."""
         if self._rows:
             self._end_table()
         _replace(self._out / FOLDER / "run.js", script(_run(run, self._count)))
-        for path in (self._out / FOLDER).glob("table-*.js"):  # that a larger run left
+        for path in (self._out / FOLDER).glob("table-*.js"):  # of an earlier, larger run
             found = re.fullmatch(r"table-(\d{5,})\.js", path.name)
             if found and int(found[1]) >= self._tables:
                 path.unlink()
@@ -89,17 +89,17 @@ class Gallery:
 
 
 def remove_gallery(out_dir: Path) -> None:
-    """Remove the page and the tables that an earlier run has written; the glyphs' files are the manifest's."""
+    """Remove the page and the tables of an earlier run, not the glyphs' files, which the manifest lists."""
     folder = out_dir / FOLDER
     if folder.is_symlink() or not (folder / "run.js").is_file():
-        return  # another's index.html, perhaps
+        return  # index.html may not be a gallery
     for path in [out_dir / "index.html", *folder.glob("table-*.js"), folder / "run.js"]:
         with suppress(OSError):
             path.unlink()
 
 
 def is_whole(out_dir: Path, count: int) -> bool:
-    """Whether the page and the tables of ``count`` glyphs exist, and none was cut off."""
+    """Whether the page and the tables of ``count`` glyphs exist and are complete."""
     names = ["run.js", *(f"table-{k:05}.js" for k in range(-(-count // TABLE)))]
     ends = [*((f"{FOLDER}/{name}", b");\n") for name in names), ("index.html", b"</html>\n")]
     return all(_end_of(out_dir / path, len(end)) == end for path, end in ends)
@@ -115,7 +115,7 @@ def _end_of(path: Path, size: int) -> bytes:
 
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
-    """Write an ``index.html`` over one or several runs, whose galleries are in these folders below ``out_dir``."""
+    """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
     measures = [[key, label] for key, (label, _) in MEASURES.items()]
     setup = {"runs": list(runs), "measures": measures, "palette": palette()}
     script = "".join(package_text(name) for name in SCRIPTS)
@@ -166,7 +166,7 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
 
 
 def _replace(path: Path, content: str | bytes) -> None:
-    """Write under a temporary name, then rename: a file is there whole or not at all."""
+    """Write a file under a temporary name and rename it, so that it is never incomplete."""
     temporary = path.with_name(f".{path.name}.part")
     temporary.write_bytes(content.encode() if isinstance(content, str) else content)
     os.replace(temporary, path)

@@ -1,4 +1,4 @@
-"""The measures of a glyph as the gallery sorts and filters by them: those of its contours, taken together."""
+"""The measures of a glyph for sorting and filtering, combined from those of its contours."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MEASURES: dict[str, tuple[str, Callable[[Sequence[Any]], Any]]] = {
     "converged": ("converged", all),
     "within_tolerance": ("within tolerance", all),
 }
-"""For each measure of a contour what it is called, and how contours make a glyph: the worst of them, or the sum."""
+"""The label of each measure, and how the values of contours combine to the glyph's: the worst, or the sum."""
 
 
 def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""From a :class:`~glyphspline.fitting.results.GlyphResult` to what is written in a file; nothing here opens one."""
+"""Writers: from a :class:`~glyphspline.fitting.results.GlyphResult` to the content of files."""

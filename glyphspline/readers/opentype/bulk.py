@@ -2,8 +2,8 @@
 
 HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
 2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
-the rules of :class:`~glyphspline.readers.pens.ContourPen`. Wherever these rules leave anything out, and wherever the
-drawing may not be whole, the careful reader reads the glyph again: it has the words for what is wrong.
+the rules of :class:`~glyphspline.readers.pens.ContourPen`. Glyphs of which these rules leave anything out, or whose
+drawing may be incomplete, are read again by the careful reader, which reports what is wrong.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ from .containers import unpacked
 from .harfbuzz import HarfBuzz
 
 USED, CAPACITY, FIRST = 0, 1, 2
-"""Places in the buffer: of the count of numbers in use, of the size, and of the first operation."""
+"""Indices in the buffer: of the count of numbers in use, of the capacity, and of the first operation."""
 
 BUFFER_SIZE = 1 << 18
-"""Numbers in the buffer: 2 MB. The careful reader reads a glyph of more, some 37,000 cubics."""
+"""Capacity of the buffer: 2 MB. The careful reader reads larger glyphs, of more than some 37,000 cubics."""
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
@@ -45,16 +45,16 @@ LARGEST = 1e12
 """Coordinates beyond this go to the careful reader, which refuses infinities and NaN."""
 
 WIDE = 3 * COINCIDENT
-"""Distance of a point from the line from the first point to the farthest, above which a contour is certainly not flat.
+"""A contour is certainly not flat if a point is farther than this from the line from the first point to the farthest.
 
-The careful reader decides at ``COINCIDENT``, but may take another of several farthest points.
+The careful reader uses ``COINCIDENT``, but may choose another of several farthest points.
 """
 
 HeadLike: TypeAlias = tuple[str, int, tuple[int, ...]]
 """A :class:`Head`, or the plain tuple that a task holds."""
 
 UNUSUAL, UNCOUNTED = -1, -2
-"""In place of a glyph's number of contours: the careful reader has to read it; the number is not known beforehand."""
+"""In place of a number of contours: the careful reader has to read the glyph; the number is unknown."""
 
 
 def _callback(points: int) -> Any:
@@ -63,7 +63,7 @@ def _callback(points: int) -> Any:
     return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
 
 
-# The callbacks write nothing beyond the capacity. A buffer that is full stays full.
+# The callbacks write nothing beyond the capacity; a full buffer remains full.
 @cfunc(_callback(1), cache=True)
 def _point(functions: int, buffer: Any, state: int, x: float, y: float, user: int) -> None:
     """A move (user data 1) or a line (2)."""
@@ -107,7 +107,7 @@ def _capsule(address: int | None) -> Any:
 
 @cache
 def _functions() -> Any:
-    """The callbacks as HarfBuzz takes them. None closes a path: every path is closed."""
+    """The callbacks for HarfBuzz, without one for closing a path, as every path is closed."""
     functions = hb.DrawFuncs()
     functions.set_move_to_func(_capsule(_point.address), _capsule(1))
     functions.set_line_to_func(_capsule(_point.address), _capsule(2))
@@ -186,7 +186,7 @@ def _contours(
             at += 1 + 2 * kind
         found = c - g - first
         unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
-        for k in range(3):  # assigning the row at once would compile 40 functions for the message of an error
+        for k in range(3):  # assigning the row would compile 40 functions for the message of an error
             before[g + 1, k] = before[g, k]
         if not unusual[g]:
             before[g + 1, 0], before[g + 1, 1], before[g + 1, 2] = first + found, m, p
@@ -195,9 +195,9 @@ def _contours(
 
 @compiled
 def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
-    """How many contours glyphs have by their records, components included; ``UNUSUAL`` where any contour has one point.
+    """Number of contours of each glyph by its record, components included, as :class:`.glyf.GlyphRecords` counts them.
 
-    As :class:`.glyf.GlyphRecords` counts them; ``UNUSUAL`` wherever that finds fault, too.
+    ``UNUSUAL`` where a contour has one point or a record is broken.
 
     Args:
         glyf: (B,) bytes of the table. loca: where in it records begin, and the end. gids: (k,) of the glyphs.
@@ -257,15 +257,15 @@ def load_compiled() -> None:
 
 
 class BulkReader:
-    """One face of a font file at one location, for reading many of its glyphs; quick to open.
+    """Reader of many glyphs of one face at one location; thread-safe.
 
-    A batch's workers open it instead of the font. Reading from several threads is safe.
+    It opens faster than the font, so the workers of a batch open it instead.
 
     Args:
         path: the file. face_index: which face of a collection.
         location: axis tag to user-space value, within the axes' limits.
-        data: the file's bytes without compression, if they are in memory already.
-        careful: the reader of unusual glyphs; by default it is made for the first of them.
+        data: the file's bytes without compression, if they are in memory.
+        careful: the reader of unusual glyphs; by default it is opened for the first of them.
 
     Raises:
         FontError: the file cannot be read.
@@ -300,7 +300,7 @@ class BulkReader:
         return CarefulReader(self._hb, tables, data, self._face_index)
 
     def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
-        """Read glyphs; an error takes the place of the glyph that it concerns.
+        """Read glyphs; the result has an error in place of each broken glyph.
 
         Args:
             heads: name, glyph index and code points of each glyph. metrics: of the font at the location.
@@ -331,7 +331,7 @@ class BulkReader:
 
         Returns:
             (k + 1,) where in the buffer each of the k glyphs drawn begins, and the end; (k,) expected numbers of
-            contours. k is at least 1; a glyph alone that does not fit ends at the capacity.
+            contours. k is at least 1; a single glyph that does not fit ends at the capacity.
         """
         expected = np.full(len(gids), UNCOUNTED, dtype=np.int64)
         if self._records is not None:

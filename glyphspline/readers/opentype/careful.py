@@ -1,4 +1,4 @@
-"""The careful reader: one glyph at a time, with notes on what is left out and errors that say what is wrong."""
+"""The careful reader: reads single glyphs, with notes on contours left out and errors that say what is wrong."""
 
 from __future__ import annotations
 

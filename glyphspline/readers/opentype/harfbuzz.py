@@ -35,7 +35,7 @@ class HarfBuzz:
         return float(self.font.get_glyph_h_advance(gid))
 
     def is_whole(self, gid: int) -> bool:
-        """Whether HarfBuzz interprets a char string to its end; it draws the part before a fault without a word."""
+        """Whether HarfBuzz interprets a char string to its end; it draws the part before a fault without an error."""
         return self.font.get_glyph_extents(gid) is not None
 
     def draw(self, gid: int, records: GlyphRecords | None) -> ContourPen | None:

@@ -15,7 +15,7 @@ from ...errors import FontError
 from ...outlines.outline import FontMetrics
 
 Location: TypeAlias = Mapping[str, float] | str | None
-"""A location as a caller gives it: axis tag to user-space value, the name of an instance, or None for the default."""
+"""A location as an argument: axis tag to user-space value, the name of an instance, or None for the default."""
 
 log = logging.getLogger(__name__)
 

@@ -60,7 +60,7 @@ def write_atlas(
         path: the PDF, replaced when it is complete. heading: the font's name.
         glyphs: results in the order of the pages; only one page and the profiled glyphs are held in memory.
         scale: curvature in 1/unit of a full tooth, from :func:`..svg.curvature_map.curvature_scale`.
-        profiled: which glyphs get a page of their own, after the others.
+        profiled: whether a glyph has a profile page, after the overview pages.
 
     Returns:
         The number of pages.

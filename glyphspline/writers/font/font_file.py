@@ -1,7 +1,7 @@
 """A font with the interpolated outlines in place of the source's: OTF (CFF, cubic) or TTF (quadratic).
 
-Everything but the outlines stays: advances, characters, kerning, features. A variable font becomes static, at the
-source's location. Hints, bitmaps and SVG pictures go, as they belong to the old outlines; colour layers (COLR) stay.
+Advances, characters, kerning and features are kept. A variable font becomes static at the source's location. Hints,
+bitmaps and SVG pictures, which belong to the old outlines, are removed; colour layers (COLR) are kept.
 Glyphs that were not converted keep their outlines: unchanged if the format is the source's, else converted to the
 other format, within 1 unit. A composite with a replaced component is decomposed first, so it looks as before.
 """
@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class FontSummary:
-    """What was written.
+    """The facts of a written font.
 
     Attributes:
         family: the new name. replaced: number of glyphs with new outlines.
@@ -194,7 +194,7 @@ class _Rebuilt:
 
 
 def set_bearings(font: TTFont, name: str, drawn: Drawn, outline: Outline) -> None:
-    """Set side bearings from the new bounds: renderers place an outline by them. The advance stays."""
+    """Set side bearings from the new bounds, by which renderers place an outline. The advance does not change."""
     metrics = font["hmtx"].metrics
     metrics[name] = (round(outline.advance), int(drawn.bounds[0]) if drawn.bounds else 0)
     if "vmtx" in font and drawn.bounds:

@@ -1,4 +1,4 @@
-"""One glyph as a font stores it: in whole units, or in CFF fractions where those are too coarse; with its error."""
+"""A glyph as a font stores it, in whole units or, where those are too coarse, in CFF fractions; with its error."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class Drawn:
 def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
     """Tolerance for the fit such that the written font stays within ``tolerance``.
 
-    An OTF needs almost nothing: it has fractions. A TTF needs the rounding and the step to quadratics; where the
-    tolerance is too small for those, the fit gets half of it and glyphs are reported as beyond it.
+    An OTF has fractions, so almost nothing is subtracted. For a TTF the rounding and the approximation by quadratics
+    are; if the tolerance is too small for those, the fit has half of it and glyphs are reported as beyond it.
     """
     left = tolerance - ROUNDING / FINE if flavour == "otf" else (1 - QUADRATIC_SHARE) * tolerance - ROUNDING
     return left if left > 0 else tolerance / 2
@@ -77,7 +77,7 @@ def drawn_result(result: GlyphResult, tolerance: float, flavour: Flavour, width:
 
 
 def drawn_outline(outline: Outline, flavour: Flavour) -> Drawn:
-    """A glyph that was not converted, in the other format."""
+    """The source outline of a glyph that was not converted, in the other format."""
     contours = oriented(outline.contours, flavour)
     if flavour == "otf":
         data = char_string(contours, round(outline.advance), 1, outline.name)

@@ -1,4 +1,4 @@
-"""The tables around the glyphs: those of the source at its location, or new ones, without hints and renamed."""
+"""All tables but the outlines: those of the source at its location, or new ones; without hints, and renamed."""
 
 from __future__ import annotations
 
@@ -89,9 +89,9 @@ def become(font: TTFont, flavour: Flavour, glyphs: dict[str, Any], family: str) 
 
 
 def rename(font: TTFont, family: str, style: str) -> None:
-    """Replace the family name everywhere: a changed font must not pass for its source.
+    """Replace the family name everywhere, so that the font is not taken for its source.
 
-    Copyright and licence stay; trademark goes.
+    Copyright and licence are kept; the trademark is removed.
     """
     if "name" not in font:
         font["name"] = newTable("name")

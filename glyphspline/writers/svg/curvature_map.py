@@ -20,21 +20,20 @@ from .markup import Text, data_attributes, document, id_prefix, number, union, v
 from .path_data import Box, PathData, curves_data, dots_data, polylines_data
 
 SPACING = 1 / 140
-"""Teeth stand this far apart, in em, or nearer. Twice as dense they run together in print; half as dense the joined
-tips cut corners."""
+"""Maximum spacing of teeth in em. At half of it teeth run together in print; at twice, the tips cut corners."""
 
 MOST_TEETH = 8000
-"""Beyond so many, spacing grows. An ordinary CJK glyph has 2000; one made to harm could ask for millions."""
+"""Maximum number of teeth; beyond it spacing grows. A CJK glyph has some 2000, a hostile one could have millions."""
 
 TOOTH = 0.03
 """Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs."""
 
 LONGEST = 1.25
-"""Longest tooth, in units of the scale; what is cut there bears a mark. At 2.5 the fans of rounded
-corners cover a whole CJK glyph; without a limit one of them throws a spike across the page."""
+"""Maximum length of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners
+cover a CJK glyph; without a limit a single tooth may cross the page."""
 
 STROKE = 3
-"""Width of the outline in 1/1000 em. Teeth of less than half of it are hidden below, and left out."""
+"""Width of the outline in 1/1000 em. It would hide teeth of less than half of it, so these are left out."""
 
 PRECISION = 1
 """Decimals of the comb, per 1000 units of the em: 1/10,000 em is finer than any screen shows."""
@@ -60,7 +59,7 @@ def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
 
 
 def combs(glyph: GlyphResult, density: float = 2.0) -> list[Comb]:
-    """One comb a contour; for the scale twice as dense as those of the maps: at theirs it can be 15% too large."""
+    """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large."""
     from ...curves.comb import control_length  # here and not above: the package opens without a compiler
     from ...outlines.segments import all_cubics
 
@@ -94,13 +93,12 @@ def to_curvature_svg(
     """The outline with its curvature comb, as an SVG document that is legible on light and dark.
 
     A tooth stands on the curve along its normal, on the outer (convex) side, away from the centre of curvature. Its
-    length is |κ|, 0.03 em at ``scale``; teeth are cut at 1.25 times that, with a dot on the end. Colour is signed
+    length is |κ|, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot. Colour is signed
     κ: blue and violet turn left, yellow and red turn right in the contour's own direction. The legend is in 1/em.
 
     Args:
-        glyph: what :func:`convert` gave.
-        scale: the curvature, in 1/unit, of a full tooth; one for all glyphs of a run, as :func:`curvature_scale`
-            gives it. None takes the glyph's own.
+        glyph: a result of :func:`convert`.
+        scale: the curvature, in 1/unit, of a full tooth. By default :func:`curvature_scale` of the glyph.
         vertices: mark the polygon's vertices.
         control_polygon: draw the control polygon of each interpolation.
     """
@@ -112,7 +110,7 @@ def to_curvature_svg(
 def map_document(
     glyph: GlyphResult, path: PathData, scale: float, *, vertices: bool = True, control_polygon: bool = False
 ) -> bytes:
-    """The same in UTF-8, from the path data of the glyph's curves."""
+    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the glyph's curves."""
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
@@ -153,8 +151,7 @@ def comb_precision(em: float) -> int:
 
 
 def _comb_layer(curves: ContourArrays, em: float, scale: float, precision: int) -> tuple[list[Text], Box | None]:
-    """Teeth, grouped by colour into one path a class, the line that joins the tips, and the marks of cut teeth; and
-    the box around curve and comb."""
+    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
     from .comb_paths import comb_text  # here and not above: the package opens without a compiler
     from .numbers import figures
 
@@ -173,7 +170,7 @@ def _comb_layer(curves: ContourArrays, em: float, scale: float, precision: int) 
 
 @cache
 def _styles(em: float) -> list[str]:
-    """How the paths of a comb begin, in the order in which ``comb_text`` gives them."""
+    """The beginnings of a comb's paths, in the order of ``comb_text``."""
     return [
         *(f'<path stroke="{class_colour(index)}" d="' for index in range(-SIDES, SIDES + 1)),
         f'<path stroke="currentColor" stroke-opacity=".45" stroke-width="{_width(em, 0.9)}" d="',

@@ -21,11 +21,10 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
     written as differences, which add up to the rounded coordinates exactly.
 
     Args:
-        glyph: what :func:`convert` gave.
+        glyph: a result of :func:`convert`.
         view_box: the region shown. "em": from 0 to the advance and from descender to ascender, widened where
-            ink goes beyond, so nothing is ever clipped. "metrics": exactly that region, for setting drawings
-            side by side; ink beyond it overflows visibly. "ink": the tight box around the ink.
-            In all of them the side bearings follow from ``data-advance`` and the path itself.
+            ink exceeds it, so nothing is clipped. "metrics": exactly that region, for drawings side by side;
+            ink beyond it overflows visibly. "ink": the tight box around the ink.
 
     Raises:
         ValueError: ``view_box`` is none of these.
@@ -35,7 +34,7 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
 
 
 def svg_document(glyph: GlyphResult, path: PathData, view_box: ViewBox) -> bytes:
-    """The same in UTF-8, from the path data of the glyph's curves."""
+    """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves."""
     outline, precision = glyph.outline, glyph.options.precision
     box = shown_box(outline, path.box, view_box)
     overflow = ' overflow="visible"' if view_box == "metrics" else ""

@@ -22,11 +22,11 @@ FONT = 0.034
 
 
 def legend_svg(box: Box, em: float, scale: float, precision: int, tooth: float, longest: float) -> tuple[str, Box]:
-    """The legend, set under a drawing's box, and the box that holds both.
+    """The legend, placed under a drawing's box, and the box around both.
 
     Args:
-        box: the drawing, y up. em: units per em. scale: κ of a full tooth in 1/unit. precision: decimals.
-        tooth: length in em of a full tooth. longest: where teeth are cut, in units of the scale.
+        box: of the drawing, y up. em: units per em. scale: κ of a full tooth in 1/unit. precision: decimals.
+        tooth: length in em of a full tooth. longest: limit of teeth, in units of the scale.
     """
     left, base = box[0] + 0.02 * em, box[1] - (0.06 + tooth) * em
     content, width, height = _legend(em, scale, precision, tooth, longest)
@@ -37,7 +37,7 @@ def legend_svg(box: Box, em: float, scale: float, precision: int, tooth: float, 
 
 @lru_cache(maxsize=8)
 def _legend(em: float, scale: float, precision: int, tooth: float, longest: float) -> tuple[str, float, float]:
-    """What the legend holds, drawn from the left end of its axis; its width, and how far it reaches below the axis."""
+    """The legend's content with its origin at the left end of the axis; its width, and its extent below the axis."""
     letters, width, reach = FONT * em, WIDTH * em, scale * em
     strength = np.linspace(-1, 1, 2 * SIDES * TEETH_PER_CLASS + 1)
     classes = np.rint(strength * SIDES).astype(int)
@@ -66,7 +66,7 @@ def _legend(em: float, scale: float, precision: int, tooth: float, longest: floa
 
 
 def strokes_data(feet: FloatArray, tips: FloatArray, precision: int) -> str:
-    """Strokes from each of ``feet`` (k, 2) to its tip, as path data in the manner of ``comb_text``; y flipped."""
+    """Path data of strokes from ``feet`` (k, 2) to ``tips``, with relative numbers as in ``comb_text``; y down."""
     data, x, y = "", 0, 0
     for places in np.rint(np.stack([feet, tips], axis=1) * (1, -1) * 10**precision).astype(int).tolist():
         for command, (to_x, to_y) in zip(("m" if data else "M", "l"), places, strict=True):

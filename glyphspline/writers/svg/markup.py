@@ -1,4 +1,4 @@
-"""What all SVG documents share: numbers, text, and what they say about a glyph."""
+"""Common parts of SVG documents: numbers, text, and attributes of a glyph."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...outlines.outline import FontMetrics, Outline
 from .path_data import NUMBER, Box
 
 Text = str | memoryview
-"""Part of a document; what compiled code has written is bytes already, in ASCII."""
+"""Part of a document; compiled code writes ASCII bytes."""
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
@@ -37,7 +37,7 @@ def text(value: str) -> str:
 
 
 def id_prefix(name: str, gid: int) -> str:
-    """What the ids of a glyph's drawing begin with, so that several can stand in one document."""
+    """Prefix of the ids of a glyph's drawing, which are unique in a document of several drawings."""
     return f"g{gid}-{name if name.isalnum() and name.isascii() else _NOT_ID.sub('_', name)}"
 
 

@@ -1,7 +1,7 @@
-"""SVG path data of the contours of many glyphs in one compiled call; of one glyph, a batch of one.
+"""SVG path data of the contours of many glyphs in one compiled call.
 
-A font point (x, y) is written as (x, -y). Coordinates are rounded, and written as differences, which add up to the
-rounded coordinates exactly.
+A font point (x, y) is written as (x, -y). Coordinates are rounded and written as differences, whose sums are exactly
+the rounded coordinates.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ Box = tuple[float, float, float, float]
 """Left, bottom, right, top in font units, y up."""
 
 NUMBER = "%.15g"
-"""A rounded coordinate. 15 digits never show the binary tail of a double, and %g drops zeros at the end; 17 would
-write 0.1 as 0.10000000000000001."""
+"""Format of a rounded coordinate, without trailing zeros. 15 digits do not show binary rounding; 17 would write 0.1 as
+0.10000000000000001."""
 
 _COMMANDS = {d: "MLQC"[d] + " ".join([f"{NUMBER} {NUMBER}"] * d) for d in (1, 2, 3)}
 

@@ -35,15 +35,15 @@ def source_data(glyphs: Sequence[GlyphResult]) -> list[SourceData]:
 def to_source_svg(glyph: GlyphResult) -> str:
     """The source outline, and over it the polygon with its vertices, as groups of one SVG document.
 
-    Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. Shown as an image with the fragment of the first, as in
-    ``a.svg#g36-A-source``, the drawing leaves the polygon out. A third group, ``…-control``, holds the control
+    Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. As an image with the fragment of the first, as in
+    ``a.svg#g36-A-source``, the drawing has no polygon. A third group, ``…-control``, holds the control
     polygons of the result; it is not displayed.
     """
     return source_document(glyph, source_data([glyph])[0]).decode()
 
 
 def source_document(glyph: GlyphResult, data: SourceData) -> bytes:
-    """The same in UTF-8, from its path data."""
+    """The document of :func:`to_source_svg` in UTF-8, from its path data."""
     outline, precision = glyph.outline, glyph.options.precision
     em = outline.metrics.units_per_em
     box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), data.source.box)
