@@ -14,7 +14,7 @@ from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
 from ..report.data import FOLDER as GALLERY
-from ..report.data import line_row
+from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
 from .calls import survey, work
 from .entry import columns_of
@@ -181,7 +181,7 @@ def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) ->
             name, status, row, facts = record.notes.get(gid) or _noted(line)
             summary.count(name, status, json.loads(line)["error"] if status == "failed" else None, facts)
             if gallery:
-                gallery.add(row or line_row(line))
+                gallery.add(row or row_of(line))
         if gallery:
             gallery.close(read_run(out) or {})
 

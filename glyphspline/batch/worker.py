@@ -21,7 +21,7 @@ from ..outlines.outline import Outline
 from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..report.data import FOLDER as GALLERY
-from ..report.data import files_text, glyph_text, line_row
+from ..report.data import files_text, glyph_text, row_of
 from ..writers.svg.curvature_map import combs, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
@@ -215,7 +215,7 @@ def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seco
     sizes = [write_whole(f"{job.out}/{path}", WRITERS[name](job, glyph, files)) for name, path in files.items()]
     status, advance = "empty" if empty else "ok", glyph.result.outline.advance
     line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures)
-    row = line_row(line) if GALLERY in formats else ""
+    row = row_of(line) if GALLERY in formats else ""
     seconds += time.perf_counter() - started
     return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, glyph.facts, row)
 

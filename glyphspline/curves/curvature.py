@@ -62,11 +62,6 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
     samples, starts = sampled(
         np.ascontiguousarray(cubics.swapaxes(0, 1), dtype=float), float(spacing), float(angle), 0.0
     )
-    return comb_of(samples, starts)
-
-
-def comb_of(samples: FloatArray, starts: IntArray) -> Comb:
-    """A comb of the results of :func:`.comb.sampled`: (k, 6) samples and the first sample of each piece."""
     return Comb(samples[:, :2], samples[:, 2:4], samples[:, 4], samples[:, 5], starts)
 
 

@@ -1,6 +1,6 @@
-"""Any degree and variant, one polygon at a time, every pass open to inspection: Algorithms 1, 2 and 3.
+"""Algorithms 1, 2 and 3 for any degree and variant, one polygon at a time, with the history of all passes.
 
-The passes are compiled, see :mod:`.kernels.any_degree_pass`; the loop over them is that of :mod:`.driver`.
+The passes are compiled (:mod:`.kernels.any_degree_pass`); the loop is in :mod:`.driver`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..curves.bspline import Spline, full_knots
+from ..curves.bspline import Spline, full_knots, span_controls
 from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
@@ -25,7 +25,7 @@ from .result import Interpolation
 def interpolate_any_degree(
     points: ArrayLike, method: Method, knots: ArrayLike | None = None, end_tangents: Tangents | None = None
 ) -> Interpolation:
-    """Interpolate one polygon; ``knots`` are its own parameters where the method has no rule."""
+    """Interpolate one polygon; ``knots`` are its parameters if the method has no rule."""
     degree, closed = method.degree, method.closed
     p, merged = clean_polygon(points, closed)
     rule: Any = method.knots
@@ -97,7 +97,7 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
 
 
 def _intervals(windows: FloatArray, centres: FloatArray, method: Method) -> Intervals:
-    """What :func:`.intervals.search_intervals` gives, compiled."""
+    """The compiled equivalent of :func:`.intervals.search_intervals`."""
     from .kernels.any_degree_pass import search_bounds
 
     bounds = np.empty((len(centres), 2))
@@ -122,7 +122,7 @@ class Scaled:
         method: Method,
         tangents: Tangents,
     ) -> None:
-        from .kernels.any_degree_pass import make_layout
+        from .kernels.any_degree_pass import Layout, power_matrices
 
         self.origin = p[0].copy()
         self.unit = 0.5 ** np.floor(np.log2(np.ptp(p, axis=0).max()))
@@ -137,10 +137,23 @@ class Scaled:
             natural, base = _ends(q, np.diff(u) * self.knot_unit, slopes)
             beside = base + natural[:, None] * q[[1, -2]]
             self.P = np.concatenate([q[:1], beside[:1], q[1:-1], beside[1:], q[-1:]])
-        one = len(free) == 1 and self.closed  # Algorithm 1
-        vertices, first = (q[free], int(free[0])) if one else (q if self.closed else q[1:-1], 0 if self.closed else 2)
-        scaled = self.knot_unit * intervals.bounds, self.knot_unit * centres[free]
-        self.layout = make_layout(vertices, first, *scaled, self.knot_unit * u, self.degree, self.closed, natural, base)
+        spans, bounds, u = len(u) - 1, self.knot_unit * intervals.bounds, self.knot_unit * u
+        T = float(u[-1])
+        lap = np.floor(bounds / T) if self.closed else np.zeros_like(bounds)
+        within = np.clip(np.searchsorted(u, bounds - lap * T, side="right") - 1, 0, spans - 1)
+        self.layout = Layout(
+            points=q[free],
+            bounds=bounds,
+            centres=self.knot_unit * centres[free],
+            spans=(lap * spans).astype(np.int64) + within,
+            starts=u[:-1],
+            period=T if self.closed else 0.0,
+            matrices=power_matrices(u, self.degree, self.closed),
+            indices=span_controls(spans, self.degree, self.closed).astype(np.int64),
+            first=int(free[0]) if self.closed else 2,
+            natural=natural,
+            base=base,
+        )
         self.t = self.layout.centres.copy()
 
     def points_of(self, controls: FloatArray) -> FloatArray:

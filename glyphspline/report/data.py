@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from json.encoder import encode_basestring_ascii as quoted
 from pathlib import PurePosixPath
 from typing import Any
@@ -65,13 +65,9 @@ def number(value: float | None, digits: int = 7) -> str:
     return "null" if "n" in text else text
 
 
-def line_row(line: str | bytes) -> str:
-    """The row of the table for a line of the manifest."""
-    return row_of(json.loads(line))
-
-
-def row_of(entry: Mapping[str, Any]) -> str:
-    """The row of the table for a parsed line. A manifest is not trusted: only files inside its folder become links."""
+def row_of(line: str | bytes | Mapping[str, Any]) -> str:
+    """The row of the table for a line of a manifest, parsed or not. Only files inside the run's folder become links."""
+    entry = line if isinstance(line, Mapping) else json.loads(line)
     contours = entry.get("contours") or ()
     measures = glyph_measures(contours)
     file = (entry.get("files") or {}).get(FOLDER)
@@ -90,11 +86,6 @@ def inside(path: object) -> bool:
     """Whether a path is inside the run's folder."""
     pure = PurePosixPath(str(path))
     return isinstance(path, str) and not pure.is_absolute() and ".." not in pure.parts and "\\" not in path
-
-
-def table_text(rows: Iterable[str]) -> str:
-    """A file of the table."""
-    return f'glyphsplineData({{"columns":{as_json(COLUMNS)},"rows":[{",".join(rows)}]}});\n'
 
 
 def script(data: Any) -> str:

@@ -19,7 +19,7 @@ from typing import Any
 
 from ..writers.svg.colours import SIDES, class_colour
 from ..writers.svg.markup import text
-from .data import FOLDER, as_json, row_of, script, table_text
+from .data import COLUMNS, FOLDER, as_json, row_of, script
 from .glyph_measures import MEASURES
 
 TABLE = 5000
@@ -83,7 +83,8 @@ class Gallery:
         write_index(self._out, [""], _heading(run))
 
     def _end_table(self) -> None:
-        _replace(self._out / FOLDER / f"table-{self._tables:05}.js", table_text(self._rows))
+        text = f'glyphsplineData({{"columns":{as_json(COLUMNS)},"rows":[{",".join(self._rows)}]}});\n'
+        _replace(self._out / FOLDER / f"table-{self._tables:05}.js", text)
         self._rows.clear()
         self._tables += 1
 

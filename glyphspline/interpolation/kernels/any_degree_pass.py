@@ -11,25 +11,25 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.bspline import bezier_pieces, full_knots, span_controls
+from ...curves.bspline import bezier_pieces, full_knots
 from ...types import FloatArray, IntArray
 from ..intervals import BISECTIONS
 from ..method import TIE_DISTANCE
 from .footpoint import MAX_DEGREE, WORK, search_piece
 
 KNOTS = MAX_DEGREE + 2
-"""The most knots a basis function lives on."""
+"""Maximum number of knots in the support of a basis function."""
 
 TIED = TIE_DISTANCE**2
 
 
 class Layout(NamedTuple):
-    """A polygon made ready for the compiled passes: origin at its first vertex, extent and mean knot interval near 1.
+    """A polygon in the units of the compiled passes: origin at its first vertex, extent and mean knot interval near 1.
 
     Attributes:
         points: (f, 2) the vertices with a free control point; vertex j's is ``controls[first + j]``.
-        bounds, centres: (f, 2), (f,) where footpoints are sought.
-        spans: (f, 2) first and last span of each interval, counted on through the periods.
+        bounds, centres: (f, 2), (f,) search intervals of the footpoints.
+        spans: (f, 2) first and last span of each interval; numbers continue through the periods.
         starts: (spans,) left knots; period: T, 0 if open.
         matrices: (spans, degree + 1, degree + 1) from control points to coefficients by powers of t - start.
         indices: (spans, degree + 1) which control points.
@@ -63,36 +63,6 @@ def power_matrices(u: FloatArray, degree: int, closed: bool) -> FloatArray:
     return np.stack(rows, axis=1)
 
 
-def make_layout(
-    points: FloatArray,
-    first: int,
-    bounds: FloatArray,
-    centres: FloatArray,
-    u: FloatArray,
-    degree: int,
-    closed: bool,
-    natural: FloatArray,
-    base: FloatArray,
-) -> Layout:
-    """Lay out a normalised polygon; points, bounds and centres are of the vertices whose control points are moved."""
-    n_spans, T = len(u) - 1, float(u[-1])
-    lap = np.floor(bounds / T) if closed else np.zeros_like(bounds)
-    within = np.clip(np.searchsorted(u, bounds - lap * T, side="right") - 1, 0, n_spans - 1)
-    return Layout(
-        points=np.ascontiguousarray(points),
-        bounds=np.ascontiguousarray(bounds),
-        centres=np.ascontiguousarray(centres),
-        spans=(lap * n_spans).astype(np.int64) + within,
-        starts=np.ascontiguousarray(u[:-1]),
-        period=T if closed else 0.0,
-        matrices=power_matrices(u, degree, closed),
-        indices=span_controls(n_spans, degree, closed).astype(np.int64),
-        first=first,
-        natural=natural,
-        base=base,
-    )
-
-
 @compiled(internal=True)
 def _coefficients(span: int, P: FloatArray, px: float, py: float, v: Layout, c: FloatArray) -> None:
     """Coefficients of the piece about p: c[axis, k] of (t - start)^k."""
@@ -118,9 +88,9 @@ def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
 
 @compiled
 def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
-    """Footpoints of all vertices, into t, and the update P_i += p_i - C(t_i); the largest error before it is returned.
+    """Write the footpoints to t and update P_i += p_i - C(t_i); returns the largest error before the update.
 
-    With ``at_once`` (Algorithm 3) each control point is moved before the next vertex is looked at.
+    With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed.
     """
     n, d, count = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape[0]
     c, work, e = np.empty((2, d + 1)), np.empty(WORK), np.empty((count, 2))
@@ -176,7 +146,7 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
 def _basis_value(w: FloatArray, spans: int, t: float, N: FloatArray) -> float:
     """B(t) on its knots w[0] … w[spans], by Cox and de Boor; each span is closed at its left end.
 
-    The last span of positive length is closed at both. N is room for KNOTS numbers.
+    The last span of positive length is closed at both. N: scratch of KNOTS numbers.
     """
     end = w[spans]
     for k in range(spans):
@@ -225,9 +195,9 @@ def _bisected(w: FloatArray, spans: int, inside: float, outside: float, level: f
 def search_bounds(
     windows: FloatArray, centres: FloatArray, variant: int, margin: float, peak_share: float, bounds: FloatArray
 ) -> tuple[int, float]:
-    """Where each footpoint is sought, into ``bounds``; the fallbacks, and the least value of a B_i on its interval.
+    """Write the search interval of each footpoint to ``bounds``, by the rules and bisections of ``intervals.py``.
 
-    The rules, and the halvings, of ``intervals.py``, which explains them.
+    Returns the number of fallbacks and the least value of a B_i on its interval.
 
     Args:
         windows: (n, degree + 2) the knots of each basis function.
