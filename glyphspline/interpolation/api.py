@@ -54,7 +54,7 @@ def interpolate(
             converge on very uneven chords. "peak" takes {B_i ≥ min(1/2 + c, 0.9 max B_i)} for every vertex.
         residual_tolerance: distance, in the units of ``points``, that the largest error has to fall below; None for
             1e-6 of the polygon's extent (the larger of its width and height).
-        max_iterations: give up after so many updates.
+        max_iterations: maximum number of updates.
         closed: a closed curve, or an arc from the first vertex to the last, clamped at both.
         end_tangents: of an open arc, the derivatives (τ_0, τ_1) by chord length at its ends, unit vectors as a rule;
             None for a natural end (no curvature there).
@@ -123,8 +123,8 @@ def interpolate_many(
         variant: as for one polygon.
         knots: a rule, or an array for each polygon.
         end_tangents: of open arcs, a pair for each polygon.
-        threads: as many at once, None for one a core. The result has the same bits whatever the number.
-        errors: "return" puts the PolygonError of a bad polygon in its place in the list, and goes on.
+        threads: number of threads, None for one a core. Results do not depend on it.
+        errors: "return" returns PolygonErrors in place of bad polygons.
         options: ``degree``, ``margin``, …
 
     Raises:
@@ -252,7 +252,7 @@ def interpolate_vertex(
         k: which vertex; duplicates are merged before counting.
         whole_curve: seek the footpoint on the whole curve, which may fail to converge (Remark 2).
         residual_tolerance: distance that the error has to fall below; None for 1e-6 of the polygon's extent.
-        max_iterations: give up after so many updates.
+        max_iterations: maximum number of updates.
 
     Raises:
         PolygonError: the polygon cannot be interpolated, or has no vertex k.

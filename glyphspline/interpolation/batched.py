@@ -23,15 +23,13 @@ from .polygon import clean_polygon
 from .result import Interpolation
 
 GIVEN = -1.0
-"""In place of a chord exponent: the knots are the caller's."""
+"""In place of a chord exponent: knots are given."""
 
 LEAST_VERTICES = 1024
-"""The least work for a thread at a time, some 0.3 ms: enough to hide the hand-over."""
+"""Minimum work of a thread at a time, some 0.3 ms: long compared with the cost of the exchange."""
 
 LARGE = 30_000
-"""From this many vertices on NumPy allocates the blocks (huge pages): fewer TLB misses, as every pass goes through
-all of them.
-"""
+"""Number of vertices from which NumPy allocates the blocks (huge pages): fewer TLB misses, as passes read them all."""
 
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
@@ -54,8 +52,8 @@ class BatchedInterpolation:
             footpoints that took a full search.
         rates: (K,) rate bounds.
         residuals, residual_offsets: (iterations + 1) numbers a polygon, end to end.
-        tolerances: (K,) what the last residual has to be below.
-        closed: of all of them.
+        tolerances: (K,) residual tolerances.
+        closed: of all polygons.
     """
 
     offsets: IntArray
@@ -75,7 +73,7 @@ class BatchedInterpolation:
         return len(self.offsets) - 1
 
     def __getitem__(self, k: int) -> Interpolation:
-        """Polygon k's result; its arrays are views."""
+        """The result of polygon k; its arrays are views."""
         k = range(len(self))[k]
         start, stop = self.offsets[k : k + 2].tolist()
         first, last = self.residual_offsets[k : k + 2].tolist()
@@ -128,17 +126,17 @@ def interpolate_batch(
     residual_tolerances: FloatArray | None = None,
     threads: int | None = None,
 ) -> BatchedInterpolation:
-    """Cubic interpolation of many polygons laid end to end. A bad polygon is no exception but a status.
+    """Cubic interpolation of many polygons laid end to end. A bad polygon has a status and raises no exception.
 
     Args:
         points: (N, 2) float64, contiguous; offsets: (K + 1,) int64, where each polygon begins, and N.
         method: of degree 3, without diagnostics.
-        knots: all polygons' own parameters end to end (n + 1 each if closed, n if open); None where the method has a
+        knots: given parameters of all polygons end to end (n + 1 each if closed, n if open), unless the method has a
             rule.
-        end_tangents: (K, 2, 2) of open arcs, NaN where the end is natural; None: all are.
-        by_knot: (K,) polygons that have ``fallback="knot"`` whatever the method has.
+        end_tangents: (K, 2, 2) of open arcs, NaN for natural ends; None: all are natural.
+        by_knot: (K,) polygons with ``fallback="knot"`` instead of the method's.
         residual_tolerances: (K,) in place of the method's.
-        threads: as many at once; None for one a core. The results have the same bits whatever the number.
+        threads: number of threads; None for one a core. Results do not depend on it.
     """
     count, total = len(offsets) - 1, len(points)
     peak_shares = np.empty(count)
@@ -178,9 +176,9 @@ def interpolate_batch(
 def interpolate_one(
     points: FloatArray, method: Method, knots: FloatArray | None = None, end_tangents: FloatArray | None = None
 ) -> Interpolation | None:
-    """What :func:`interpolate_batch` gives for one polygon, None if it is refused.
+    """The result of :func:`interpolate_batch` for one polygon; None if it is refused.
 
-    It is the same compiled call. Arrays of one row, and slices of them, took 24 of 57 us a call of 20 vertices.
+    It makes the same compiled call without arrays of one row, which took 24 of 57 us for 20 vertices.
     """
     n, closed, tolerance = len(points), method.closed, method.residual_tolerance
     out = _results(n, 1, closed)
@@ -211,7 +209,7 @@ def interpolate_one(
 def _gathered(
     points: FloatArray, offsets: IntArray, method: Method, peak_shares: FloatArray, threads: int | None
 ) -> BatchedInterpolation:
-    """The same by the passes of any variant, a polygon at a time; closed polygons with a rule for the knots."""
+    """A batch by the passes of any variant, one polygon at a time; closed polygons with a rule for the knots."""
     total, count = int(offsets[-1]), len(offsets) - 1
     by_knot = replace(method, fallback="knot")
     out = _results(total, count, True)
@@ -248,9 +246,9 @@ def _threads(threads: int | None) -> int:
 
 
 def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
-    """Runs of polygons, large ones first: each has half of a thread's share of what is left, LEAST_VERTICES or more.
+    """Ranges of polygons, each with half of a thread's share of the rest, ``LEAST_VERTICES`` or more.
 
-    So that threads are done at almost the same time, however fast each of them gets on.
+    Sizes decrease, so that threads of unequal speed finish at almost the same time.
     """
     count, total, workers = len(offsets) - 1, int(offsets[-1]), _threads(threads)
     if workers == 1 or total < 4 * LEAST_VERTICES or count < 2:
@@ -263,7 +261,7 @@ def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
 
 
 def _blocks(offsets: IntArray, first: int, stop: int) -> FloatArray:
-    """Blocks for the largest polygon if it is large; else none, and the compiled code allocates them."""
+    """Blocks for the largest polygon if it is large; otherwise the compiled code allocates them."""
     most = int(offsets[stop] - offsets[first])
     if most >= LARGE:
         most = int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max())
@@ -275,7 +273,7 @@ def _blocks(offsets: IntArray, first: int, stop: int) -> FloatArray:
 
 
 def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
-    """Knots, control points, parameters, intervals, vertices kept, whole numbers and rates, to be filled."""
+    """Empty arrays for knots, control points, parameters, intervals, vertices kept, whole numbers and rates."""
     return (
         np.empty(total + count if closed else total),
         np.empty((total if closed else total + 2 * count, 2)),
@@ -289,16 +287,16 @@ def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
 
 @cache
 def _compiled() -> Any:
-    """The compiled kernels, imported when they are first called: the import brings the compiler."""
+    """The compiled kernels, imported at the first call, as they import the compiler."""
     from .kernels.run import run
 
     return run
 
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:
-    """``work`` of each item, in order; worth it where work lets go of the interpreter's lock.
+    """``work`` of each item, in order, on several threads; ``work`` should release the interpreter's lock.
 
-    The caller's thread works too, which saves waking another one; each takes the next item when it is done with one.
+    The calling thread works too. Each thread takes the next item when it has finished one.
     """
     helpers = min(_threads(threads), len(items)) - 1
     if helpers < 1:
@@ -323,7 +321,7 @@ def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int 
 
 @cache
 def _pool(threads: int) -> ThreadPoolExecutor:
-    """Kept from call to call: threads cost more to start than a glyph to interpolate."""
+    """A pool that is kept: starting threads takes longer than interpolating a glyph."""
     return ThreadPoolExecutor(threads, thread_name_prefix="glyphspline")
 
 

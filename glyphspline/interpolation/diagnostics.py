@@ -1,4 +1,4 @@
-"""How fast a run shrinks its errors: the matrices of the paper's Section 3, from the recorded footpoints."""
+"""Convergence of a run: the matrices of the paper's Section 3, from the recorded footpoints."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from ..types import FloatArray
 
 History = list[tuple[FloatArray, FloatArray]]
-"""Of every iteration the control points and the footpoints on their curve."""
+"""The control points of every iteration, and the footpoints on their curve."""
 
 
 def diagnose(matrix: Callable[[FloatArray], FloatArray], history: History, at_once: bool) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The loop of Algorithms 1, 2 and 3 in Python: one pass after another until the error is small enough."""
+"""The loop of Algorithms 1, 2 and 3 in Python: passes until the error is small enough."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Pass = Callable[[FloatArray], tuple[FloatArray, FloatArray, float]]
 
 
 class Run(NamedTuple):
-    """The end of an iteration: control points, their footpoints, the error of every pass, and all of them if kept."""
+    """The end of an iteration: control points, their footpoints, the error of every pass, and the history if kept."""
 
     controls: FloatArray
     footpoints: FloatArray

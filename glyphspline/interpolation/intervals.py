@@ -1,7 +1,7 @@
-"""Where a footpoint may be sought: the intervals of the five variants (Table 1), Lemma 2 and Remark 3.
+"""Search intervals of footpoints: the five variants (Table 1), Lemma 2 and Remark 3.
 
-Everything here looks at one basis function at a time. It is given as its *window*, the degree + 2 knots it
-lives on, so that closed, open and odd- or even-degree splines look alike.
+A basis function is given by its *window*, the degree + 2 knots of its support, for closed and open splines of odd and
+even degree alike.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from ..types import FloatArray
 from .method import PEAK_SHARE, Fallback
 
 BISECTIONS = 64
-"""Enough halvings to leave neighbouring floats."""
+"""Number of bisections, enough to reach neighbouring floats."""
 
 
 @dataclass(frozen=True, eq=False)
 class Intervals:
-    """Where each footpoint is sought.
+    """The search interval of each footpoint.
 
     Attributes:
         bounds: (n, 2) the intervals.
@@ -98,7 +98,7 @@ def search_intervals(
         variant: 0 the whole support; 1 the support less a span at each end; 2, 4 Lemma 2; 3 the centre alone.
         margin: c of Lemma 2, the interval being {B_i ≥ 1/2 + min(c, max B_i - 1/2)}, clipped to that of variant 1.
         fallback: where B_i nowhere exceeds 1/2, "knot" takes the centre (Remark 3). "peak" instead takes, for every
-            vertex, {B_i ≥ min(1/2 + c, 0.9 max B_i)}, which never runs empty.
+            vertex, {B_i ≥ min(1/2 + c, 0.9 max B_i)}, which is never empty.
     """
     support = windows[:, [0, -1]]
     inner = windows[:, [1, -2]]

@@ -1,4 +1,4 @@
-"""What may be interpolated: polygons checked, and freed of duplicate vertices."""
+"""Validation of polygons, and merging of duplicate vertices."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..types import FloatArray, IntArray
 SAME_VERTEX = 1e-12
 """Neighbours nearer than this share of the polygon's extent are one vertex.
 
-Much smaller, and the knots between them fall together in floating point once they are summed up.
+With a much smaller value, sums of chords in floating point would give them the same knot.
 """
 
 

@@ -1,7 +1,6 @@
 """The method in its plainest form: NumPy, ``numpy.roots`` for the footpoints as in the paper, one vertex at a time.
 
-This is what the compiled code has to agree with, and the place to read the algorithms. It is slow: some 0.3 ms a
-footpoint.
+The compiled code has to agree with it. It is for reading the algorithms, and slow: some 0.3 ms a footpoint.
 """
 
 from __future__ import annotations
@@ -93,8 +92,8 @@ def _power_basis(degree: int) -> FloatArray:
 def _newton(x: list[float], y: list[float], t: float, steps: int = 12) -> float:
     """Polish a zero of x x' + y y' that ``numpy.roots`` leaves a few digits short, until nothing improves.
 
-    It goes by the coordinates, as the product's coefficients have lost half of the digits where the curve is near its
-    vertex and slow. A start that is on its way to a zero but has not arrived would tie with it.
+    It evaluates the coordinates, as the product's coefficients lose half of the digits where the curve is near its
+    vertex and slow. A start near a zero that is not polished would tie with it.
     """
     value, slope = _product(x, y, t)
     for _ in range(steps):
@@ -121,7 +120,7 @@ def _product(x: list[float], y: list[float], t: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A polygon made ready: which control points are free, and where each vertex may have its footpoint.
+    """A prepared polygon: free control points, and search intervals of footpoints.
 
     Attributes:
         points: (n, 2) the vertices, duplicates merged.
@@ -269,7 +268,7 @@ def _step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, f
 
 
 def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """One sweep of Algorithm 3: every control point is renewed at once, and later vertices see it."""
+    """One sweep of Algorithm 3: each control point is updated before the next footpoint is computed."""
     free = free.copy()
     t = np.empty(len(free))
     error = 0.0

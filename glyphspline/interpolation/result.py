@@ -1,4 +1,4 @@
-"""What an interpolation returns."""
+"""The result of an interpolation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Interpolation:
     Attributes:
         spline: the curve.
         parameters: (n,) footpoint of each vertex, unwrapped: those of p_0 may be negative.
-        intervals: (n, 2) the interval each footpoint was sought in.
+        intervals: (n, 2) the search interval of each footpoint.
         iterations: number of updates made (of sweeps before the one that passed, in Algorithm 3).
         residuals: (iterations + 1,) largest distance of a vertex from its footpoint before each update;
             the last entry is that of the result.
@@ -48,7 +48,7 @@ class Interpolation:
 
 
 def reversed_interpolation(result: Interpolation) -> Interpolation:
-    """The same closed curve with the polygon traversed the other way, from the same first vertex."""
+    """The same closed curve for the reversed polygon with the same first vertex."""
     spline, t, ends = result.spline, result.parameters, result.intervals
     period = spline.knots[-1]
     parameters, intervals = turned(period - t), turned(period - ends[:, ::-1])

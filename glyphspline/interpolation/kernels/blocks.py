@@ -2,8 +2,8 @@
 
 A polygon of n ≤ LANES vertices has n + 4 consecutive lanes of a block: two lanes of halo, its vertices, two lanes of
 halo. Several polygons lie end to end in one block; a longer polygon has a row of blocks, LANES vertices in each. A halo
-repeats the two vertices beyond either end, so that a loop over all lanes needs no test where a polygon ends. What it
-computes in the halos is not used. The stride of a field is a constant: that lets the compiler prove that fields do not
+repeats the two vertices beyond either end, so that a loop over all lanes needs no test for the end of a polygon; its
+results in the halos are not used. The stride of a field is constant, which proves to the compiler that fields do not
 overlap.
 """
 
@@ -22,12 +22,12 @@ STRIDE = 136
 """At least LANES + 2 HALO, and such that the fields of a lane fall into different sets of a cache."""
 
 WIDTH = 8
-"""Loops run over multiples of this many lanes: whole vectors. Beyond the last polygon lanes are zero."""
+"""Loops run over multiples of this number of lanes: whole vectors. Lanes beyond the last polygon are zero."""
 
 SLOTS = (LANES + 2 * HALO) // (2 + 2 * HALO)
-"""The most polygons of a block."""
+"""Maximum number of polygons in a block."""
 
-# What a vertex keeps from pass to pass: control point, vertex, rates and weights of newton_simd.py, interval and
+# The fields of a vertex, kept between passes: control point, vertex, rates and weights of newton_simd.py, interval and
 # footpoint (relative to its knot), error p - C(t) and its square.
 PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
     np.uint64(k * STRIDE) for k in range(16)
@@ -35,7 +35,7 @@ PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY,
 FIELDS = 16
 BLOCK = FIELDS * STRIDE
 SCRATCH = 21
-"""Fields of the scratch block, of which ``lemma2`` needs the most."""
+"""Number of fields of the scratch block, determined by ``lemma2``."""
 
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
@@ -55,7 +55,7 @@ ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
 
 
 class Given(NamedTuple):
-    """What is to be interpolated, and how; see :func:`.run.run`."""
+    """Input; see :func:`.run.run`."""
 
     points: FloatArray
     offsets: IntArray
@@ -101,7 +101,7 @@ class Group(NamedTuple):
 
 @inlined
 def whole_vectors(count: int) -> int:
-    """``count``, or so many more that loops consist of whole vectors."""
+    """``count``, rounded up to a multiple of ``WIDTH``."""
     return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
@@ -159,7 +159,7 @@ def _weights(block: FloatArray, h: FloatArray, first: np.uint64, inside: np.uint
 
 @compiled(internal=True)
 def _place_ends(given: Given, group: Group, q: int) -> None:
-    """The ends of an open arc: fixed points, and the control points beside them by tangent or without curvature."""
+    """The ends of an open arc: fixed points, and the control points beside them, by tangent or natural."""
     k, n, first = group.table[q, POLYGON], group.table[q, COUNT], group.table[q, LANE] + HALO
     row = group.numbers[q]
     scale = row[UNIT] / row[KNOT_UNIT]
@@ -187,7 +187,7 @@ def _place_ends(given: Given, group: Group, q: int) -> None:
 def move(given: Given, group: Group, slots: int, b: int) -> None:
     """P_i += p_i - C(t_i) for the control points of block b; those beside the ends of open arcs follow.
 
-    In the halos this adds what :func:`fill_halos` then replaces.
+    The values in the halos are replaced by :func:`fill_halos`.
     """
     block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
     for lane in range(TWO, np.uint64(whole_vectors(lanes_used(group, slots, b))) + TWO):
@@ -234,7 +234,7 @@ def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
 
 @compiled(internal=True)
 def close_ranks(group: Group, slots: int, done: int) -> int:
-    """Move the polygons that are not ``done`` to the front of their block, in order; how many there are."""
+    """Move the polygons that are not ``done`` to the front of their block, in order; returns their number."""
     block, table, numbers = group.blocks, group.table, group.numbers
     left, to = 0, 0
     end = table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO

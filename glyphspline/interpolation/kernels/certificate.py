@@ -14,25 +14,7 @@ from ..method import TIE_DISTANCE
 from .blocks import DD, EX, EY, TWO, X
 from .footpoint import GUARD, WORK, search_piece
 from .newton_simd import (
-    BAD,
-    DONE,
-    OTHER,
-    OZX,
-    OZY,
-    SEX,
-    SEY,
-    SHI,
-    SIDE,
-    SLO,
-    SVX,
-    SVY,
-    SWX,
-    SWY,
-    SY,
-    SZX,
-    SZY,
-    bernstein,
-    expanded,
+    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein, expanded,
     quartic,
 )  # fmt: skip
 

@@ -15,23 +15,7 @@ import numpy as np
 from ...compiled import compiled, select
 from ...types import FloatArray
 from .blocks import (
-    BLOCK,
-    COUNT,
-    EX,
-    EY,
-    HALF,
-    HALO,
-    INTERVALS,
-    LANE,
-    LANES,
-    NATURAL,
-    ONE,
-    PAD,
-    RATE,
-    THIRD,
-    TWO,
-    Group,
-    X,
+    BLOCK, COUNT, EX, EY, HALF, HALO, INTERVALS, LANE, LANES, NATURAL, ONE, PAD, RATE, THIRD, TWO, Group, X,
 )  # fmt: skip
 
 BAND, RIGHT, ROW = 5, 5, 9
@@ -76,7 +60,7 @@ def _collocation(group: Group, q: int) -> None:
 def _eliminate(rows: FloatArray) -> bool:
     """Solve the band for all four right-hand sides, in place. False if a pivot vanishes.
 
-    The two rows before travel along as numbers: inverse pivot, two entries above the diagonal, right-hand sides.
+    The two previous rows are kept in scalars: inverse pivot, two entries above the diagonal, right-hand sides.
     """
     i1 = e1 = f1 = p0 = p1 = p2 = p3 = 0.0
     i2 = e2 = f2 = q0 = q1 = q2 = q3 = 0.0
@@ -109,7 +93,7 @@ def _eliminate(rows: FloatArray) -> bool:
 
 @compiled(internal=True)
 def _eliminate_cyclic(rows: FloatArray, n: int) -> bool:
-    """The same with rows that wrap around, n ≥ 5. The solution is at numbers 5 and 6 of each row."""
+    """Solve with rows that wrap around, n ≥ 5. The solution is in columns 5 and 6 of each row."""
     m = n - 2
     for i in (0, 1, m - 2, m - 1):
         for k in range(BAND):
@@ -149,7 +133,7 @@ def _eliminate_cyclic(rows: FloatArray, n: int) -> bool:
 
 @compiled(internal=True)
 def _eliminate_dense(rows: FloatArray, n: int) -> bool:
-    """The same for n < 5, where a row meets an unknown twice: Gauss with exchange of rows."""
+    """Solve for n < 5, where a row has an unknown twice, by Gaussian elimination with pivoting."""
     A = rows[n : 2 * n]
     for i in range(n):
         for k in range(ROW):

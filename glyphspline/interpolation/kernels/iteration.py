@@ -1,8 +1,8 @@
 """The iteration of a group of polygons: Algorithm 2 on cubics, and the frozen solve.
 
-A pass first carries out the moves that the one before it found, a block ahead of the block whose footpoints are
-sought, so that each block comes through the cache once a pass. Results do not depend on the other polygons of a group.
-A polygon that is done is stored, and the lanes of the others close ranks.
+A pass applies the moves of the previous pass one block ahead of the block whose footpoints it computes, so that each
+block is read into the cache once a pass. Results do not depend on the other polygons of a group. A polygon that is done
+is stored, and the lanes of the others are compacted.
 """
 
 from __future__ import annotations
@@ -12,41 +12,9 @@ import numpy as np
 from ...compiled import compiled, select
 from ...types import FloatArray
 from .blocks import (
-    BLOCK,
-    COUNT,
-    DD,
-    FALLBACKS,
-    FOUR,
-    HALO,
-    HIGH,
-    KNOT_UNIT,
-    LANE,
-    LANES,
-    LARGEST,
-    LEAST,
-    LIMIT,
-    LOW,
-    ONE,
-    ORDER,
-    PASSES,
-    POLYGON,
-    PX,
-    PY,
-    SEARCHED,
-    STATE,
-    THREE,
-    TOTAL,
-    TWO,
-    UNIT,
-    Found,
-    Given,
-    Group,
-    X,
-    close_ranks,
-    fill_halos,
-    lanes_used,
-    move,
-    whole_vectors,
+    BLOCK, COUNT, DD, FALLBACKS, FOUR, HALO, HIGH, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW, ONE, ORDER,
+    PASSES, POLYGON, PX, PY, SEARCHED, STATE, THREE, TOTAL, TWO, UNIT, Found, Given, Group, X, close_ranks, fill_halos,
+    lanes_used, move, whole_vectors,
 )  # fmt: skip
 from .certificate import SEARCHED as MARK
 from .certificate import flagged
@@ -62,7 +30,7 @@ POLISHED = 1e-14
 """A frozen solve whose error is not below this share of the extent is done a second time, for its rounding errors."""
 
 SPARSE = 0.75
-"""Share of the lanes in use from which on polygons close ranks. Copying all fields takes a quarter of a pass."""
+"""Share of the lanes in use below which they are compacted. Copying all fields takes a quarter of a pass."""
 
 
 @compiled(internal=True)

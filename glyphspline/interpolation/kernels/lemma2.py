@@ -1,4 +1,4 @@
-"""Where the footpoints of a group are sought: Lemma 2's interval of every cubic B_i, for SIMD as in ``newton_simd``.
+"""Search intervals of a group's footpoints: Lemma 2's interval of every cubic B_i, for SIMD as in ``newton_simd``.
 
 On the spans a, b | c, d around its knot B_i is given by Bernstein coefficients, ``top`` at the knot and three more to
 either side. Its peak is on the side where it rises from the knot; the interval has one end beyond the peak, and the
@@ -13,28 +13,8 @@ import numpy as np
 from ...compiled import compiled, fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
-    BLOCK,
-    COUNT,
-    FALLBACKS,
-    HALO,
-    HIGH,
-    INTERVALS,
-    LANE,
-    LANES,
-    LEAST,
-    LOW,
-    ONE,
-    PAD,
-    POLYGON,
-    STRIDE,
-    THREE,
-    TWO,
-    WIDTH,
-    Given,
-    Group,
-    X,
-    lanes_used,
-    whole_vectors,
+    BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, ONE, PAD, POLYGON, STRIDE, THREE, TWO,
+    WIDTH, Given, Group, X, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
 
@@ -44,7 +24,7 @@ PROBLEM_A, PROBLEM_B = np.uint64(11 * STRIDE), np.uint64(16 * STRIDE)
 B1, B2, B3, INSIDE, OUTSIDE = (np.uint64(k * STRIDE) for k in range(5))
 STEPS = 40
 CLOSE = 1e-9
-"""A Newton step of this share of the span is the last: its square is what is left."""
+"""A Newton step below this share of the span is the last: the error left is its square."""
 
 
 @compiled(internal=True)
@@ -89,7 +69,7 @@ def _prepare(h: FloatArray, S: FloatArray, first: np.uint64, count: int, margin:
 
 @compiled(internal=True)
 def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
-    """One step for every crossing; the number of those still under way."""
+    """One step for every crossing; returns the number of those that have not converged."""
     wide_vectors()
     pending = 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -118,9 +98,9 @@ def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
 
 @compiled(internal=True)
 def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> None:
-    """Where every basis function crosses its level: from halfway, by at most ``STEPS`` steps, into a field.
+    """Write where every basis function crosses its level to a field, from halfway by at most ``STEPS`` steps.
 
-    R1 holds the estimates. R2 says which have arrived: those without a crossing have from the start.
+    R1: estimates. R2: whether converged, which those without a crossing are from the start.
     """
     for j in range(TWO, np.uint64(m) + TWO):
         inside, outside = S[problem + INSIDE + j], S[problem + OUTSIDE + j]
@@ -165,9 +145,9 @@ def _interval(
 
 @compiled(internal=True)
 def fill_intervals(given: Given, group: Group, slots: int) -> None:
-    """Where every footpoint is sought, relative to its knot, into the blocks; fallbacks and the least value of any B_i.
+    """Write search intervals, relative to their knots, to the blocks; fallbacks and least values of B_i to the group.
 
-    The lanes between polygons, and those behind the last one, get no crossing.
+    The lanes between polygons, and beyond the last one, have no crossing.
     """
     S = group.scratch
     for q in range(slots):

@@ -25,27 +25,7 @@ import numpy as np
 from ...compiled import compiled, fma, inlined, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
-    DD,
-    EX,
-    EY,
-    FOUR,
-    HALF,
-    HIGH,
-    LAMBDA,
-    LOW,
-    MOVE_A,
-    MOVE_B,
-    ONE,
-    PX,
-    PY,
-    QX,
-    QY,
-    RATE,
-    STRIDE,
-    THIRD,
-    THREE,
-    TWO,
-    X,
+    DD, EX, EY, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PX, PY, QX, QY, RATE, STRIDE, THIRD, THREE, TWO, X,
 )  # fmt: skip
 from .footpoint import GUARD
 
@@ -179,7 +159,7 @@ def _taylor(B: FloatArray, S: FloatArray, m: int) -> None:
 
 @compiled(internal=True)
 def _newton(S: FloatArray, m: int) -> int:
-    """One step for every vertex that has not settled; the number of those that still have not."""
+    """One step for every vertex that has not converged; returns the number of those that still have not."""
     wide_vectors()
     pending = 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -216,7 +196,7 @@ def _newton(S: FloatArray, m: int) -> int:
 
 @compiled(internal=True)
 def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
-    """Footpoints, errors p - C(t) and squared distances into the block; how many are flagged, how many not finite."""
+    """Write footpoints, errors p - C(t) and squared distances to the block; returns counts of flagged, not finite."""
     wide_vectors()
     bad, wild = 0, 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -250,7 +230,7 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
 
 @compiled(internal=True)
 def seek(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
-    """Footpoints in m lanes of a block, and their errors, into it; how many are flagged, and how many not finite.
+    """Write footpoints and errors to m lanes of a block; returns the numbers of flagged and of not finite ones.
 
     Where both ends of an interval are the same, the footpoint is that parameter.
     """

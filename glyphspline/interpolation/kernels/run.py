@@ -11,27 +11,8 @@ from ...compiled import borrowed, compiled, keep_alive
 from ...types import FloatArray, IntArray
 from ..method import SETTLED
 from .blocks import (
-    BLOCK,
-    COUNT,
-    END,
-    HALO,
-    INTERVALS,
-    KNOT_UNIT,
-    LANE,
-    LANES,
-    LIMIT,
-    PAD,
-    POLYGON,
-    SCRATCH,
-    SLOTS,
-    STRIDE,
-    TOTAL,
-    UNIT,
-    WIDTH,
-    Found,
-    Given,
-    Group,
-    place,
+    BLOCK, COUNT, END, HALO, INTERVALS, KNOT_UNIT, LANE, LANES, LIMIT, PAD, POLYGON, SCRATCH, SLOTS, STRIDE, TOTAL,
+    UNIT, WIDTH, Found, Given, Group, place,
 )  # fmt: skip
 from .collocation import ROW
 from .iteration import iterate
@@ -54,8 +35,8 @@ def run(
         tangents: (K, 2, 2) end tangents of open arcs, NaN for natural ends; (0, 2, 2) if closed.
         exponent: of the chord length in the knots; negative for ``own_knots``.
         peak_shares: (K,) of ``fallback="peak"``, 0 for "knot".
-        tolerances: (K,) residual tolerances. NaN stands for ``RELATIVE_TOLERANCE``, and is replaced.
-        blocks: memory for the blocks of the largest polygon; a smaller array will do, and is then not used.
+        tolerances: (K,) residual tolerances; NaN is replaced by the one of ``RELATIVE_TOLERANCE``.
+        blocks: memory for the blocks of the largest polygon; a smaller array is ignored.
         knots, controls, parameters, bounds, kept, whole, rates: results. A polygon's knots begin at its offset, plus k
             if closed; its control points at its offset, plus 2 k if open.
 

@@ -1,6 +1,6 @@
-"""A polygon before its iteration starts: duplicates merged, knots found.
+"""Preparation of a polygon: duplicates merged, knots computed.
 
-The same rules, to rounding, as ``polygon.py`` and ``parameters.py`` have for NumPy, which explain them.
+The rules are those of ``polygon.py`` and ``parameters.py``, which explain them; results agree to rounding.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHED = range(5)
 
 @inlined
 def distance(p: FloatArray, i: int, j: int) -> float:
-    """Between two vertices. Extents are such that squares do not overflow; ``hypot`` takes as long as all the rest."""
+    """Distance of two vertices. Squares do not overflow within the limits of extents; ``hypot`` doubles the time."""
     return np.sqrt((p[i, 0] - p[j, 0]) * (p[i, 0] - p[j, 0]) + (p[i, 1] - p[j, 1]) * (p[i, 1] - p[j, 1]))
 
 
 @compiled(internal=True)
 def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
-    """Indices of the vertices that are kept, into ``kept``; how many, -1 if they admit no curve, and the extent."""
+    """Write the indices of the vertices that are kept; returns their number, -1 for a bad polygon, and the extent."""
     n = points.shape[0]
     if n == 0:
         return -1, 0.0
@@ -69,7 +69,7 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
 
 @compiled(internal=True)
 def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, u: FloatArray) -> bool:
-    """Knots from 0 by sums of chord lengths to a power, into u. False if two of them are the same."""
+    """Write knots, sums of powers of chord lengths, to u. False if two of them coincide."""
     total = 0.0
     u[0] = 0.0
     for i in range(n if closed else n - 1):
@@ -88,7 +88,7 @@ def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: 
 
 @compiled(internal=True)
 def _given_knots(given: FloatArray, kept: IntArray, count: int, closed: bool, u: FloatArray) -> bool:
-    """The caller's parameters, those of merged vertices left out, into u. False if not finite and increasing."""
+    """Write the given parameters of the vertices kept to u. False if they are not finite and increasing."""
     for i in range(count):
         u[i] = given[kept[i]]
     if closed:
@@ -117,7 +117,7 @@ def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
 
 @compiled(internal=True)
 def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
-    """Merge vertices of polygon k and find its knots; how many are left, 0 if it is refused, and two scales.
+    """Merge vertices of polygon k and compute its knots; returns the number kept, 0 if refused, and two scales.
 
     The scales, of lengths and of parameters, bring extent and mean knot interval near 1.
     """
