@@ -107,7 +107,6 @@ class RunSpec:
 
 def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> dict[str, Any]:
     """The content of ``run.json``, independent of the machine, the clock and the number of workers."""
-    metrics = asdict(source.metrics)
     return {
         "glyphspline": __version__,
         "font": {
@@ -117,7 +116,7 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
             "location": dict(source.location),
             "family": source.family,
             "style": source.style,
-            "metrics": metrics,
+            "metrics": asdict(source.metrics),
         },
         "options": asdict(spec.options),
         "formats": list(spec.formats),

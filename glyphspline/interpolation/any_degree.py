@@ -53,18 +53,11 @@ def interpolate_any_degree(
     if method.diagnostics:
         observed = diagnose(problem.matrix, run.history, at_once)
         observed["history"] = tuple((problem.points_of(P), t / problem.knot_unit) for P, t in run.history)
+    spline, converged = Spline(problem.points_of(controls), u, degree, closed), bool(residuals[-1] < tolerance)
     return Interpolation(
-        spline=Spline(problem.points_of(controls), u, degree, closed),
-        parameters=parameters,
-        intervals=bounds,
-        iterations=len(residuals) - 1,
-        residuals=residuals,
-        converged=bool(residuals[-1] < tolerance),
-        fallbacks=intervals.fallbacks,
-        rate_bound=intervals.rate_bound,
-        merged=merged,
-        **observed,
-    )
+        spline, parameters, bounds, len(residuals) - 1, residuals, converged, intervals.fallbacks,
+        intervals.rate_bound, merged, **observed,
+    )  # fmt: skip
 
 
 def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curve: bool) -> Interpolation:
@@ -84,16 +77,9 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
     controls, residuals = p.copy(), np.array(run.residuals) / problem.unit
     controls[k] = problem.points_of(run.controls[k])
     return Interpolation(
-        spline=Spline(controls, u),
-        parameters=run.footpoints / problem.knot_unit,
-        intervals=intervals.bounds,
-        iterations=len(residuals) - 1,
-        residuals=residuals,
-        converged=bool(residuals[-1] < tolerance),
-        fallbacks=0,
-        rate_bound=rate_bound,
-        merged=merged,
-    )
+        Spline(controls, u), run.footpoints / problem.knot_unit, intervals.bounds, len(residuals) - 1, residuals,
+        bool(residuals[-1] < tolerance), 0, rate_bound, merged,
+    )  # fmt: skip
 
 
 def _intervals(windows: FloatArray, centres: FloatArray, method: Method) -> Intervals:

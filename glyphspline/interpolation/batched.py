@@ -102,17 +102,11 @@ class BatchedInterpolation:
         if n < stop - start:
             merged = np.setdiff1d(np.arange(stop - start), self.kept[start : start + n])
         residuals = self.residuals[first:last]
+        spline, vertices = Spline.trusted(controls, knots, 3, self.closed), slice(start, start + n)
         return Interpolation(
-            Spline.trusted(controls, knots, 3, self.closed),
-            self.parameters[start : start + n],
-            self.bounds[start : start + n],
-            iterations,
-            residuals,
-            float(residuals[-1]) < tolerance,
-            fallbacks,
-            rate,
-            merged,
-        )
+            spline, self.parameters[vertices], self.bounds[vertices], iterations, residuals,
+            float(residuals[-1]) < tolerance, fallbacks, rate, merged,
+        )  # fmt: skip
 
 
 def interpolate_batch(

@@ -13,6 +13,7 @@ from ..outlines.outline import Contour, Outline
 from ..types import FloatArray
 from ..writers.svg.markup import code_points
 from ..writers.svg.path_data import path_data, polyline_data
+from .conversion import is_smooth
 
 DIGITS = 2
 
@@ -38,7 +39,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
         "variant": result.options.variant,
         "result": path_data((contour.curve for contour in result.contours), DIGITS),
         "polygons": [points(contour.polygon) for contour in result.contours],
-        "movable": [len(c.interpolations) == 1 and c.interpolations[0].spline.closed for c in result.contours],
+        "movable": [is_smooth(contour) for contour in result.contours],
         "notes": list(result.notes),
         "residuals": [[finite(error) for error in arc.residuals.tolist()] for arc in arcs],
         "intervals": "".join(interval_data(arc) for arc in arcs),
