@@ -71,8 +71,8 @@ def require(good: bool, rule: str, value: object) -> None:
 
 def require_choice(name: str, value: object, choices: Collection[object] = (True, False)) -> None:
     """Raise an OptionError unless ``value`` is one of ``choices``: strings, or bools."""
-    good = isinstance(value, str | bool) and value in choices
-    require(good, f"{name} is {' or '.join(map(repr, choices))}", value)
+    if not isinstance(value, str | bool) or value not in choices:
+        raise OptionError(f"{name} is {' or '.join(map(repr, choices))}, not {value!r}")
 
 
 def is_whole(value: Any, least: int, largest: int) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OutputError
+from ..errors import GlyphsplineError, OutputError, is_positive, require, require_choice
 from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
@@ -53,8 +53,7 @@ class Limits:
 
     def __post_init__(self) -> None:
         for name, value in asdict(self).items():
-            if not value > 0:
-                raise GlyphsplineError(f"the limit of {name} is positive, not {value}")
+            require(is_positive(value), f"the limit of {name} is a positive number", value)
 
 
 @dataclass(frozen=True)
@@ -77,8 +76,7 @@ class RunSpec:
         unknown = [str(name) for name in self.formats if name not in FORMATS]
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
-        if self.view_box not in VIEW_BOXES:
-            raise GlyphsplineError(f"view_box is one of {', '.join(VIEW_BOXES)}, not {self.view_box!r}")
+        require_choice("view_box", self.view_box, VIEW_BOXES)
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
         object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..curves.parameters import Parametrisation
-from ..errors import OptionError, PolygonError
+from ..errors import OptionError, PolygonError, require_choice
 from ..types import FloatArray
 from .any_degree import interpolate_any_degree, interpolate_any_vertex
 from .batched import explain, interpolate_batch, interpolate_one, over_threads
@@ -134,8 +134,7 @@ def interpolate_many(
     everything = list(polygons)
     own = None if isinstance(knots, str) else knots
     rule: Any = knots if own is None else None
-    if errors not in ("raise", "return"):
-        raise OptionError(f'errors is "raise" or "return", not {errors!r}')
+    require_choice("errors", errors, ("raise", "return"))
     if any(each is not None and len(each) != len(everything) for each in (own, end_tangents)):
         raise OptionError("knots and end_tangents are given for each polygon of the list, or for none")
     results = _interpolated(everything, Method(variant, knots=rule, **options), own, end_tangents, threads)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
+from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from .markup import code_points, data_attributes, document, id_prefix, text, union, view_box_value
 from .path_data import Box, PathData, curves_data
 
 ViewBox = Literal["em", "metrics", "ink"]
-VIEW_BOXES: tuple[ViewBox, ...] = ("em", "metrics", "ink")
+VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
 
 
 def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
@@ -27,7 +28,7 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
             ink beyond it overflows visibly. "ink": the tight box around the ink.
 
     Raises:
-        ValueError: ``view_box`` is none of these.
+        OptionError: ``view_box`` is none of these.
     """
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
     return svg_document(glyph, path, view_box).decode()
@@ -50,15 +51,14 @@ def svg_document(glyph: GlyphResult, path: PathData, view_box: ViewBox) -> bytes
 
 def shown_box(outline: Outline, ink: Box | None, choice: ViewBox) -> Box:
     """The region of a view box choice, in font units, y up."""
+    require_choice("view_box", choice, VIEW_BOXES)
     metrics = outline.metrics
     box = (0.0, metrics.descender, outline.advance, metrics.ascender)
     if choice == "metrics":
         return box
     if choice == "em":
         return union(box, ink)
-    if choice == "ink":
-        return ink or (0.0, 0.0, 0.0, 0.0)
-    raise ValueError(f'view_box is "em", "metrics" or "ink", not {choice!r}')
+    return ink or (0.0, 0.0, 0.0, 0.0)
 
 
 def title(outline: Outline) -> str:
