@@ -15,6 +15,7 @@ from ..types import FloatArray
 from .any_degree import interpolate_any_degree, interpolate_any_vertex
 from .batched import explain, interpolate_batch, interpolate_one, over_threads
 from .method import Fallback, Finish, Method, Tangents, method_of
+from .polygon import as_points
 from .result import Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
@@ -74,7 +75,7 @@ def interpolate(
     )  # fmt: skip
     if closed and end_tangents is not None:
         raise OptionError("end_tangents belong to an open arc (closed=False)")
-    p = _as_points(points)
+    p = as_points(points)
     given = _as_knots(knots, p, closed) if own else None
     if method.stepwise:
         return interpolate_any_degree(p, method, given, end_tangents)
@@ -162,7 +163,7 @@ def _interpolated(
     given: list[FloatArray] = []
     for k, points in enumerate(polygons):
         try:
-            p = _as_points(points)
+            p = as_points(points)
             if own_knots is not None:
                 given.append(_as_knots(own_knots[k], p, method.closed))
         except PolygonError as error:
@@ -201,16 +202,6 @@ def _interpolated(
     for k, result in zip(good, found, strict=True):
         results[k] = result
     return results
-
-
-def _as_points(points: ArrayLike) -> FloatArray:
-    try:
-        p = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise explain(points, "chord", True) from None
-    if p.ndim != 2 or p.shape[1] != 2:
-        raise explain(p, "chord", True)
-    return p
 
 
 def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:

@@ -15,6 +15,17 @@ With a much smaller value, sums of chords in floating point would give them the 
 """
 
 
+def as_points(points: ArrayLike) -> FloatArray:
+    """Vertices as (n, 2) float64, contiguous; a PolygonError if they are not numbers or of another shape."""
+    try:
+        p = np.ascontiguousarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as cause:
+        raise PolygonError("a polygon is an array of numbers of shape (n, 2)") from cause
+    if p.ndim != 2 or p.shape[1] != 2:
+        raise PolygonError(f"a polygon has shape (n, 2), not {p.shape}")
+    return p
+
+
 def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, IntArray]:
     """Check a polygon and merge consecutive duplicates.
 
@@ -29,12 +40,7 @@ def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, I
         PolygonError: not of shape (n, 2); a coordinate is NaN or infinite, or so large that distances overflow;
             fewer than three distinct vertices (two for an open arc).
     """
-    try:
-        p = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as cause:
-        raise PolygonError("a polygon is an array of numbers of shape (n, 2)") from cause
-    if p.ndim != 2 or p.shape[1] != 2:
-        raise PolygonError(f"a polygon has shape (n, 2), not {p.shape}")
+    p = as_points(points)
     bad = np.flatnonzero(~np.isfinite(p).all(axis=1))
     if len(bad):
         raise PolygonError(f"vertex {bad[0]} is not finite: ({p[bad[0], 0]}, {p[bad[0], 1]})")
