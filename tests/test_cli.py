@@ -31,6 +31,20 @@ def test_convert_writes_what_it_says(tmp_path: Path) -> None:
     assert (options["step"], options["variant"], options["margin"]) == (90, 2, 0.02)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--preset", "paper"], ("smooth", 0.0, "fast")),
+        (["--preset", "type", "--corners", "sharp"], ("sharp", 0.02, "best")),
+    ],
+)
+def test_presets_set_options_together(arguments: list[str], expected: tuple[object, ...], tmp_path: Path) -> None:
+    out = ["--format", "svg", "--out", str(tmp_path / "out"), "--jobs", "0"]
+    assert runner.invoke(app, ["convert", FONT, "--text", "O", *arguments, *out]).exit_code == 0
+    options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
+    assert (options["corners"], options["margin"], options["effort"]) == expected
+
+
 def test_quiet_says_nothing(tmp_path: Path) -> None:
     arguments = ["convert", FONT, "--gids", "1,6", "--count", "30", "--out", str(tmp_path / "o"), "--jobs", "0", "-q"]
     result = runner.invoke(app, [*arguments, "--format", "svg"])
@@ -53,6 +67,8 @@ def test_quiet_says_nothing(tmp_path: Path) -> None:
         (["missing.ttf", "--all"], "missing.ttf"),
         ([FONT, "--text-file", "missing.txt"], "missing.txt"),
         ([FONT, "--all", "--variant", "7"], "variant"),
+        ([FONT, "--all", "--preset", "paper", "--corners", "sharp"], "--preset paper sets --corners smooth"),
+        ([FONT, "--all", "--preset", "type", "--step", "9"], "give a tolerance"),
     ],
 )
 def test_an_unusable_call_ends_with_2_and_a_reason(arguments: list[str], words: str, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..fitting.options import Corners, Effort, Options
+from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..writers.svg.document import ViewBox
 
@@ -44,7 +44,20 @@ Location = Annotated[
 Variant = Annotated[int, typer.Option("--variant", help="Of the paper's Table 1, 0 to 4.")]
 Margin = Annotated[float, typer.Option("--margin", help="c of Lemma 2, 0 to 0.5.")]
 WhereNone = Annotated[Fallback, typer.Option("--fallback", help="Where Lemma 2 has no interval.")]
-CornerMode = Annotated[Corners, typer.Option("--corners", help="One smooth curve a contour, or split at corners.")]
+CornerMode = Annotated[
+    Corners,
+    typer.Option(
+        "--corners", help="smooth: one curve a contour, for brush and traced outlines. sharp: corners stay, for type."
+    ),
+]
+Between = Annotated[
+    Continuity,
+    typer.Option("--continuity", help="Between corners: c2, one spline; g1, cubics that only meet without a kink."),
+]
+Choice = Annotated[
+    Preset | None,
+    typer.Option("--preset", help="paper: smooth, c = 0, as the paper has it. type: sharp, c2, best."),
+]
 Tolerance = Annotated[
     float | None,
     typer.Option("--tolerance", help="Distance allowed from the source, in font units. Without it, 1/1000 em."),
@@ -76,7 +89,21 @@ Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
 
 def options_of(given: Mapping[str, Any]) -> Options:
     """The options of a conversion, from a command's arguments by name."""
+    given = {**given, **preset_of(given)}
     return Options(**{field.name: given[field.name] for field in fields(Options) if field.name in given})
+
+
+def preset_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The options that ``--preset`` sets; none of them may be given another value beside it."""
+    from ..errors import OptionError
+
+    preset = given.get("preset")
+    if preset is None:
+        return {}
+    for name, value in PRESETS[preset].items():
+        if given[name] not in (value, getattr(Options, name)):
+            raise OptionError(f"--preset {preset} sets --{name} {value}, not {given[name]}")
+    return PRESETS[preset]
 
 
 def spec_of(given: Mapping[str, Any]) -> RunSpec:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from ..errors import OptionError, is_positive, is_whole, require, require_choice
 from ..interpolation.method import Fallback, Method
@@ -11,6 +11,14 @@ from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]
+Continuity = Literal["c2", "g1"]
+Preset = Literal["paper", "type"]
+
+PRESETS: dict[Preset, dict[str, Any]] = {
+    "paper": {"corners": "smooth", "margin": 0.0},
+    "type": {"corners": "sharp", "continuity": "c2", "effort": "best"},
+}
+"""Options set together: one smooth curve a contour as the paper has it; corners and C2 arcs for type."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +32,8 @@ class Options:
         corners: "smooth" is one closed C2 curve a contour (the paper), "sharp" splits at corners.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
+        continuity: of "sharp" between corners: "c2" is one spline of variant 2, "g1" cubics that only share tangents,
+            in which variant 2 does not run.
         effort: "fast" takes few fits, "best" seeks the fewest vertices.
         margin: c of Lemma 2. fallback: what to do where Lemma 2 has no interval, "knot" or "peak".
         max_ratio: bound on the ratio of adjacent chords.
@@ -43,6 +53,7 @@ class Options:
     count: int | None = None
     corners: Corners = "smooth"
     corner_angle: float = CORNER_ANGLE
+    continuity: Continuity = "c2"
     effort: Effort = "fast"
     margin: float = 0.02
     fallback: Fallback = "peak"
@@ -63,6 +74,7 @@ class Options:
         require(positive, "tolerance is a positive distance", self.tolerance)
         require(is_whole(self.precision, 0, 9), "precision is a whole number from 0 to 9", self.precision)
         require_choice("corners", self.corners, get_args(Corners))
+        require_choice("continuity", self.continuity, get_args(Continuity))
         require_choice("effort", self.effort, get_args(Effort))
         require_choice("measure", self.measure)
         require_choice("remove_overlaps", self.remove_overlaps)

@@ -20,12 +20,17 @@ SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
 
 
+BEND, KINK = 0.004, 0.065
+"""A spline whose vertices are h apart misses an outline by about BEND h⁴ κ³ where it bends, and by KINK h sin θ where
+it turns by θ."""
+
+
 class Joints(NamedTuple):
     """Samples of one contour, and its joints; arrays run once round, so that the last joint is the first again.
 
     Attributes:
-        samples: (N, 2) points of the outline; first: (m + 1,) index of each joint in them.
-        density: (N,) integral of the wanted vertex density.
+        samples: (N, 2) points of the outline; places: (N,) where on it they lie. first: (m + 1,) index of each joint.
+        spacing: (N - 1,) wanted distance of vertices between each sample and the next.
         corner: (m + 1,) the outline turns by the corner angle or more.
         hard: (m + 1,) an arc has to end here: a corner that shows, or the end of a straight line that stays.
         arriving, leaving: (m + 1, 2) unit tangents that arcs take up when they end here.
@@ -33,8 +38,9 @@ class Joints(NamedTuple):
     """
 
     samples: FloatArray
+    places: FloatArray
     first: IntArray
-    density: FloatArray
+    spacing: FloatArray
     corner: BoolArray
     hard: BoolArray
     arriving: FloatArray
@@ -43,7 +49,9 @@ class Joints(NamedTuple):
 
 
 @compiled
-def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: float, shortest_line: float) -> Joints:
+def find_joints(
+    cubics: FloatArray, degrees: IntArray, tolerance: float, angle: float, shortest_line: float, graded: bool
+) -> Joints:  # fmt: skip
     """Sample a contour and classify its joints.
 
     Args:
@@ -51,17 +59,27 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
         tolerance: the fit's, in font units.
         angle: turn from which a joint is a corner, in radians.
         shortest_line: straight lines at least this long stay lines.
+        graded: whether samples are denser beside tight turns, where a spline might swing out between them.
     """
     m = len(cubics)
-    first = np.empty(m + 1, dtype=np.int64)
-    first[0] = 0
-    for j in range(m):
-        first[j + 1] = first[j] + samples_of(cubics, j, degrees[j] == 1, tolerance)
-    N = first[m] + 1
-    samples, density = np.empty((N, 2)), np.empty(N)
+    places = even_places(cubics, degrees, tolerance)
+    if graded:
+        places = graded_places(cubics, places, tolerance)
+    N = len(places)
+    samples, spacing, first = np.empty((N, 2)), np.empty(N - 1), np.empty(m + 1, dtype=np.int64)
+    first[m] = N - 1
+    for i in range(N - 1):
+        j = int(places[i])
+        x = places[i] - j
+        if x == 0.0:
+            first[j] = i
+        samples[i, 0], samples[i, 1], _, _, _, _ = jet(cubics, j, x)
+        _, _, dx, dy, ax, ay = jet(cubics, j, (places[i] + places[i + 1]) / 2 - j)
+        curvature = abs(dx * ay - dy * ax) / max(np.hypot(dx, dy), 1e-9) ** 3
+        spacing[i] = (tolerance / (BEND * max(curvature, 1e-9 / tolerance) ** 3)) ** 0.25
+    samples[N - 1, 0], samples[N - 1, 1] = cubics[0, 0, 0], cubics[0, 0, 1]
     corner, hard, line = np.empty(m + 1, np.bool_), np.empty(m + 1, np.bool_), np.empty(m, np.bool_)
     arriving, leaving = np.empty((m + 1, 2)), np.empty((m + 1, 2))
-    density[0], least = 0.0, 1 / (500 * tolerance)
     for j in range(m):
         chord = np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
         line[j] = degrees[j] == 1 and chord >= shortest_line
@@ -71,23 +89,15 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
         size, size_there = np.hypot(ax, ay), np.hypot(bx, by)
         leaving[j, 0], leaving[j, 1] = ax / size, ay / size
         arriving[j + 1, 0], arriving[j + 1, 1] = bx / size_there, by / size_there
-        n = first[j + 1] - first[j]
-        for i in range(n):
-            at = first[j] + i
-            samples[at, 0], samples[at, 1], _, _, _, _ = jet(cubics, j, i / n)
-            # The density of vertices wanted goes with the root of the curvature.
-            _, _, dx, dy, ax, ay = jet(cubics, j, (i + 0.5) / n)
-            speed = np.hypot(dx, dy)
-            curvature = abs(dx * ay - dy * ax) / max(speed, 1e-9) ** 3
-            density[at + 1] = speed / n * np.sqrt(min(curvature, 1 / (4 * tolerance)) + least)
-    samples[N - 1, 0], samples[N - 1, 1] = cubics[0, 0, 0], cubics[0, 0, 1]
     arriving[0, 0], arriving[0, 1] = arriving[m, 0], arriving[m, 1]
     bends = turns(cubics, NO_HANDLE)
     for j in range(m):
         bend = abs(bends[j])
         corner[j] = bend >= angle
         hard[j] = (corner[j] and shows(samples, first[j], tolerance, angle)) or line[j] or line[j - 1]
-        density[first[j]] += np.sqrt(bend * 4 * tolerance)
+        kink = tolerance / (KINK * np.sin(max(min(bend, np.pi / 2), 1e-9)))
+        for i in (first[j], (first[j] - 1) % (N - 1)):
+            spacing[i] = min(spacing[i], kink)
         if corner[j]:
             continue
         ax, ay, bx, by = arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1]
@@ -103,9 +113,50 @@ def find_joints(cubics: FloatArray, degrees: IntArray, tolerance: float, angle: 
     corner[m], hard[m] = corner[0], hard[0]
     for axis in range(2):
         arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
-    for j in range(1, N):
-        density[j] += density[j - 1]
-    return Joints(samples, first, density, corner, hard, arriving, leaving, line)
+    return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, line)
+
+
+@compiled(internal=True)
+def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
+    """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later."""
+    m = len(cubics)
+    counts, total = np.empty(m, dtype=np.int64), 0
+    for j in range(m):
+        counts[j] = samples_of(cubics, j, degrees[j] == 1, tolerance)
+        total += counts[j]
+    places, at = np.empty(total + 1), 0
+    for j in range(m):
+        for i in range(counts[j]):
+            places[at] = j + i / counts[j]
+            at += 1
+    places[total] = m
+    return places
+
+
+@compiled(internal=True)
+def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> FloatArray:
+    """The places with more between them, until no step longer than the tolerance is over twice as long as the next."""
+    m = len(cubics)
+    while True:
+        n = len(places) - 1
+        step = np.empty(n)
+        x, y, _, _, _, _ = jet(cubics, 0, 0.0)
+        for i in range(n):
+            s = min(int(places[i + 1]), m - 1)
+            px, py, _, _, _, _ = jet(cubics, s, places[i + 1] - s)
+            step[i] = np.hypot(px - x, py - y)
+            x, y = px, py
+        new, count = np.empty(2 * n + 1), 0
+        for i in range(n):
+            new[count] = places[i]
+            count += 1
+            if step[i] > max(2 * min(step[i - 1], step[(i + 1) % n]), tolerance):
+                new[count] = (places[i] + places[i + 1]) / 2
+                count += 1
+        if count == n:
+            return places
+        new[count] = m
+        places = new[: count + 1]
 
 
 @compiled(internal=True)

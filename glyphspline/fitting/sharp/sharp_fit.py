@@ -1,12 +1,12 @@
-"""The sharp mode: contours cut at their corners and straight lines, with clamped splines of few vertices in between.
+"""The sharp mode: contours cut at corners and straight lines, with one spline of variant 2 in between, or cubics.
 
-:mod:`.assembly` cuts the contours of a glyph and puts them together again; this file makes sure that the result is
-within the tolerance, measures it, and fits contours again whose results cross themselves.
+:mod:`.cutting` cuts the contours and fits the pieces, :mod:`.assembly` puts them together; this file makes sure that
+the result is within the tolerance, measures it, and fits contours again whose results cross themselves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +15,17 @@ from ...curves.bspline import Spline
 from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
-from ...outlines.contour_arrays import ContourArrays, Polylines
-from ...types import FloatArray, IntArray, Views
+from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
 from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
 from ..results import ConvertedContours, assembled
-from .assembly import Pieces, certify, cut_closer, cut_contours, put_together
-from .segmentation import MOST_SPANS
+from .assembly import certify, put_together
+from .cutting import choose, cut_again, cut_all, source_pieces
+from .pieces import Pieces
+from .search_settings import Search
+from .spline_search import fit_splines
 from .split_contours import Settings, SplitContours
 
 CLOSER = (1.0, 0.5, 0.25)
@@ -35,15 +38,26 @@ SHARE = 0.97
 """Share of the tolerance that the fit may use. The rest is for what its samples miss; the certificate decides."""
 
 STRIDE = {"fast": 2, "best": 1}
-"""Arcs end at every so many smooth joints of the source."""
+"""Cubics of ``continuity="g1"`` end at every so many smooth joints of the source."""
 
 ROUNDS = {"fast": 4, "best": 6}
-"""Most Gauss-Newton steps an arc."""
+"""Most Gauss-Newton steps of such a cubic."""
 
-TRIES = ((0, 0.8), (1, 0.9), (2, 0.9))
-"""What is tried for arcs that fail the certificate: spans to add, and the share of the samples' tolerance they may use.
+SEARCHES = {
+    "fast": Search(
+        margin=0.0, residual=0.0, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4, removals=0.3,
+        passes=0, dear=1.0, removal_rounds=4, fairness=1e-2, reach=3, most=1000,
+    ),
+    "best": Search(
+        margin=0.0, residual=0.0, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3, removals=0.7,
+        passes=4, dear=1.0, removal_rounds=8, fairness=1e-2, reach=4, most=1000,
+    ),
+}  # fmt: skip
+"""How long splines of few spans are searched, by effort; ``margin`` and ``residual`` are those of the options."""
 
-In the end the source's own segments take their place.
+TRIES = {"c2": (0.9, 0.75, 0.0), "g1": (0.8,)}
+"""What is tried for pieces that fail the certificate: shares of the samples' tolerance, 0 for splines that end at all
+corners. In the end the source's own segments take their place.
 """
 
 
@@ -75,10 +89,12 @@ def convert_sharp(contours: ContourArrays, options: Options, tolerance: float, e
 def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
     """Contours fitted to within a share of the tolerance, and measured."""
     fit = fit_sharp(source, options, share * tolerance, em)
-    where, starts, vertices, _ = fit.pieces
+    where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[:, :2]
     # Where two pieces meet, the vertex belongs to the second one.
-    corners = np.delete(vertices, starts[1:] - 1, axis=0)
-    polygons = Polylines(corners, starts[fit.offsets] - fit.offsets, np.ones(source.num_contours, dtype=np.bool_))
+    open_ends = starts[1:][where[:, 4] == 0] - 1
+    counts = np.add.reduceat(np.maximum(where[:, 3], 1), fit.offsets[:-1])
+    closed = np.ones(source.num_contours, dtype=np.bool_)
+    polygons = Polylines(np.delete(vertices, open_ends, axis=0), offsets_of(counts), closed)
     first = fit.offsets[:-1]
     bounds, gaps = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
     arcs = np.flatnonzero(where[:, 3])
@@ -99,7 +115,7 @@ def _solved_columns(fit: SharpFit) -> Columns:
     """Of several arcs the worst counts, and the most iterations. In arcs of one span nothing is iterated."""
     spans, first = fit.pieces.where[:, 3], fit.offsets[:-1]
     segments = np.add.reduceat(np.maximum(spans, 1), first)
-    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4, 2), first)
+    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4 * (fit.pieces.where[:, 4] == 0), 2), first)
     arcs: list[list[Interpolation]] = [[] for _ in first]
     for q, arc in fit.splines.items():
         arcs[fit.pieces.where[q, 0]].append(arc)
@@ -164,24 +180,62 @@ def _single_span(controls: FloatArray) -> Interpolation:
 def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:
     """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
 
-    Arcs that miss it although their samples were near enough are fitted more closely, with more spans, and in the end
-    become the source's own segments, of which each is an arc of one span.
+    Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
+    the source's own segments, of which each is an arc of one span.
     """
     settings = Settings(
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
-        angle=np.radians(options.corner_angle), line=LONG_LINE * em, margin=float(options.margin),
-        residual=options.solver_tolerance, rounds=ROUNDS[options.effort], most=MOST_SPANS[options.effort],
-        stride=STRIDE[options.effort],
+        angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=options.continuity == "c2",
+        search=SEARCHES[options.effort]._replace(margin=float(options.margin), residual=options.solver_tolerance),
+        rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
-    split, pieces = cut_contours(contours, settings)
-    fit = _certified(split, pieces, options, tolerance)
-    for attempt in range(len(TRIES) + 1):
+    if not settings.c2:
+        settings = settings._replace(search=settings.search._replace(most=1))
+    split, pieces, stretches = cut_all(contours, settings)
+    if len(stretches.piece):
+        pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
+    fit = _certified(split, choose(split, pieces, settings.near), options, tolerance)
+    tries = TRIES[options.continuity]
+    for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        pieces = cut_closer(split, fit.pieces, poor, TRIES[attempt:], ROUNDS["best"], settings)
-        fit = _certified(split, pieces, options, tolerance)
+        fit = _certified(split, refitted(split, fit.pieces, poor, tries[attempt:], settings), options, tolerance)
     return fit
+
+
+def refitted(
+    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[float], settings: Settings
+) -> Pieces:
+    """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments."""
+    parts, done = [], 0
+    for q in np.flatnonzero(poor).tolist():
+        parts.append(_part(pieces, done, q))
+        parts.append(_refitted_piece(contours, _part(pieces, q, q + 1), tries, settings))
+        done = q + 1
+    parts.append(_part(pieces, done, len(poor)))
+    where, vertices, tangents, errors = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3, 4))
+    starts = offsets_of(np.maximum(where[:, 3], 1) + 1 - where[:, 4])
+    return Pieces(where, starts, vertices, tangents, errors)
+
+
+def _refitted_piece(contours: SplitContours, piece: Pieces, tries: Sequence[float], settings: Settings) -> Pieces:
+    """What takes the place of a single piece."""
+    for share in tries:
+        cut, near = share == 0.0, (share or 1.0) * settings.near
+        found, stretches = cut_again(contours, piece, cut, settings)
+        if len(stretches.piece):
+            found = fit_splines(found, stretches, near, settings.search, not cut)
+        if found.errors.max() <= near:
+            return choose(contours, found, near)
+    return source_pieces(contours, piece)
+
+
+def _part(pieces: Pieces, a: int, b: int) -> Pieces:
+    """Pieces a to b - 1."""
+    where, starts, vertices, tangents, errors = pieces
+    own = vertices[starts[a] : starts[b]]
+    return Pieces(where[a:b], starts[a : b + 1] - starts[a], own, tangents[a:b], errors[a:b])
 
 
 def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
@@ -191,7 +245,7 @@ def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance
     assembly = put_together(pieces, count, *_splines(splines.values()))
     curves = assembly.curves
     written = curves._replace(points=np.round(curves.points, options.precision) + 0.0)
-    bounds, gaps = certify(split, assembly, written, SHARPNESS * tolerance, tolerance)
+    bounds, gaps = certify(split, pieces, assembly, written, SHARPNESS * tolerance, tolerance)
     offsets = np.searchsorted(pieces.where[:, 0], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, assembly.controls, bounds, gaps)
 
@@ -205,23 +259,24 @@ def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
 
 
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
-    """The arcs of more than one span, in order.
+    """The splines of more than one span, in order.
 
-    Lemma 2 has no interval for the one free vertex of two spans: see :data:`.clamped_arc.PEAK_SHARE`.
+    Lemma 2 has no interval for the one free vertex of two spans: see :data:`.spline_curve.PEAK_SHARE`.
     """
-    where, starts, vertices, tangents = pieces
-    spans = where[:, 3]
+    where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[:, :2], pieces.tangents
+    spans, closed = where[:, 3], where[:, 4] > 0
     arcs: dict[int, Interpolation] = {}
-    for fallback, which in (("knot", spans > 2), ("peak", spans == 2)):
+    for fallback, which in (("knot", closed), ("knot", (spans > 2) & ~closed), ("peak", (spans == 2) & ~closed)):
         chosen = np.flatnonzero(which).tolist()
         if not chosen:
             continue
+        ring = bool(closed[chosen[0]])
         try:
             found = interpolate_many(
                 [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
-                end_tangents=[(t[0], t[1]) for t in tangents[chosen]], threads=1, margin=options.margin,
-                fallback=fallback, residual_tolerance=options.solver_tolerance,
-                max_iterations=options.max_iterations, closed=False,
+                end_tangents=None if ring else [(t[0], t[1]) for t in tangents[chosen]], threads=1,
+                margin=options.margin, fallback=fallback, residual_tolerance=options.solver_tolerance,
+                max_iterations=options.max_iterations, closed=ring,
             )  # fmt: skip
         except PolygonError as error:
             error.contour = int(where[chosen[error.contour or 0], 0])

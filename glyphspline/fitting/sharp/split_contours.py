@@ -15,25 +15,25 @@ from ...outlines.canonical import directed, farthest_joint
 from ...outlines.segments import lasting
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
+from .search_settings import Search
 
 
 class Settings(NamedTuple):
-    """How contours are cut.
+    """How contours are cut and fitted.
 
     Attributes:
         near: how near samples have to be. angle: turn in radians from which a joint is a corner.
-        line: length from which lines stay lines. margin, residual: of the interpolation.
-        rounds: most Gauss-Newton steps an arc. most: spans of an arc. stride: arcs end at corners and at every so many
-            joints.
+        line: length from which lines stay lines.
+        c2: whether one spline runs between hard joints, by ``search``; or else cubics.
+        rounds: most Gauss-Newton steps of these. stride: they end at corners and at every so many joints.
     """
 
     near: float
     angle: float
     line: float
-    margin: float
-    residual: float
+    c2: bool
+    search: Search
     rounds: int
-    most: int
     stride: int
 
 
@@ -84,7 +84,7 @@ def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     if flipped:
         for j in range(m // 2):
             kept[j], kept[m - 1 - j] = kept[m - 1 - j], kept[j]
-    joints = find_joints(chain, kept, settings.near, settings.angle, settings.line)
+    joints = find_joints(chain, kept, settings.near, settings.angle, settings.line, settings.c2)
     k = 0
     while k < m and not joints.hard[k]:
         k += 1
@@ -97,6 +97,4 @@ def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
         own[j] = kept[(j + k) % m]
         for c in range(4):
             turned[j, c, 0], turned[j, c, 1] = chain[(j + k) % m, c, 0], chain[(j + k) % m, c, 1]
-    joints = find_joints(turned, own, settings.near, settings.angle, settings.line)
-    joints.density[len(joints.density) - 1] += joints.density[0]  # the turn at the last joint, which is the first again
-    return turned, own, flipped, joints
+    return turned, own, flipped, find_joints(turned, own, settings.near, settings.angle, settings.line, settings.c2)

@@ -1,8 +1,4 @@
-"""Fitting an arc of one span to a stretch of outline: a cubic with two free inner control points.
-
-This is :mod:`.spline_fit` without the steps that only several spans need. Most candidate arcs have one span, and
-``effort="fast"`` tries no others.
-"""
+"""Fitting one cubic to a stretch of outline: its two inner control points are free."""
 
 from __future__ import annotations
 
@@ -10,8 +6,14 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import length, newton_step
-from ...types import FloatArray
-from .spline_fit import HOPELESS, SLIDE, solve
+from ...types import FloatArray, IntArray
+from .cholesky import solve
+
+SLIDE = 0.001
+"""Weight of motion along the curve against motion across it: enough to keep the equations regular."""
+
+HOPELESS = (1e3, 6.0, 2.0, 1.4, 1.2)
+"""A fit is abandoned after round m if its error exceeds entry m, in tolerances. Lower values lose good fits."""
 
 STEPS = 4
 """Newton steps to a foot, from the foot of the last round."""
@@ -52,7 +54,7 @@ def fit_cubic(
     handles, third = np.empty(4), min(reach / chord, 3.0) / 3
     for axis in range(2):
         handles[axis], handles[2 + axis] = d0[axis] * third, d1[axis] * third
-    c, A, g = np.empty((3, 2)), np.empty((4, 4)), np.empty(4)
+    c, A, g, first = np.empty((3, 2)), np.empty((4, 4)), np.empty(4), np.zeros(4, dtype=np.int64)
     best = np.inf
     for m in range(rounds):
         _coefficients(Q, handles, chord, c)
@@ -71,7 +73,7 @@ def fit_cubic(
                 total += weight[j]
             for j in range(1, n - 1):
                 weight[j] *= (n - 2) / total
-        _step(Q, c, x, weight, d0, free0, d1, free1, chord, handles, A, g)
+        _step(Q, c, x, weight, d0, free0, d1, free1, chord, handles, A, g, first)
     return best
 
 
@@ -116,7 +118,7 @@ def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> floa
 def _step(
     Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
-    A: FloatArray, g: FloatArray,
+    A: FloatArray, g: FloatArray, first: IntArray,
 ) -> None:  # fmt: skip
     """One Gauss-Newton step of both handles on the distances along the normals; the unknowns are both inner points."""
     for r in range(4):
@@ -161,7 +163,7 @@ def _step(
             A[r, r] += huge * d[1] * d[1]
             A[r + 1, r] -= huge * d[0] * d[1]
             A[r + 1, r + 1] += huge * d[0] * d[0]
-    solve(A, g)
+    solve(A, g, first, 4)
     for end in range(2):
         # The last handle runs from the inner point to the end, so it moves the other way.
         r, sign, direction, free = (2, -1.0, d1, free1) if end else (0, 1.0, d0, free0)

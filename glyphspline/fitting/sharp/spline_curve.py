@@ -1,0 +1,290 @@
+"""Small cubic splines of variant 2 that a fit moves: arcs clamped at both ends, and closed curves.
+
+Both have the same form here. Knot interval ``s`` runs from vertex s to vertex s + 1; outside of an arc the intervals
+have no length, around a closed curve they begin again. *Slot* i is the control point of vertex i. Those of an arc are
+its inner control points and, for its two ends, the control points next to them; the ends themselves lie before the
+first slot and after the last. The cubic of span s depends on slots s - 1 to s + 2.
+
+Newton's method finds the footpoints from the last ones, without the certificate of the interpolation. A fit keeps only
+the vertices and end tangents; :func:`glyphspline.interpolate` computes the curve that is written from them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import jet, length, newton_step
+from ...types import FloatArray, IntArray
+
+PEAK_SHARE = 0.9
+"""Required share of a basis function's peak in arcs of two spans, whose one free vertex peaks at 1/2 at most.
+
+Lemma 2 has no interval there and needs none: each step multiplies the error of a single vertex by 1 - B_i < 1.
+"""
+
+MOST_PASSES = 200
+"""Passes of variant 2 before a curve counts as lost."""
+
+
+class Curve(NamedTuple):
+    """A cubic spline of k spans and its vertices, in arrays that have room for more.
+
+    Attributes:
+        size: (2,) k, and whether the curve is closed.
+        p: (room, 2) the vertices: k + 1 of an arc, k of a closed curve.
+        X: (room + 2, 2) the control points: slot i in row i + 1.
+        h: (room + 4,) the knot intervals: that of span s in entry s + 2.
+        W: (room, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[s : s + 4]``.
+        b: (room, 4, 2) the Bézier points.
+        t: (room,) footpoints of the vertices, as signed shares of the span before or after them.
+        bounds: (room, 2) the ends of their intervals (Lemma 2), likewise.
+        e: (room, 2) vertices less footpoints.
+    """
+
+    size: IntArray
+    p: FloatArray
+    X: FloatArray
+    h: FloatArray
+    W: FloatArray
+    b: FloatArray
+    t: FloatArray
+    bounds: FloatArray
+    e: FloatArray
+
+
+@compiled(internal=True)
+def empty_curve(most: int, closed: int) -> Curve:
+    """Room for a curve of up to ``most`` spans."""
+    size, room = np.zeros(2, dtype=np.int64), most + 1
+    size[1] = closed
+    return Curve(
+        size, np.empty((room, 2)), np.empty((room + 2, 2)), np.zeros(room + 4), np.empty((room, 4, 4)),
+        np.empty((room, 4, 2)), np.zeros(room), np.empty((room, 2)), np.empty((room, 2)),
+    )  # fmt: skip
+
+
+@compiled(internal=True)
+def copy_curve(source: Curve, target: Curve) -> None:
+    """Copy all that belongs to a curve into another one's arrays."""
+    k = source.size[0]
+    target.size[0], target.size[1] = k, source.size[1]
+    for i in range(k + 4):
+        target.h[i] = source.h[i]
+    for i in range(k + 3):
+        target.X[i, 0], target.X[i, 1] = source.X[i, 0], source.X[i, 1]
+    for i in range(k + 1):
+        target.p[i, 0], target.p[i, 1], target.t[i] = source.p[i, 0], source.p[i, 1], source.t[i]
+        target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
+    for s in range(k):
+        for r in range(4):
+            target.b[s, r, 0], target.b[s, r, 1] = source.b[s, r, 0], source.b[s, r, 1]
+            for c in range(4):
+                target.W[s, r, c] = source.W[s, r, c]
+
+
+@compiled(internal=True)
+def inner_vertices(curve: Curve) -> tuple[int, int]:
+    """The first vertex that is free to move, and the one after the last."""
+    return (0 if curve.size[1] else 1), curve.size[0]
+
+
+@compiled(internal=True)
+def set_knots(curve: Curve) -> bool:
+    """Knot intervals from the chords, and the Bézier weights; False if a chord has no length."""
+    k, closed, p, h = curve.size[0], curve.size[1], curve.p, curve.h
+    least = np.inf
+    for s in range(k):
+        e = s + 1 if s + 1 < k or not closed else 0
+        h[s + 2] = length(p[e, 0] - p[s, 0], p[e, 1] - p[s, 1])
+        least = min(least, h[s + 2])
+    for n in range(2):
+        h[n], h[k + 2 + n] = (h[k + n], h[2 + n]) if closed else (0.0, 0.0)
+    for s in range(k):
+        span_weights(h, s, curve.W[s])
+    return least > 0.0
+
+
+@compiled(internal=True)
+def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
+    """The Bézier weights (4, 4) of span s, from knot intervals as :class:`Curve` has them."""
+    h0, h1, h2, h3, h4 = h[s], h[s + 1], h[s + 2], h[s + 3], h[s + 4]
+    before, own, after = h0 + h1 + h2, h1 + h2 + h3, h2 + h3 + h4
+    low, high = h2 / (h1 + h2), h2 / (h2 + h3)
+    a, c, d, e = h1 / own, (h1 + h2) / own, (h0 + h1) / before, h2 / after
+    for r in range(4):
+        for j in range(4):
+            W[r, j] = 0.0
+    W[0, 0], W[0, 1], W[0, 2] = low * (1 - d), low * d + (1 - low) * (1 - a), (1 - low) * a
+    W[1, 1], W[1, 2] = 1 - a, a
+    W[2, 1], W[2, 2] = 1 - c, c
+    W[3, 1], W[3, 2], W[3, 3] = (1 - high) * (1 - c), (1 - high) * c + high * (1 - e), high * e
+
+
+@compiled(internal=True)
+def set_beziers(curve: Curve) -> None:
+    """The Bézier points of all spans."""
+    k, X, W, b = curve.size[0], curve.X, curve.W, curve.b
+    if curve.size[1]:
+        for axis in range(2):
+            X[0, axis], X[k + 1, axis], X[k + 2, axis] = X[k, axis], X[1, axis], X[2, axis]
+    for s in range(k):
+        for r in range(4):
+            for axis in range(2):
+                total = W[s, r, 0] * X[s, axis] + W[s, r, 1] * X[s + 1, axis]
+                b[s, r, axis] = total + W[s, r, 2] * X[s + 2, axis] + W[s, r, 3] * X[s + 3, axis]
+
+
+@compiled(internal=True)
+def cold_start(curve: Curve, margin: float) -> None:
+    """The vertices as control points, the intervals of Lemma 2, and footpoints at the knots where these allow it."""
+    k, (first, stop) = curve.size[0], inner_vertices(curve)
+    share = PEAK_SHARE if k == 2 and not curve.size[1] else 1.0
+    for i in range(first, stop):
+        curve.X[i + 1, 0], curve.X[i + 1, 1] = curve.p[i, 0], curve.p[i, 1]
+        before = i - 1 if i > 0 else k - 1
+        low, high = lemma2_interval(curve.W[before, :, 2], curve.W[i, :, 1], margin, share)
+        curve.bounds[i, 0], curve.bounds[i, 1] = low, high
+        curve.t[i] = min(max(0.0, low), high)
+
+
+@compiled(internal=True)
+def iterate(curve: Curve, tolerance: float, most: int) -> float:
+    """Variant 2 (Algorithm 2) from the control points at hand, for at most so many passes; the largest error left."""
+    first, stop = inner_vertices(curve)
+    p, X, t, bounds, e = curve.p, curve.X, curve.t, curve.bounds, curve.e
+    error = 0.0
+    for _ in range(most):
+        set_beziers(curve)
+        error = 0.0
+        for i in range(first, stop):
+            e[i, 0], e[i, 1], t[i] = foot_error(curve, i, p[i, 0], p[i, 1], t[i], bounds[i, 0], bounds[i, 1])
+            error = max(error, e[i, 0] * e[i, 0] + e[i, 1] * e[i, 1])
+        error = np.sqrt(error)
+        if error < tolerance or not error < 1e9:
+            break
+        for i in range(first, stop):
+            X[i + 1, 0] += e[i, 0]
+            X[i + 1, 1] += e[i, 1]
+    else:
+        set_beziers(curve)
+    return error
+
+
+@compiled(internal=True)
+def foot_error(
+    curve: Curve, i: int, x: float, y: float, t: float, low: float, high: float
+) -> tuple[float, float, float]:
+    """Vertex i less its footpoint, and the footpoint, as a signed share of the span before or after u_i."""
+    before, after = curve.h[i + 1], curve.h[i + 2]
+    last = i - 1 if i > 0 else curve.size[0] - 1
+    cx = cy = 0.0
+    for step in range(3):
+        ahead = t >= 0
+        s, h = (i, after) if ahead else (last, before)
+        cx, cy, dx, dy, ax, ay = jet(curve.b, s, t if ahead else t + 1)
+        speed = dx * dx + dy * dy
+        if step == 2 or speed <= 0:
+            break
+        slope = (cx - x) * dx + (cy - y) * dy
+        bend = speed + (cx - x) * ax + (cy - y) * ay
+        new = newton_step(t * h, slope * h, speed, bend, -before, after)
+        t = min(max(new / after if new >= 0 else new / before, low), high)
+    return x - cx, y - cy, t
+
+
+@compiled(internal=True)
+def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
+    """Variant 2 from the vertices, as the interpolation runs it; the largest error left, infinite without a curve."""
+    if not set_knots(curve):
+        return np.inf
+    cold_start(curve, margin)
+    return iterate(curve, tolerance, MOST_PASSES)
+
+
+@compiled(internal=True)
+def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
+    y = 1 - x
+    return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
+
+
+@compiled(internal=True)
+def _within(x: float, f: float, slope: float, low: float, high: float) -> float:
+    """Newton's next estimate of a zero between ``low`` and ``high``, or their middle where that leads out of them."""
+    new = x - f / slope if slope != 0 else (low + high) / 2
+    return new if low < new < high else (low + high) / 2
+
+
+@compiled(internal=True)
+def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
+    """Where a cubic that is monotone on [low, high] takes a value between those at the ends."""
+    rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)
+    x = (low + high) / 2
+    for _ in range(60):
+        f = _bernstein(c0, c1, c2, c3, x) - level
+        if (f > 0) == rising:
+            high = x
+        else:
+            low = x
+        y = 1 - x
+        slope = 3 * (y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2))
+        new = _within(x, f, slope, low, high)
+        if abs(new - x) < 1e-12:
+            return new
+        x = new
+    return x
+
+
+@compiled(internal=True)
+def _top(c0: float, c1: float, c2: float, c3: float) -> float:
+    """Local parameter of the maximum of a cubic whose derivative changes sign once on [0, 1]."""
+    low, high = 0.0, 1.0
+    x = 0.5
+    for _ in range(40):
+        y = 1 - x
+        slope = y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2)
+        if slope > 0:
+            low = x
+        else:
+            high = x
+        bend = 2 * (y * ((c2 - c1) - (c1 - c0)) + x * ((c3 - c2) - (c2 - c1)))
+        new = _within(x, slope, bend, low, high)
+        if abs(new - x) < 1e-12:
+            return new
+        x = new
+    return x
+
+
+@compiled(internal=True)
+def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float]:
+    """Lemma 2 for one vertex: where B_i ≥ 1/2 + c, or all of its peak if that is lower.
+
+    Args:
+        a, b: (4,) Bernstein coefficients of B_i on the span before u_i and on the span after it.
+        margin: c of the lemma.
+        share: below 1, limit the level to this share of the peak (``fallback="peak"``); 1 is ``fallback="knot"``.
+
+    Returns:
+        The interval's ends, each as a signed share of its span (-1 is u_{i-1}, +1 is u_{i+1}).
+    """
+    right = b[1] > b[0]
+    c = b if right else a
+    x = _top(c[0], c[1], c[2], c[3])
+    peak, top = x - (0.0 if right else 1.0), _bernstein(c[0], c[1], c[2], c[3], x)
+    if share == 1.0 and top <= 0.5:
+        return 0.0, 0.0
+    level = min(0.5 + margin, share * top)
+    low, high = -1.0, 1.0
+    if a[0] < level:
+        before = a[3] >= level or not right  # B_i rises to the level on the span before u_i
+        c = a if before else b
+        stop = 1.0 if a[3] >= level and right else (peak if right else peak + 1)
+        low = _crossing(c[0], c[1], c[2], c[3], level, 0.0, stop) - (1.0 if before else 0.0)
+    if b[3] < level:
+        after = b[0] >= level or right
+        c = b if after else a
+        start = 0.0 if b[0] >= level and not right else (peak if right else peak + 1)
+        high = _crossing(c[0], c[1], c[2], c[3], level, start, 1.0) - (0.0 if after else 1.0)
+    return low, high
