@@ -10,7 +10,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from glyphspline import Outline, open_font
 from glyphspline.cli import app
+from glyphspline.outlines.corner_share import share_of_corners
+
+from .polygons import circle_contour, square_contour
 
 ROOT = Path(__file__).parents[1]
 FONTS = ROOT / "fonts_test"
@@ -43,6 +47,24 @@ def test_presets_set_options_together(arguments: list[str], expected: tuple[obje
     assert runner.invoke(app, ["convert", FONT, "--text", "O", *arguments, *out]).exit_code == 0
     options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
     assert (options["corners"], options["margin"], options["effort"]) == expected
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_a_hint_says_that_outlines_are_mostly_corners(corners: str, tmp_path: Path) -> None:
+    source = open_font(FONT)
+    assert share_of_corners([source.outline(name) for name in source.select(text="永")]) > 0.5
+    output = ["--out", str(tmp_path / "out"), "--jobs", "0", "--format", "svg"]
+    said = runner.invoke(app, ["convert", FONT, "--text", "永", "--corners", corners, *output]).stderr
+    assert ("--preset type" in said) == (corners == "smooth")
+
+
+def test_joints_that_are_corners_or_end_lines_are_counted() -> None:
+    square, circle = (Outline("x", contours=(contour,)) for contour in (square_contour(), circle_contour()))
+    assert share_of_corners([square]) == 1.0
+    assert share_of_corners([circle]) == 0.0
+    corners, joints = len(square.arrays.degrees), len(circle.arrays.degrees)
+    assert share_of_corners([square, circle]) == corners / (corners + joints)
+    assert share_of_corners([]) == 0.0
 
 
 def test_quiet_says_nothing(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 PATIENCE = 300.0
 """Time limit of ``info`` in seconds."""
+
+LOOKED_AT = 64
+"""Outlines that are looked at to tell type from brush."""
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
@@ -261,7 +264,23 @@ def run(
         for line in summary.lines():
             say(line)
         say(f"written to {out}")
+        if looks_like_type(source, names, spec):
+            say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
     return summary
+
+
+def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec) -> bool:
+    """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
+    from ..errors import GlyphsplineError
+    from ..outlines.corner_share import share_of_corners
+
+    if spec.options.corners != "smooth" or spec.options.is_fixed:
+        return False
+    outlines = []
+    for name in names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]:
+        with suppress(GlyphsplineError):
+            outlines.append(source.outline(name))
+    return share_of_corners(outlines) > 0.5
 
 
 @contextmanager

@@ -36,6 +36,10 @@ DEEPEST = 14
 """Maximum subdivision depth; pairs still above the limit there count as too far apart."""
 
 
+MOST_HALVINGS = 5_000
+"""Halvings of one stretch, after which what is left counts as too far apart: a wrong pairing would take seconds."""
+
+
 @dataclass(frozen=True, eq=False)
 class Distance:
     """Two-sided distance of a result from its source, in font units.
@@ -141,7 +145,7 @@ def pair_cubic(
     """
     m = len(outline)
     least = 0 if coarse else 1
-    last = False
+    last, halvings = False, 0
     while not last:
         s = int(np.floor(y))
         last = y_end <= s + 1
@@ -172,10 +176,11 @@ def pair_cubic(
             limit = max(enough, bound)
             if gap > enough:
                 limit = max(limit, gap + sharpness)
-            if depth >= least and (most <= limit or depth >= DEEPEST):
+            if depth >= least and (most <= limit or depth >= DEEPEST or halvings >= MOST_HALVINGS):
                 bound = max(bound, most)
                 top -= 1
                 continue
+            halvings += 1
             split(A, 0.5, work[0, top + 1])
             z = nearest(B, 0.0, 1.0, 0.5, A[0, 0], A[0, 1])
             split(B, z, work[1, top + 1])
