@@ -44,6 +44,9 @@ DAMPING = 1e-2
 MOST_SLIDE = 0.3
 """A vertex moves along the curve by this share of its shorter chord at most."""
 
+BAND = 8
+"""Unknowns that meet in one equation: those of four slots."""
+
 FAILURES = 4
 """Steps that fail in a row before a fit is given up."""
 
@@ -388,7 +391,7 @@ def _equations(fit: Fit, samples: Samples, damping: float, start: int, width: in
     n = 2 * width
     for r in range(n):
         g[r], first[r] = 0.0, r
-        for c in range(r + 1):
+        for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
             A[r, c] = 0.0
     index = np.empty(8, dtype=np.int64)
     for s in range(k):
