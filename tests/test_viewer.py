@@ -88,6 +88,11 @@ def test_other_variants_interpolate_the_same_polygon(client: TestClient) -> None
     assert not results[2]["intervals"], "variant 3 searches nothing"
 
 
+def test_compared_variants_are_all_measured(client: TestClient) -> None:
+    for result in ask(client, "compare", sampling="step", amount=40)["results"]:
+        assert all(measures["bending_energy"] > 0 for measures in result["measures"])
+
+
 def test_steps_go_from_the_polygon_to_the_result(client: TestClient) -> None:
     found, steps = ask(client), ask(client, "steps")["steps"]
     assert [step["step"] for step in steps] == list(range(len(steps)))

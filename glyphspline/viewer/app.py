@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -92,9 +92,15 @@ def glyph_answer(work: Work, state: State) -> dict[str, Any]:
     return glyph_payload(result.outline) | result_payload(result) | {"command": work.command(state)}
 
 
+def compare_answer(work: Work, state: State) -> dict[str, Any]:
+    """The polygon by the variants 1, 2 and 3, all measured, so that the same numbers stand beside each other."""
+    state = replace(state, options=replace(state.options, measure=True))
+    return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
+
+
 ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
     "glyph": glyph_answer,
-    "compare": lambda work, state: {"results": [result_payload(work.result(state, each)) for each in COMPARED]},
+    "compare": compare_answer,
     "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
     "svg": lambda work, state: {"svg": to_svg(work.result(state))},
 }
