@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
+from glyphspline.batch.warm import converted
 from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.measures import geometry
@@ -203,6 +204,12 @@ def test_a_contour_without_corners_is_one_closed_spline() -> None:
     again = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)
     np.testing.assert_array_equal(arc.spline.control_points, again.spline.control_points)
     np.testing.assert_allclose(result.curve.cubics(), arc.spline.to_bezier(), atol=1e-9)
+
+
+def test_workers_compile_the_spline_fit_before_their_time_limits_begin() -> None:
+    disc = converted(gs.Options(corners="sharp")).contours[2]
+    assert [arc.spline.closed for arc in disc.interpolations] == [True]
+    assert disc.measures.iterations
 
 
 def test_cubics_are_no_interpolation_that_was_iterated() -> None:
