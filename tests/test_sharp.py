@@ -20,7 +20,8 @@ from glyphspline.fitting.sharp.assembly import certify, put_together
 from glyphspline.fitting.sharp.cubic_fit import fit_cubic
 from glyphspline.fitting.sharp.cutting import choose, cut_all
 from glyphspline.fitting.sharp.pieces import Pieces
-from glyphspline.fitting.sharp.sharp_fit import SEARCHES, refitted
+from glyphspline.fitting.sharp.search_settings import SEARCHES
+from glyphspline.fitting.sharp.sharp_fit import refitted
 from glyphspline.fitting.sharp.spline_search import fit_splines
 from glyphspline.fitting.sharp.split_contours import Settings, SplitContours
 from glyphspline.outlines.outline import Contours
@@ -133,7 +134,9 @@ def test_what_no_cubic_is_near_is_not_taken_for_one() -> None:
     assert fit_cubic(np.zeros((5, 2)), east, False, east, False, 1.0, 6, start, end) == np.inf
 
 
-SETTINGS = Settings(0.9, np.radians(12.0), 20.0, True, SEARCHES["fast"]._replace(margin=0.02, residual=0.005), 4, 2)
+SEARCH = SEARCHES["fast"](margin=0.02, residual=0.005, most=1000)
+
+SETTINGS = Settings(0.9, np.radians(12.0), 20.0, True, SEARCH, 4, 2)
 
 
 def cut(contours: Sequence[gs.Contour]) -> tuple[SplitContours, Pieces]:
@@ -160,7 +163,7 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     split, pieces = cut(glyph("龍").contours)
     q = int(pieces.where[:, 3].argmax())
     poor = np.arange(len(pieces.where)) == q
-    closer = refitted(split, pieces, poor, (0.9,), SETTINGS)
+    closer = refitted(split, pieces, poor, ((0.9, False),), SETTINGS)
     assert len(closer.where) == len(pieces.where)
     assert closer.where[q, :3].tolist() == pieces.where[q, :3].tolist()
     assert closer.errors[q] <= 0.9 * SETTINGS.near

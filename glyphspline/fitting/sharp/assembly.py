@@ -12,7 +12,7 @@ from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...outlines.segments import all_cubics
 from ...types import FloatArray, IntArray
 from ..certified_distance import near_place, pair_stretches
-from .pieces import Pieces
+from .pieces import CLOSED, CONTOUR, SPANS, Pieces
 from .split_contours import SplitContours
 
 
@@ -42,15 +42,15 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     P = len(pieces.where)
     segments, arcs = np.zeros(P + 1, dtype=np.int64), 0
     for q in range(P):
-        segments[q + 1] = segments[q] + max(pieces.where[q, 3], 1)
-        arcs += pieces.where[q, 3] > 0
+        segments[q + 1] = segments[q] + max(pieces.where[q, SPANS], 1)
+        arcs += pieces.where[q, SPANS] > 0
     total = segments[P]
     points, degrees, b = np.empty((3 * total, 2)), np.empty(total, dtype=np.int64), np.empty((total, 4, 2))
     offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
     own, ends, closed = np.empty((total + 3 * arcs, 2)), np.zeros(arcs + 1, np.int64), np.empty(arcs, np.bool_)
     at = knot = control = arc = 0 * total
     for q in range(P):
-        c, k, ring, first = pieces.where[q, 0], pieces.where[q, 3], pieces.where[q, 4], pieces.starts[q]
+        c, k, ring, first = pieces.where[q, CONTOUR], pieces.where[q, SPANS], pieces.where[q, CLOSED], pieces.starts[q]
         p, tau = pieces.vertices[first : pieces.starts[q + 1]], pieces.tangents[q]
         count, end = k + 3 * (1 - ring), ends[arc]
         for axis in range(2):
@@ -95,7 +95,7 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
     anchors = np.empty((len(cubics) + len(offsets) - 1, 2))
     at = 0 * len(cubics)
     for q in range(len(pieces.where)):
-        c, k, closed = pieces.where[q, 0], max(pieces.where[q, 3], 1), pieces.where[q, 4]
+        c, k, closed = pieces.where[q, CONTOUR], max(pieces.where[q, SPANS], 1), pieces.where[q, CLOSED]
         outline = contours.cubics[contours.offsets[c] : contours.offsets[c + 1]]
         own = pieces.vertices[pieces.starts[q] : pieces.starts[q + 1], 2]
         m = len(outline)

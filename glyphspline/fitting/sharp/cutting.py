@@ -8,21 +8,25 @@ spline and splines between all of these corners are both fitted, and the cheaper
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ...compiled import compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import contour_cubics
-from ...types import FloatArray, IntArray
+from ...types import FloatArray
 from .corners import Joints, find_joints
 from .cubic_chain import add_cubics, fit_between, is_straight
 from .pieces import (
+    CHOICE,
+    CONTOUR,
     CUT,
+    FIRST,
+    LAST,
     ONLY,
+    SPANS,
     WHOLE,
     Pieces,
+    Row,
     add_piece,
     add_pieces,
     add_source,
@@ -33,38 +37,7 @@ from .pieces import (
     used,
 )
 from .split_contours import Settings, SplitContours, laid_out
-
-MOST_SAMPLES = 40
-"""Most samples of a segment."""
-
-
-class Stretches(NamedTuple):
-    """Stretches of outline for which a spline is wanted, end to end.
-
-    Attributes:
-        piece: (S,) the piece whose place the spline takes.
-        starts: (S + 1,) first sample of each. points: (N, 2) samples, the first again at the end of a closed one.
-        spacing: (N,) wanted distance of vertices after each sample.
-        directions: (S, 2, 2) unit tangents at the ends. free: (S, 2) whether these may turn.
-    """
-
-    piece: IntArray
-    starts: IntArray
-    points: FloatArray
-    spacing: FloatArray
-    directions: FloatArray
-    free: IntArray
-
-
-@compiled(internal=True)
-def empty_stretches(count: int, samples: int) -> Stretches:
-    """Room for so many stretches, with so many samples together."""
-    stretches = Stretches(
-        np.empty(count, dtype=np.int64), np.empty(count + 1, dtype=np.int64), np.empty((samples, 3)), np.empty(samples),
-        np.empty((count, 2, 2)), np.empty((count, 2), dtype=np.int64),
-    )  # fmt: skip
-    stretches.starts[0] = 0
-    return stretches
+from .stretches import Stretches, add_stretch, empty_stretches, stretches_used
 
 
 @compiled
@@ -90,7 +63,7 @@ def cut_all(contours: ContourArrays, settings: Settings) -> tuple[SplitContours,
             if joints.line[i]:
                 done = _add_line(joints, (c, i, j, 0 * c, 0, ONLY), pieces, done)
             elif settings.c2:
-                done, wanted, stretches = _add_stretch(joints, c, i, j, settings, pieces, done, stretches, wanted)
+                done, wanted, stretches = _add_splines(joints, c, i, j, settings, pieces, done, stretches, wanted)
             else:
                 done = _add_chain(joints, c, i, j, settings, pieces, done)
             i = j
@@ -103,11 +76,11 @@ def cut_all(contours: ContourArrays, settings: Settings) -> tuple[SplitContours,
         at += m
         split.offsets[c + 1] = at
     split = SplitContours(split.cubics[:at], split.degrees[:at], split.offsets, split.flipped)
-    return split, used(pieces, done), _stretches_used(stretches, wanted)
+    return split, used(pieces, done), stretches_used(stretches, wanted)
 
 
 @compiled(internal=True)
-def _add_line(joints: Joints, row: tuple[int, int, int, int, int, int], pieces: Pieces, count: int) -> int:
+def _add_line(joints: Joints, row: Row, pieces: Pieces, count: int) -> int:
     """Add a line between two joints."""
     p = _ends(joints, row[1], row[2])
     return add_piece(pieces, count, row, p, p, 0.0)
@@ -138,7 +111,7 @@ def _add_chain(joints: Joints, c: int, i: int, j: int, settings: Settings, piece
 
 
 @compiled(internal=True)
-def _add_stretch(
+def _add_splines(
     joints: Joints, c: int, i: int, j: int, settings: Settings, pieces: Pieces, count: int, stretches: Stretches,
     wanted: int,
 ) -> tuple[int, int, Stretches]:  # fmt: skip
@@ -147,28 +120,41 @@ def _add_stretch(
     if joints.hard[0]:
         for n in range(i + 1, j):
             corners += joints.corner[n]
-    choice = WHOLE if corners > 0 else ONLY
-    a = i
-    for n in range(i, j + 1):
-        if n == i:
-            low, high = i, j
-        elif corners > 0 and (n == j or joints.corner[n]):
-            low, high, choice = a, n, CUT
-            a = n
-        else:
-            continue
-        before = count
-        count = add_simplest(joints, (c, low, high, 1, 0, choice), settings, pieces, count)
-        if pieces.errors[before] > settings.near:
-            stretches = add_wanted(joints, low, high, before, stretches, wanted)
-            wanted += 1
+    row = c, i, j, 1, 0, WHOLE if corners > 0 else ONLY
+    count, wanted, stretches = _add_spline(joints, row, settings, pieces, count, stretches, wanted)
+    if corners > 0:
+        return _add_cut(joints, c, i, j, CUT, settings, pieces, count, stretches, wanted)
     return count, wanted, stretches
 
 
 @compiled(internal=True)
-def add_simplest(
-    joints: Joints, row: tuple[int, int, int, int, int, int], settings: Settings, pieces: Pieces, count: int
-) -> int:  # fmt: skip
+def _add_cut(
+    joints: Joints, c: int, i: int, j: int, choice: int, settings: Settings, pieces: Pieces, count: int,
+    stretches: Stretches, wanted: int,
+) -> tuple[int, int, Stretches]:  # fmt: skip
+    """Add pieces from joint i to joint j that end at all corners between."""
+    for n in range(i + 1, j + 1):
+        if n == j or joints.corner[n]:
+            row = c, i, n, 1, 0, choice
+            count, wanted, stretches = _add_spline(joints, row, settings, pieces, count, stretches, wanted)
+            i = n
+    return count, wanted, stretches
+
+
+@compiled(internal=True)
+def _add_spline(
+    joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int, stretches: Stretches, wanted: int
+) -> tuple[int, int, Stretches]:
+    """Add a line or a cubic between two joints, and a stretch that needs a spline where neither is near enough."""
+    count = _add_simplest(joints, row, settings, pieces, count)
+    if pieces.errors[count - 1] > settings.near:
+        stretches = add_stretch(stretches, wanted, joints, row[1], row[2], count - 1)
+        wanted += 1
+    return count, wanted, stretches
+
+
+@compiled(internal=True)
+def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int) -> int:
     """Add a line or a cubic between two joints, with its error; a closed curve has an infinite one."""
     c, i, j, _, _, choice = row
     closed = i == 0 and j == len(joints.line) and not joints.hard[0]
@@ -180,30 +166,6 @@ def add_simplest(
     if not closed:
         error = fit_between(joints, i, j, settings.near, settings.search.cubic_rounds, tangents)
     return add_piece(pieces, count, (c, i, j, 1, int(closed), choice), p, tangents, error)
-
-
-@compiled(internal=True)
-def add_wanted(joints: Joints, i: int, j: int, piece: int, stretches: Stretches, count: int) -> Stretches:
-    """Add the samples between two joints to ``count`` stretches that need splines; in larger arrays if need be."""
-    a, b, at = joints.first[i], joints.first[j], stretches.starts[count]
-    if at + b - a + 1 > len(stretches.points):
-        points, spacing = np.empty((2 * (at + b - a + 1), 3)), np.empty(2 * (at + b - a + 1))
-        for r in range(at):
-            spacing[r] = stretches.spacing[r]
-            for axis in range(3):
-                points[r, axis] = stretches.points[r, axis]
-        stretches = Stretches(stretches.piece, stretches.starts, points, spacing, stretches.directions, stretches.free)
-    for r in range(b - a + 1):
-        for axis in range(2):
-            stretches.points[at + r, axis] = joints.samples[a + r, axis]
-        stretches.points[at + r, 2] = joints.places[a + r]
-        stretches.spacing[at + r] = joints.spacing[min(a + r, len(joints.spacing) - 1)]
-    for axis in range(2):
-        stretches.directions[count, 0, axis] = joints.leaving[i, axis]
-        stretches.directions[count, 1, axis] = joints.arriving[j, axis]
-    stretches.free[count, 0], stretches.free[count, 1] = joints.corner[i], joints.corner[j]
-    stretches.piece[count], stretches.starts[count + 1] = piece, at + b - a + 1
-    return stretches
 
 
 @compiled
@@ -218,14 +180,14 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
     q = 0
     while q < P:
         last = q + 1
-        while pieces.where[q, 5] == WHOLE and last < P and pieces.where[last, 5] == CUT:
+        while pieces.where[q, CHOICE] == WHOLE and last < P and pieces.where[last, CHOICE] == CUT:
             last += 1
         if last > q + 1:
             worst = pieces.errors[q + 1 : last].max()
             numbers = 0
             for r in range(q + 1, last):
-                numbers += 2 * pieces.where[r, 3] + (4 if pieces.where[r, 3] > 0 else 2)
-            cheaper = numbers < 2 * pieces.where[q, 3] + 4 or pieces.errors[q] > near
+                numbers += 2 * pieces.where[r, SPANS] + (4 if pieces.where[r, SPANS] > 0 else 2)
+            cheaper = numbers < 2 * pieces.where[q, SPANS] + 4 or pieces.errors[q] > near
             cut = worst <= near and cheaper
             for r in range(q, last):
                 kept[r] = cut == (r > q)
@@ -235,7 +197,7 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
     for c in range(len(contours.flipped)):
         a, b, back = contours.offsets[c], contours.offsets[c + 1], contours.flipped[c]
         last = first
-        while last < P and pieces.where[last, 0] == c:
+        while last < P and pieces.where[last, CONTOUR] == c:
             last += 1
         for n in range(last - first):
             q = last - 1 - n if back else first + n
@@ -255,10 +217,11 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
 @compiled
 def source_pieces(contours: SplitContours, piece: Pieces) -> Pieces:
     """The source's own segments in the place of a single piece."""
-    c, i, j = piece.where[0, 0], piece.where[0, 1], piece.where[0, 2]
-    a, b = contours.offsets[c], contours.offsets[c + 1]
-    found = empty_pieces(j - i, 2 * (j - i))
-    return used(found, add_source(found, 0 * c, row_of(piece, 0), contours.cubics[a:b], contours.degrees[a:b]))
+    row = row_of(piece, 0)
+    a, b = contours.offsets[row[CONTOUR]], contours.offsets[row[CONTOUR] + 1]
+    most = row[LAST] - row[FIRST]
+    found = empty_pieces(most, 2 * most)
+    return used(found, add_source(found, 0 * most, row, contours.cubics[a:b], contours.degrees[a:b]))
 
 
 @compiled
@@ -268,36 +231,18 @@ def cut_again(contours: SplitContours, piece: Pieces, cut: bool, settings: Setti
     Returns:
         Lines and cubics, and the stretches that need splines: of a piece as it is, always.
     """
-    c, back = piece.where[0, 0], contours.flipped[piece.where[0, 0]]
+    c = piece.where[0, CONTOUR]
     cubics = contours.cubics[contours.offsets[c] : contours.offsets[c + 1]].copy()
     degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]].copy()
-    m = len(degrees)
-    given, none = empty_pieces(1, len(piece.vertices)), 0 * c
-    add_pieces(given, none, piece)
-    if back:
-        reverse_last(given, none + 1, m)
+    given, count = empty_pieces(1, len(piece.vertices)), 0 * c
+    add_pieces(given, count, piece)
+    if contours.flipped[c]:
+        reverse_last(given, count + 1, len(degrees))
         cubics, degrees = cubics[::-1, ::-1].copy(), degrees[::-1].copy()
-    i, j = given.where[0, 1], given.where[0, 2]
+    i, j = given.where[0, FIRST], given.where[0, LAST]
     joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
     found, stretches = empty_pieces(j - i, 2 * (j - i)), empty_stretches(j - i, 2 * len(joints.samples))
     if not cut:
-        return given, _stretches_used(add_wanted(joints, i, j, none, stretches, none), none + 1)
-    count = wanted = none
-    for n in range(i + 1, j + 1):
-        if n == j or joints.corner[n]:
-            count = add_simplest(joints, (c, i, n, 1, 0, ONLY), settings, found, count)
-            if found.errors[count - 1] > settings.near:
-                stretches = add_wanted(joints, i, n, count - 1, stretches, wanted)
-                wanted += 1
-            i = n
-    return used(found, count), _stretches_used(stretches, wanted)
-
-
-@compiled(internal=True)
-def _stretches_used(stretches: Stretches, count: int) -> Stretches:
-    """The first ``count`` stretches."""
-    end = stretches.starts[count]
-    return Stretches(
-        stretches.piece[:count], stretches.starts[: count + 1], stretches.points[:end], stretches.spacing[:end],
-        stretches.directions[:count], stretches.free[:count],
-    )  # fmt: skip
+        return given, stretches_used(add_stretch(stretches, count, joints, i, j, count), count + 1)
+    count, wanted, stretches = _add_cut(joints, c, i, j, ONLY, settings, found, count, stretches, count)
+    return used(found, count), stretches_used(stretches, wanted)

@@ -10,6 +10,10 @@ from ...compiled import compiled
 from ...types import FloatArray, IntArray
 
 Row = tuple[int, int, int, int, int, int]
+"""A row of ``Pieces.where``."""
+
+CONTOUR, FIRST, LAST, SPANS, CLOSED, CHOICE = range(6)
+"""Its columns."""
 
 ONLY, WHOLE, CUT = 0, 1, 2
 """A piece is the only way between two hard joints; or one spline; or it is one of several cut at corners instead."""
@@ -53,11 +57,12 @@ def used(pieces: Pieces, count: int) -> Pieces:
     return Pieces(where[:count], starts[: count + 1], vertices[: starts[count]], tangents[:count], errors[:count])
 
 
-@compiled(internal=True)
+@compiled
 def part(pieces: Pieces, a: int, b: int) -> Pieces:
-    """Pieces a to b - 1, as views."""
+    """Pieces a to b - 1."""
     where, starts, vertices, tangents, errors = pieces
-    return Pieces(where[a:b], starts[a : b + 1], vertices, tangents[a:b], errors[a:b])
+    own = vertices[starts[a] : starts[b]]
+    return Pieces(where[a:b], starts[a : b + 1] - starts[a], own, tangents[a:b], errors[a:b])
 
 
 @compiled(internal=True)
@@ -79,7 +84,7 @@ def add_pieces(pieces: Pieces, count: int, others: Pieces) -> int:
 @compiled(internal=True)
 def add_piece(pieces: Pieces, count: int, row: Row, p: FloatArray, tangents: FloatArray, error: float) -> int:
     """Add a piece after ``count`` others: a row of ``where``, its vertices and end tangents; the number then."""
-    at, n = pieces.starts[count], max(row[3], 1) + 1 - row[4]
+    at, n = pieces.starts[count], max(row[SPANS], 1) + 1 - row[CLOSED]
     for c in range(6):
         pieces.where[count, c] = row[c]
     for r in range(n):
@@ -98,12 +103,12 @@ def reverse_last(pieces: Pieces, count: int, m: int) -> None:
     """Turn the last of ``count`` pieces round, for a contour of m segments that is fitted the other way."""
     q = count - 1
     where, tangents, first, stop = pieces.where[q], pieces.tangents[q], pieces.starts[q], pieces.starts[q + 1]
-    where[1], where[2] = m - where[2], m - where[1]
-    lap = float(m) if where[4] and pieces.vertices[first, 2] > 0.0 else 0.0
+    where[FIRST], where[LAST] = m - where[LAST], m - where[FIRST]
+    lap = float(m) if where[CLOSED] and pieces.vertices[first, 2] > 0.0 else 0.0
     for r in range(first, stop):
         pieces.vertices[r, 2] = m + lap - pieces.vertices[r, 2]
     low, high = first, stop - 1
-    if where[4]:  # the first vertex of a closed curve stays the first
+    if where[CLOSED]:  # the first vertex of a closed curve stays the first
         pieces.vertices[first, 2] -= m
         low += 1
     while low < high:
@@ -120,12 +125,12 @@ def reverse_last(pieces: Pieces, count: int, m: int) -> None:
 def add_source(pieces: Pieces, count: int, row: Row, cubics: FloatArray, degrees: IntArray) -> int:
     """Add the segments of a contour between two joints as they are, as lines and arcs of one span; the number then."""
     p, tangents = np.empty((2, 3)), np.empty((2, 2))
-    for s in range(row[1], row[2]):
+    for s in range(row[FIRST], row[LAST]):
         p[0, 2], p[1, 2] = s, s + 1
         factor = 3 / np.hypot(cubics[s, 3, 0] - cubics[s, 0, 0], cubics[s, 3, 1] - cubics[s, 0, 1])
         for axis in range(2):
             for end in range(2):
                 p[end, axis] = cubics[s, 3 * end, axis]
                 tangents[end, axis] = (cubics[s, 2 * end + 1, axis] - cubics[s, 2 * end, axis]) * factor
-        count = add_piece(pieces, count, (row[0], s, s + 1, int(degrees[s] > 1), 0, ONLY), p, tangents, 0.0)
+        count = add_piece(pieces, count, (row[CONTOUR], s, s + 1, int(degrees[s] > 1), 0, ONLY), p, tangents, 0.0)
     return count

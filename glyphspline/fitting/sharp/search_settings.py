@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 
@@ -10,6 +11,7 @@ class Search(NamedTuple):
 
     Attributes:
         margin, residual: of the interpolation.
+        most: spans at most: 1 where cubics alone are wanted.
         cubic_rounds: most steps of a single span. rounds: of a first guess. few_rounds: of one with up to three spans.
         guess: spans of the first guess, as a share of what the density asks for.
         growth: power of a span's error with which vertices are added.
@@ -23,6 +25,7 @@ class Search(NamedTuple):
 
     margin: float
     residual: float
+    most: int
     cubic_rounds: int
     rounds: int
     few_rounds: int
@@ -34,4 +37,19 @@ class Search(NamedTuple):
     removal_rounds: int
     fairness: float
     reach: int
-    most: int
+
+
+SEARCHES = {
+    "fast": partial(
+        Search, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4, removals=0.3, passes=0, dear=1.0,
+        removal_rounds=4, fairness=1e-2, reach=3,
+    ),
+    "best": partial(
+        Search, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3, removals=0.7, passes=4, dear=1.0,
+        removal_rounds=8, fairness=1e-2, reach=4,
+    ),
+}  # fmt: skip
+"""The search of each effort, but for what the options say."""
+
+MOST_SPANS = {"c2": 1000, "g1": 1}
+"""Spans of one spline at most, by continuity."""

@@ -23,8 +23,8 @@ from ..options import Options
 from ..results import ConvertedContours, assembled
 from .assembly import certify, put_together
 from .cutting import choose, cut_again, cut_all, source_pieces
-from .pieces import Pieces
-from .search_settings import Search
+from .pieces import CLOSED, CONTOUR, SPANS, Pieces, part
+from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
 from .split_contours import Settings, SplitContours
 
@@ -43,20 +43,8 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
 
-SEARCHES = {
-    "fast": Search(
-        margin=0.0, residual=0.0, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4, removals=0.3,
-        passes=0, dear=1.0, removal_rounds=4, fairness=1e-2, reach=3, most=1000,
-    ),
-    "best": Search(
-        margin=0.0, residual=0.0, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3, removals=0.7,
-        passes=4, dear=1.0, removal_rounds=8, fairness=1e-2, reach=4, most=1000,
-    ),
-}  # fmt: skip
-"""How long splines of few spans are searched, by effort; ``margin`` and ``residual`` are those of the options."""
-
-TRIES = {"c2": (0.9, 0.75, 0.0), "g1": (0.8,)}
-"""What is tried for pieces that fail the certificate: shares of the samples' tolerance, 0 for splines that end at all
+TRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
+"""What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
 corners. In the end the source's own segments take their place.
 """
 
@@ -91,13 +79,13 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
     fit = fit_sharp(source, options, share * tolerance, em)
     where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[:, :2]
     # Where two pieces meet, the vertex belongs to the second one.
-    open_ends = starts[1:][where[:, 4] == 0] - 1
-    counts = np.add.reduceat(np.maximum(where[:, 3], 1), fit.offsets[:-1])
+    open_ends = starts[1:][where[:, CLOSED] == 0] - 1
+    counts = np.add.reduceat(np.maximum(where[:, SPANS], 1), fit.offsets[:-1])
     closed = np.ones(source.num_contours, dtype=np.bool_)
     polygons = Polylines(np.delete(vertices, open_ends, axis=0), offsets_of(counts), closed)
     first = fit.offsets[:-1]
     bounds, gaps = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
-    arcs = np.flatnonzero(where[:, 3])
+    arcs = np.flatnonzero(where[:, SPANS])
     return ConvertedContours(
         source,
         fit.curve,
@@ -113,12 +101,12 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
 
 def _solved_columns(fit: SharpFit) -> Columns:
     """Of several arcs the worst counts, and the most iterations. In arcs of one span nothing is iterated."""
-    spans, first = fit.pieces.where[:, 3], fit.offsets[:-1]
+    spans, first = fit.pieces.where[:, SPANS], fit.offsets[:-1]
     segments = np.add.reduceat(np.maximum(spans, 1), first)
-    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4 * (fit.pieces.where[:, 4] == 0), 2), first)
+    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4 * (fit.pieces.where[:, CLOSED] == 0), 2), first)
     arcs: list[list[Interpolation]] = [[] for _ in first]
     for q, arc in fit.splines.items():
-        arcs[fit.pieces.where[q, 0]].append(arc)
+        arcs[fit.pieces.where[q, CONTOUR]].append(arc)
     return {
         "vertices": segments.tolist(),
         "segments": segments.tolist(),
@@ -153,7 +141,7 @@ class SharpFit:
 
     def interpolations(self) -> list[Interpolation]:
         """All arcs; one of a single span interpolates its two ends as it is."""
-        arcs = np.flatnonzero(self.pieces.where[:, 3]).tolist()
+        arcs = np.flatnonzero(self.pieces.where[:, SPANS]).tolist()
         first, points = self.controls.offsets.tolist(), self.controls.points
         return [
             self.splines[q] if q in self.splines else _single_span(points[i : i + 4])
@@ -186,11 +174,11 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
     settings = Settings(
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
         angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=options.continuity == "c2",
-        search=SEARCHES[options.effort]._replace(margin=float(options.margin), residual=options.solver_tolerance),
+        search=SEARCHES[options.effort](
+            margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity]
+        ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
-    if not settings.c2:
-        settings = settings._replace(search=settings.search._replace(most=1))
     split, pieces, stretches = cut_all(contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
@@ -205,37 +193,32 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
 
 
 def refitted(
-    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[float], settings: Settings
+    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[float, bool]], settings: Settings
 ) -> Pieces:
     """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments."""
     parts, done = [], 0
     for q in np.flatnonzero(poor).tolist():
-        parts.append(_part(pieces, done, q))
-        parts.append(_refitted_piece(contours, _part(pieces, q, q + 1), tries, settings))
+        parts.append(part(pieces, done, q))
+        parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings))
         done = q + 1
-    parts.append(_part(pieces, done, len(poor)))
-    where, vertices, tangents, errors = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3, 4))
-    starts = offsets_of(np.maximum(where[:, 3], 1) + 1 - where[:, 4])
+    parts.append(part(pieces, done, len(poor)))
+    where, vertices, tangents, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 2, 3, 4))
+    starts = offsets_of(np.maximum(where[:, SPANS], 1) + 1 - where[:, CLOSED])
     return Pieces(where, starts, vertices, tangents, errors)
 
 
-def _refitted_piece(contours: SplitContours, piece: Pieces, tries: Sequence[float], settings: Settings) -> Pieces:
+def _refitted_piece(
+    contours: SplitContours, piece: Pieces, tries: Sequence[tuple[float, bool]], settings: Settings
+) -> Pieces:
     """What takes the place of a single piece."""
-    for share in tries:
-        cut, near = share == 0.0, (share or 1.0) * settings.near
+    for share, cut in tries:
+        near = share * settings.near
         found, stretches = cut_again(contours, piece, cut, settings)
         if len(stretches.piece):
             found = fit_splines(found, stretches, near, settings.search, not cut)
         if found.errors.max() <= near:
             return choose(contours, found, near)
     return source_pieces(contours, piece)
-
-
-def _part(pieces: Pieces, a: int, b: int) -> Pieces:
-    """Pieces a to b - 1."""
-    where, starts, vertices, tangents, errors = pieces
-    own = vertices[starts[a] : starts[b]]
-    return Pieces(where[a:b], starts[a : b + 1] - starts[a], own, tangents[a:b], errors[a:b])
 
 
 def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
@@ -246,7 +229,7 @@ def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance
     curves = assembly.curves
     written = curves._replace(points=np.round(curves.points, options.precision) + 0.0)
     bounds, gaps = certify(split, pieces, assembly, written, SHARPNESS * tolerance, tolerance)
-    offsets = np.searchsorted(pieces.where[:, 0], np.arange(count + 1))
+    offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, assembly.controls, bounds, gaps)
 
 
@@ -264,7 +247,7 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     Lemma 2 has no interval for the one free vertex of two spans: see :data:`.spline_curve.PEAK_SHARE`.
     """
     where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[:, :2], pieces.tangents
-    spans, closed = where[:, 3], where[:, 4] > 0
+    spans, closed = where[:, SPANS], where[:, CLOSED] > 0
     arcs: dict[int, Interpolation] = {}
     for fallback, which in (("knot", closed), ("knot", (spans > 2) & ~closed), ("peak", (spans == 2) & ~closed)):
         chosen = np.flatnonzero(which).tolist()
@@ -279,7 +262,7 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
                 max_iterations=options.max_iterations, closed=ring,
             )  # fmt: skip
         except PolygonError as error:
-            error.contour = int(where[chosen[error.contour or 0], 0])
+            error.contour = int(where[chosen[error.contour or 0], CONTOUR])
             raise
         arcs |= zip(chosen, found, strict=True)
     return dict(sorted(arcs.items()))

@@ -92,6 +92,30 @@ def inner_vertices(curve: Curve) -> tuple[int, int]:
 
 
 @compiled(internal=True)
+def set_handles(curve: Curve, tangents: FloatArray) -> None:
+    """The end handles of an arc from its end tangents, derivatives by chord length."""
+    k, p, X = curve.size[0], curve.p, curve.X
+    if curve.size[1]:
+        return
+    first = length(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
+    last = length(p[k, 0] - p[k - 1, 0], p[k, 1] - p[k - 1, 1]) / 3
+    for axis in range(2):
+        X[0, axis], X[1, axis] = p[0, axis], p[0, axis] + first * tangents[0, axis]
+        X[k + 1, axis], X[k + 2, axis] = p[k, axis] - last * tangents[1, axis], p[k, axis]
+
+
+@compiled(internal=True)
+def end_tangents(curve: Curve, tangents: FloatArray) -> None:
+    """The end tangents of an arc, derivatives by chord length; those of a closed curve stay as they are."""
+    k, X, h = curve.size[0], curve.X, curve.h
+    if curve.size[1]:
+        return
+    for axis in range(2):
+        tangents[0, axis] = 3 * (X[1, axis] - X[0, axis]) / h[2]
+        tangents[1, axis] = 3 * (X[k + 2, axis] - X[k + 1, axis]) / h[k + 1]
+
+
+@compiled(internal=True)
 def set_knots(curve: Curve) -> bool:
     """Knot intervals from the chords, and the Bézier weights; False if a chord has no length."""
     k, closed, p, h = curve.size[0], curve.size[1], curve.p, curve.h

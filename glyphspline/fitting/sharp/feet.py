@@ -1,0 +1,225 @@
+"""The outline paired with a curve, in order: the foot of every sample on it, and how far the two are apart."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import jet, length, newton_step
+from ...types import FloatArray, IntArray
+from .spline_curve import Curve
+
+EXTRA = 6
+"""Most points of the curve between two feet that count as rows of their own."""
+
+NOTICED = 0.5
+"""Points of the curve between two feet count from this share of the tolerance on."""
+
+
+class Samples(NamedTuple):
+    """The stretch of outline that a curve follows.
+
+    Attributes:
+        Q: (n, 3) points in order, and their places on the contour; the ends of an arc are the first and the last.
+        D: (n,) integral of the wanted vertex density up to each.
+        free: (2,) whether the end tangents of an arc may turn.
+        lap: how far the places count on around a closed contour: its number of segments.
+    """
+
+    Q: FloatArray
+    D: FloatArray
+    free: IntArray
+    lap: float
+
+
+class Rows(NamedTuple):
+    """Points of a curve and their signed distances from the outline: the samples' feet, then others between them.
+
+    Attributes:
+        used: (1,) rows in use. span, x: span and local parameter; spans count on around a closed curve.
+        e: distance from the curve to the outline, along the normal (nx, ny).
+    """
+
+    used: IntArray
+    span: IntArray
+    x: FloatArray
+    e: FloatArray
+    nx: FloatArray
+    ny: FloatArray
+
+
+@compiled(internal=True)
+def empty_rows(samples: int) -> Rows:
+    """Room for the rows of so many samples."""
+    n = (1 + EXTRA) * samples
+    return Rows(
+        np.zeros(1, dtype=np.int64), np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    )
+
+
+@compiled(internal=True)
+def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
+    """Pair the outline with the curve, in order; the largest distance.
+
+    Each foot is the nearest point after the foot before it, by Newton's method across the spans. Between two feet the
+    curve is measured too, in several places where they are far apart on it: from loops, and from humps of short spans,
+    no sample is far.
+
+    Args:
+        near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
+        rows: receives the feet and distances.
+    """
+    Q, b, h, k, closed = samples.Q, curve.b, curve.h, curve.size[0], curve.size[1]
+    n = len(Q)
+    span, x, e, nx, ny = rows.span, rows.x, rows.e, rows.nx, rows.ny
+    worst, guessed = 0.0, known.used[0] > 0
+    for j in range(n):
+        s, at = (k - 1, 1.0) if j > 0 else (0 * k, 0.0)
+        if closed or 0 < j < n - 1:
+            s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
+            later = guessed and (known.span[j] > s0 or (known.span[j] == s0 and known.x[j] > at0))
+            s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0 * k, 0.0))
+            end = k if not closed else (span[0] + k + 1 if j > 0 else k)
+            s, at = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
+        cx, cy, dx, dy, _, _ = jet(b, s % k, at)
+        ex, ey, speed = Q[j, 0] - cx, Q[j, 1] - cy, max(length(dx, dy), 1e-12)
+        span[j], x[j], nx[j], ny[j] = s, at, -dy / speed, dx / speed
+        away = length(ex, ey)
+        e[j] = away if ex * nx[j] + ey * ny[j] > 0 else -away
+        worst = max(worst, away)
+    count = n
+    for j in range(n if closed else n - 1):
+        i = j + 1 if j + 1 < n else 0
+        lap = k if i == 0 else 0 * k
+        step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
+        chord = length(step_x, step_y)
+        own = _distance_along(h, k, span[j], x[j], span[i] + lap, x[i])
+        if chord == 0.0 or own <= 0.0:
+            continue
+        spans = (span[i] + lap + x[i]) - (span[j] + x[j])
+        wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
+        pieces = min(int(wanted) + 2, EXTRA + 1)
+        for r in range(1, pieces):
+            s, at = _moved(h, k, span[j], x[j], own * r / pieces)
+            cx, cy, _, _, _, _ = jet(b, s % k, at)
+            along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
+            ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
+            away = length(ex, ey)
+            if away > NOTICED * near:
+                span[count], x[count], e[count] = s, at, away
+                nx[count], ny[count] = ex / away, ey / away
+                count += 1
+                worst = max(worst, away)
+    rows.used[0] = count
+    return worst
+
+
+@compiled(internal=True)
+def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
+    """Measure a curve without first guesses."""
+    rows.used[0] = 0
+    return measure(samples, curve, near, rows, rows)
+
+
+@compiled(internal=True)
+def _foot(
+    b: FloatArray, k: int, s: int, at: float, s0: int, at0: float, end: int, qx: float, qy: float
+) -> tuple[int, float]:
+    """The nearest point to (qx, qy) from span s, parameter ``at``; not before (s0, at0), nor from span ``end`` on."""
+    for _ in range(12):
+        cx, cy, dx, dy, ax, ay = jet(b, s % k, at)
+        speed = dx * dx + dy * dy
+        if speed <= 0:
+            at = min(at + 0.01, 1.0)
+            continue
+        slope = (cx - qx) * dx + (cy - qy) * dy
+        bend = speed + (cx - qx) * ax + (cy - qy) * ay
+        new = newton_step(at, slope, speed, bend, at - 0.5, at + 0.5)
+        if new > 1.0:
+            if s + 1 < end:
+                s, at = s + 1, min(new - 1, 0.5)
+                continue
+            new = 1.0
+        elif new < 0.0:
+            if s > s0:
+                s, at = s - 1, max(1 + new, 0.5)
+                continue
+            new = 0.0
+        moved = abs(new - at)
+        at = new
+        if moved < 1e-4:
+            break
+    if s < s0 or (s == s0 and at < at0):
+        s, at = s0, at0
+    return s, at
+
+
+@compiled(internal=True)
+def _distance_along(h: FloatArray, k: int, s: int, x: float, t: int, y: float) -> float:
+    """Parameter distance from place (s, x) to place (t, y)."""
+    total = (y * h[t % k + 2]) - (x * h[s % k + 2])
+    for r in range(s, t):
+        total += h[r % k + 2]
+    return total
+
+
+@compiled(internal=True)
+def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[int, float]:
+    """The place at a parameter distance after (s, x)."""
+    left = distance + x * h[s % k + 2]
+    while left > h[s % k + 2]:
+        left -= h[s % k + 2]
+        s += 1
+    return s, left / h[s % k + 2]
+
+
+@compiled(internal=True)
+def copy_rows(source: Rows, target: Rows) -> None:
+    """Copy the rows in use."""
+    target.used[0] = source.used[0]
+    for r in range(source.used[0]):
+        target.span[r], target.x[r], target.e[r] = source.span[r], source.x[r], source.e[r]
+        target.nx[r], target.ny[r] = source.nx[r], source.ny[r]
+
+
+@compiled(internal=True)
+def span_errors(rows: Rows, k: int) -> FloatArray:
+    """(k,) the largest distance in each span."""
+    errors = np.zeros(k)
+    for r in range(rows.used[0]):
+        s = rows.span[r] % k
+        errors[s] = max(errors[s], abs(rows.e[r]))
+    return errors
+
+
+@compiled(internal=True)
+def find_places(samples: Samples, curve: Curve, rows: Rows, p: FloatArray) -> None:
+    """The places of the outline beside the knots of a curve, from the feet of the samples, into column 2 of p."""
+    Q, k, closed, n, lap = samples.Q, curve.size[0], curve.size[1], len(samples.Q), samples.lap
+    j = 0 * n
+    for i in range(k + 1 - closed):
+        knot = float(i)
+        if closed and knot < rows.span[0] + rows.x[0]:
+            knot += k
+        if closed:
+            j = 0 * n
+        while j + 1 < n and rows.span[j + 1] + rows.x[j + 1] <= knot:
+            j += 1
+        low, here = rows.span[j] + rows.x[j], Q[j, 2]
+        if j + 1 < n:
+            high, there = rows.span[j + 1] + rows.x[j + 1], Q[j + 1, 2]
+        else:
+            high, there = rows.span[0] + rows.x[0] + k, Q[0, 2] + lap
+        share = (knot - low) / (high - low) if high > low else 0.0
+        p[i, 2] = here + share * (there - here)
+    if closed:
+        for i in range(1, k):
+            if p[i, 2] < p[0, 2]:
+                p[i, 2] += lap
+        if p[0, 2] >= lap:
+            for i in range(k):
+                p[i, 2] -= lap
+    else:
+        p[k, 2] = Q[n - 1, 2]

@@ -1,0 +1,293 @@
+"""The equations of one step of a fit: distances of samples, ratios of chords and wobble, by the moves of vertices.
+
+The vertices need not lie on the outline. Every pass of variant 2 moves a control point along the normal at the
+footpoint of its vertex, so in the limit *the vertex is the foot of its control point*: across the curve the two move
+together, and along the curve the vertex takes its knot with it. A step has these two unknowns a vertex and two for each
+free end tangent. The equations are those of Gauss and Newton, with Levenberg and Marquardt's damping, on the distances
+of the samples along the normals. Weights that grow with the distance turn least squares towards the least maximum.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import jet, length
+from ...types import FloatArray, IntArray
+from .feet import EXTRA, Rows, Samples, empty_rows
+from .spline_curve import Curve, empty_curve, inner_vertices, span_weights
+
+LARGEST_RATIO = 4.0
+"""Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
+
+END_RATIO = 3.0
+"""The same for the first two and the last two pairs of chords of an arc, whose end controls take part of the peak."""
+
+RATIO_ROOM = 0.85
+"""Ratios above this share of the bound are held back."""
+
+BAND = 8
+"""Unknowns that meet in one equation: those of four slots."""
+
+
+class Fit(NamedTuple):
+    """Scratch arrays of a fit, for curves of up to ``room`` spans.
+
+    Attributes:
+        curve, trial: the curve so far, and the one tried. rows, tried: of both.
+        frames: (room + 1, 4) normal and tangent of each vertex at its footpoint.
+        moves: (room, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
+            slots: across and along the curve; along, a vertex takes its knot with it.
+        gram: (room, 9, 8) equations of each span.
+        A, step: the equations. first: (2 room + 2,) where each row of A begins.
+    """
+
+    curve: Curve
+    trial: Curve
+    rows: Rows
+    tried: Rows
+    frames: FloatArray
+    moves: FloatArray
+    gram: FloatArray
+    A: FloatArray
+    step: FloatArray
+    first: IntArray
+
+
+@compiled(internal=True)
+def empty_fit(samples: int, spans: int, closed: int) -> Fit:
+    """Scratch arrays for a stretch of so many samples and curves of up to so many spans."""
+    slots = spans + 1
+    return Fit(
+        empty_curve(spans, closed), empty_curve(spans, closed), empty_rows(samples), empty_rows(samples),
+        np.empty((slots, 4)), np.empty((slots, 8, 8)), np.empty((slots, 9, 8)),
+        np.empty((2 * slots, 2 * slots)), np.empty(2 * slots), np.empty(2 * slots, dtype=np.int64),
+    )  # fmt: skip
+
+
+@compiled(internal=True)
+def differentiate(fit: Fit) -> None:
+    """The frames of all vertices, and the derivatives of the Bézier points by the unknowns.
+
+    Those by the knots are differences; a knot's influence beyond two spans to either side is small and left out.
+    """
+    curve, frames, moves = fit.curve, fit.frames, fit.moves
+    k, closed, X, h = curve.size[0], curve.size[1], curve.X, curve.h
+    first, stop = inner_vertices(curve)
+    for i in range(k + 1 - closed):
+        if i < first or i >= stop:
+            tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
+            dx, dy = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
+        else:
+            s, at = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+            _, _, dx, dy, _, _ = jet(curve.b, s, at)
+        speed = max(length(dx, dy), 1e-12)
+        frames[i, 0], frames[i, 1], frames[i, 2], frames[i, 3] = -dy / speed, dx / speed, dx / speed, dy / speed
+    for s in range(k):
+        for c in range(4):
+            i = (s - 1 + c) % k if closed else s - 1 + c
+            exists = 0 <= i <= k
+            for r in range(4):
+                for axis in range(2):
+                    moves[s, 2 * r + axis, 2 * c] = curve.W[s, r, c] * frames[i, axis] if exists else 0.0
+                    moves[s, 2 * r + axis, 2 * c + 1] = curve.W[s, r, c] * frames[i, 2 + axis] if exists else 0.0
+    W = np.empty((4, 4))
+    for i in range(first, stop):
+        delta = 1e-4 * min(h[i + 1], h[i + 2])
+        shift_knot(curve, i, delta)
+        for c in range(4):
+            s = (i + 1 - c) % k if closed else i + 1 - c
+            if 0 <= s < k:
+                span_weights(h, s, W)
+                for r in range(4):
+                    for axis in range(2):
+                        total = W[r, 0] * X[s, axis] + W[r, 1] * X[s + 1, axis]
+                        total += W[r, 2] * X[s + 2, axis] + W[r, 3] * X[s + 3, axis]
+                        moves[s, 2 * r + axis, 2 * c + 1] += (total - curve.b[s, r, axis]) / delta
+        shift_knot(curve, i, -delta)
+
+
+@compiled(internal=True)
+def shift_knot(curve: Curve, i: int, delta: float) -> None:
+    """Move knot i of the intervals, and of their repetition around a closed curve."""
+    k, closed, h = curve.size[0], curve.size[1], curve.h
+    for s, change in ((i - 1, delta), (i, -delta)):
+        for lap in range(-1, 2):
+            n = s + 2 + lap * k
+            if lap == 0 or (closed and 0 <= n < k + 4):
+                h[n] += change
+
+
+@compiled(internal=True)
+def _add_row(
+    gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
+) -> None:
+    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny)."""
+    for u in range(8):
+        J[u] = 0.0
+    for r in range(4):
+        x, y = B[r] * nx, B[r] * ny
+        for u in range(8):
+            J[u] += x * moves[2 * r, u] + y * moves[2 * r + 1, u]
+    for u in range(8):
+        gram[8, u] += weight * e * J[u]
+    for u in range(8):
+        scaled = weight * J[u]
+        for v in range(8):
+            gram[u, v] += scaled * J[v]
+
+
+@compiled(internal=True)
+def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
+    """The equations of all rows by spans, in units of ``scale``: matrices (8, 8), and right sides in their row 8."""
+    curve, rows, gram, moves = fit.curve, fit.rows, fit.gram, fit.moves
+    k = curve.size[0]
+    for s in range(k):
+        for u in range(9):
+            for v in range(8):
+                gram[s, u, v] = 0.0
+    B, J = np.empty(4), np.empty(8)
+    for r in range(rows.used[0]):
+        x = rows.x[r]
+        y = 1 - x
+        B[0], B[1], B[2], B[3] = y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x
+        square = (rows.e[r] / scale) ** 2
+        weight = (2 * square + 0.02 if minimax else 1.0) / scale**2
+        s = rows.span[r] % k
+        _add_row(gram[s], J, moves[s], B, rows.nx[r], rows.ny[r], rows.e[r], weight)
+    if wobble > 0.0:
+        B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
+        for s in range(k):
+            nx, ny = middle_normal(curve.b[s])
+            wanted = -third_along(curve.b, s, nx, ny)
+            _add_row(gram[s], J, moves[s], B, nx, ny, wanted, wobble / curve.h[s + 2] ** 5)
+
+
+@compiled(internal=True)
+def largest_ratio(curve: Curve, s: int) -> float:
+    """Bound on the ratio of intervals s and s - 1."""
+    at_end = not curve.size[1] and min(s, curve.size[0] - s) <= 2
+    return END_RATIO if at_end else LARGEST_RATIO
+
+
+@compiled(internal=True)
+def ratio_excess(curve: Curve, s: int) -> float:
+    """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
+    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * largest_ratio(curve, s))
+    return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
+
+
+@compiled(internal=True)
+def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: float) -> float:
+    """What a step has to lower: squares (``minimax``: fourth powers) of the distances, ratios and wobble."""
+    total = 0.0
+    for r in range(rows.used[0]):
+        square = (rows.e[r] / scale) ** 2
+        total += square * square + 0.02 * square if minimax else square
+    first, stop = inner_vertices(curve)
+    for s in range(first, stop):
+        total += len(rows.e) / (1 + EXTRA) * ratio_excess(curve, s) ** 2
+    if wobble > 0.0:
+        total += wobble * third_derivatives(curve)
+    return total
+
+
+@compiled(internal=True)
+def third_derivatives(curve: Curve) -> float:
+    """The integral of the squared third derivative across the curve: of (dκ/ds)², as knots run by arc length."""
+    total = 0.0
+    for s in range(curve.size[0]):
+        nx, ny = middle_normal(curve.b[s])
+        total += third_along(curve.b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
+    return total
+
+
+@compiled(internal=True)
+def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
+    """The third derivative of span s by its local parameter, along (nx, ny)."""
+    x = b[s, 3, 0] - b[s, 0, 0] - 3 * (b[s, 2, 0] - b[s, 1, 0])
+    y = b[s, 3, 1] - b[s, 0, 1] - 3 * (b[s, 2, 1] - b[s, 1, 1])
+    return 6 * (x * nx + y * ny)
+
+
+@compiled(internal=True)
+def middle_normal(b: FloatArray) -> tuple[float, float]:
+    """The unit normal of a cubic (4, 2) at its middle."""
+    dx = b[3, 0] - b[0, 0] + b[2, 0] - b[1, 0]
+    dy = b[3, 1] - b[0, 1] + b[2, 1] - b[1, 1]
+    size = max(length(dx, dy), 1e-12)
+    return -dy / size, dx / size
+
+
+@compiled(internal=True)
+def equations(fit: Fit, samples: Samples, damping: float, start: int, width: int) -> None:
+    """The equations of one step of ``width`` slots from ``start`` on: those of the rows, of ratios, and damping."""
+    curve, A, g, first = fit.curve, fit.A, fit.step, fit.first
+    k, closed = curve.size[0], curve.size[1]
+    n = 2 * width
+    for r in range(n):
+        g[r], first[r] = 0.0, r
+        for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
+            A[r, c] = 0.0
+    index = np.empty(8, dtype=np.int64)
+    for s in range(k):
+        for c in range(4):
+            place = place_of(s - 1 + c, start, width, k, closed)
+            index[2 * c], index[2 * c + 1] = 2 * place, 2 * place + 1
+        _scatter(fit, index, fit.gram[s], 8)
+    _hold_ratios(fit, len(samples.Q), start, width)
+    mean = 0.0
+    for r in range(n):
+        mean += A[r, r] / n
+    for r in range(n):
+        A[r, r] += damping * mean * (1.0 if r % 2 else 0.01) + 1e-12 * mean
+    for i in (0, k):
+        if not closed and start <= i < start + width:
+            r = 2 * (i - start)
+            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] else 1e9 * max(mean, 1.0))
+
+
+@compiled(internal=True)
+def place_of(slot: int, start: int, width: int, k: int, closed: int) -> int:
+    """Where a slot stands among those that move; negative if it does not."""
+    place = (slot - start) % k if closed else slot - start
+    return place if 0 <= place < width and (closed or 0 <= slot <= k) else -1
+
+
+@compiled(internal=True)
+def _scatter(fit: Fit, index: IntArray, gram: FloatArray, n: int) -> None:
+    """Add equations of n unknowns, the right side in row n of ``gram``, to all; negative indices are left out."""
+    A, g, first = fit.A, fit.step, fit.first
+    for u in range(n):
+        r = index[u]
+        if r < 0:
+            continue
+        g[r] += gram[n, u]
+        for v in range(n):
+            c = index[v]
+            if 0 <= c <= r:
+                A[r, c] += gram[u, v]
+                first[r] = min(first[r], c)
+
+
+@compiled(internal=True)
+def _hold_ratios(fit: Fit, n: int, start: int, width: int) -> None:
+    """Equations that bring ratios of adjacent chords back to what is allowed; ``n`` is their weight."""
+    curve = fit.curve
+    k, closed, h = curve.size[0], curve.size[1], curve.h
+    first, stop = inner_vertices(curve)
+    index, gram = np.empty(3, dtype=np.int64), np.empty((4, 3))
+    for s in range(first, stop):
+        excess = ratio_excess(curve, s)
+        if excess == 0.0:
+            continue
+        J = (1 / h[s + 1], -1 / h[s + 1] - 1 / h[s + 2], 1 / h[s + 2])
+        for c in range(3):
+            i = (s - 1 + c) % k if closed else s - 1 + c
+            place = place_of(i, start, width, k, closed) if first <= i < stop else -1
+            index[c], gram[3, c] = 2 * place + 1, -n * J[c] * excess
+            for d in range(3):
+                gram[c, d] = n * J[c] * J[d]
+        _scatter(fit, index, gram, 3)
