@@ -83,7 +83,7 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
             s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0 * k, 0.0))
             end = k if not closed else (span[0] + k + 1 if j > 0 else k)
             s, at = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
-        cx, cy, dx, dy, _, _ = jet(b, s % k, at)
+        cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
         ex, ey, speed = Q[j, 0] - cx, Q[j, 1] - cy, max(length(dx, dy), 1e-12)
         span[j], x[j], nx[j], ny[j] = s, at, -dy / speed, dx / speed
         away = length(ex, ey)
@@ -103,7 +103,7 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
         pieces = min(int(wanted) + 2, EXTRA + 1)
         for r in range(1, pieces):
             s, at = _moved(h, k, span[j], x[j], own * r / pieces)
-            cx, cy, _, _, _, _ = jet(b, s % k, at)
+            cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
             along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
             ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
             away = length(ex, ey)
@@ -129,7 +129,7 @@ def _foot(
 ) -> tuple[int, float]:
     """The nearest point to (qx, qy) from span s, parameter ``at``; not before (s0, at0), nor from span ``end`` on."""
     for _ in range(12):
-        cx, cy, dx, dy, ax, ay = jet(b, s % k, at)
+        cx, cy, dx, dy, ax, ay = jet(b, _wrapped(s, k), at)
         speed = dx * dx + dy * dy
         if speed <= 0:
             at = min(at + 0.01, 1.0)
@@ -157,22 +157,36 @@ def _foot(
 
 
 @compiled(internal=True)
+def _wrapped(s: int, k: int) -> int:
+    """The span of a closed curve that span s is, up to a lap before the first one and two laps after it."""
+    if s >= k:
+        s -= k
+    if s >= k:
+        s -= k
+    return s if s >= 0 else s + k
+
+
+@compiled(internal=True)
 def _distance_along(h: FloatArray, k: int, s: int, x: float, t: int, y: float) -> float:
     """Parameter distance from place (s, x) to place (t, y)."""
-    total = (y * h[t % k + 2]) - (x * h[s % k + 2])
+    if s == t:
+        return (y - x) * h[_wrapped(s, k) + 2]
+    total = y * h[_wrapped(t, k) + 2] - x * h[_wrapped(s, k) + 2]
     for r in range(s, t):
-        total += h[r % k + 2]
+        total += h[_wrapped(r, k) + 2]
     return total
 
 
 @compiled(internal=True)
 def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[int, float]:
     """The place at a parameter distance after (s, x)."""
-    left = distance + x * h[s % k + 2]
-    while left > h[s % k + 2]:
-        left -= h[s % k + 2]
+    own = h[_wrapped(s, k) + 2]
+    left = distance + x * own
+    while left > own:
+        left -= own
         s += 1
-    return s, left / h[s % k + 2]
+        own = h[_wrapped(s, k) + 2]
+    return s, left / own
 
 
 @compiled(internal=True)
@@ -189,7 +203,7 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
     """(k,) the largest distance in each span."""
     errors = np.zeros(k)
     for r in range(rows.used[0]):
-        s = rows.span[r] % k
+        s = _wrapped(rows.span[r], k)
         errors[s] = max(errors[s], abs(rows.e[r]))
     return errors
 

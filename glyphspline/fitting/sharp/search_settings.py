@@ -41,11 +41,11 @@ class Search(NamedTuple):
 
 SEARCHES = {
     "fast": partial(
-        Search, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4, removals=0.3, passes=0, dear=1.0,
-        removal_rounds=4, fairness=1e-2, reach=3,
+        Search, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4, removals=0.3, passes=1, dear=0.5,
+        removal_rounds=2, fairness=1e-2, reach=3,
     ),
     "best": partial(
-        Search, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3, removals=0.7, passes=4, dear=1.0,
+        Search, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3, removals=0.7, passes=2, dear=1.5,
         removal_rounds=8, fairness=1e-2, reach=4,
     ),
 }  # fmt: skip

@@ -36,7 +36,7 @@ class Fit(NamedTuple):
     """Scratch arrays of a fit, for curves of up to ``room`` spans.
 
     Attributes:
-        curve, trial: the curve so far, and the one tried. rows, tried: of both.
+        curve, trial: the curve so far, and the one tried. rows, tried: of both. best: the best curve so far.
         frames: (room + 1, 4) normal and tangent of each vertex at its footpoint.
         moves: (room, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
             slots: across and along the curve; along, a vertex takes its knot with it.
@@ -46,6 +46,7 @@ class Fit(NamedTuple):
 
     curve: Curve
     trial: Curve
+    best: Curve
     rows: Rows
     tried: Rows
     frames: FloatArray
@@ -61,7 +62,8 @@ def empty_fit(samples: int, spans: int, closed: int) -> Fit:
     """Scratch arrays for a stretch of so many samples and curves of up to so many spans."""
     slots = spans + 1
     return Fit(
-        empty_curve(spans, closed), empty_curve(spans, closed), empty_rows(samples), empty_rows(samples),
+        empty_curve(spans, closed), empty_curve(spans, closed), empty_curve(spans, closed),
+        empty_rows(samples), empty_rows(samples),
         np.empty((slots, 4)), np.empty((slots, 8, 8)), np.empty((slots, 9, 8)),
         np.empty((2 * slots, 2 * slots)), np.empty(2 * slots), np.empty(2 * slots, dtype=np.int64),
     )  # fmt: skip

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import borrowed, compiled, keep_alive
 from ...curves.cubics import jet, length
 from ...types import BoolArray, FloatArray
 from .cubic_fit import fit_cubic
 from .feet import Samples, find_places, measure_afresh, span_errors
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
-from .spline_curve import Curve, copy_curve, empty_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
+from .spline_curve import Curve, copy_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
 from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import improve
 from .stretches import Stretches, samples_of
@@ -52,17 +52,40 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
         for r in range(k + 1 - closed):
             for axis in range(3):
                 p[r, axis] = pieces.vertices[pieces.starts[q] + r, axis]
+        begun = k if given else 0 * k
+        fit = empty_fit(len(samples.Q), most_spans(samples, search, begun), closed)
         k, error = find_spline(
-            samples, stretches.directions[s], closed, near, search, k if given else 0, pieces.errors[q], p, tangents
+            borrowed(fit),
+            borrowed(samples),
+            stretches.directions[s],
+            near,
+            search,
+            begun,
+            pieces.errors[q],
+            p,
+            tangents,
         )
+        keep_alive((fit, samples))
         count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, tangents, error)
         s += 1
     return used(found, count)
 
 
 @compiled(internal=True)
+def most_spans(samples: Samples, search: Search, given: int) -> int:
+    """Spans for which a fit has room, begun with so many; 0 for a first guess."""
+    return min(2 * max(spans_wanted(samples, search), 4, given) + 16, len(samples.Q) - 1)
+
+
+@compiled(internal=True)
+def spans_wanted(samples: Samples, search: Search) -> int:
+    """Spans of a first guess, by the density of vertices."""
+    return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.Q)))))
+
+
+@compiled(internal=True)
 def find_spline(
-    samples: Samples, directions: FloatArray, closed: int, near: float, search: Search, given: int, missed: float,
+    fit: Fit, samples: Samples, directions: FloatArray, near: float, search: Search, given: int, missed: float,
     p: FloatArray, tangents: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Fit one spline to a stretch, of as few spans as the search finds.
@@ -71,7 +94,7 @@ def find_spline(
     more to compile.
 
     Args:
-        directions: (2, 2) unit tangents at the ends. near: how near all samples have to be.
+        fit: scratch arrays. directions: (2, 2) unit tangents at the ends. near: how near all samples have to be.
         given: spans to begin with, whose vertices and tangents are in p and ``tangents``; 0 for a first guess.
         missed: by how much a single cubic misses the samples.
         p: (n + 1, 3) receives the vertices and their places. tangents: (2, 2) receives the end tangents of an arc,
@@ -80,8 +103,8 @@ def find_spline(
     Returns:
         The number of spans and the largest distance of a sample; 0 and infinity if there is none.
     """
-    Q = samples.Q
-    n = len(Q)
+    Q, curve, best = samples.Q, fit.curve, fit.best
+    n, closed = len(Q), curve.size[1]
     if given == 1:
         missed = fit_cubic(
             Q, directions[0], samples.free[0] > 0, directions[1], samples.free[1] > 0, near, search.cubic_rounds,
@@ -89,13 +112,11 @@ def find_spline(
         )  # fmt: skip
         if missed <= near:
             return 1, missed
-    wanted = int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(n))))
+    wanted = spans_wanted(samples, search)
     least = 4 if closed else 2
     guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
     if max(guess, given) > min(search.most, n - 1):
         return 0, np.inf
-    fit = empty_fit(n, min(2 * max(guess, wanted, given) + 16, n - 1), closed)
-    curve, best = fit.curve, empty_curve(len(fit.gram) - 1, closed)
     tried, costs = np.zeros(len(fit.gram) + 1, dtype=np.bool_), np.empty(len(fit.gram))
     what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
     best_error = last = np.inf
