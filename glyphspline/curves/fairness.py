@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled import compiled
 from ..types import FloatArray
 from .comb import frame, size_of
-from .cubics import directions, jet
+from .cubics import directions
 from .integrals import NODES, WEIGHTS
 
 SHARE = 0.1
@@ -24,10 +24,13 @@ NO_EXTENT = 1e-9
 STRAIGHT = 1e-9
 """Product of velocity and acceleration, of a piece of size 1, below which it is straight."""
 
+SLOW = 1e-8
+"""Squared speed of a piece of size 1 up to which its polynomials have too few digits for the curvature."""
+
 NARROW = 2.0**-16
 """Parameter interval that is not halved further to separate extrema: rounding errors decide about these inside it."""
 
-CLOSE = 1e-9
+CLOSE = 1e-6
 """Share of an interval by which the last step to an extremum inside moves."""
 
 ROUNDS = 40
@@ -39,8 +42,8 @@ MOST = 64
 PARTS = 4
 """Parts of a piece for the integral of the variation, so that its nodes meet sharp turns."""
 
-Quintic = tuple[float, float, float, float, float, float]
-"""Coefficients of a polynomial, that of the constant first."""
+Coefficients = tuple[float, ...]
+"""Of a polynomial of the parameter, that of the constant first."""
 
 
 @compiled
@@ -121,23 +124,28 @@ def _curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[Float
             values[n] = np.nan
             n += 1
         ax, ay = x, y
-        slope, bent = _slope(cubics, j, size)
+        bent, (x0, x1, x2), (s0, s1, s2, s3, s4), slope = _polynomials(cubics, j, size)
         for i in range(_places(slope, places) if bent else 1):
-            values[n] = 0.0
-            if bent:
-                _, _, _, _, values[n] = frame(cubics, j, places[i], size)
+            t = places[i]
+            square = s0 + t * (s1 + t * (s2 + t * (s3 + t * s4)))
+            values[n] = (x0 + t * (x1 + t * x2)) / (square * np.sqrt(square) * size) if bent else 0.0
+            if bent and not square > SLOW:
+                _, _, _, _, values[n] = frame(cubics, j, t, size)
             n += 1
     return values, n
 
 
 @compiled(internal=True)
-def _slope(cubics: FloatArray, j: int, size: float) -> tuple[Quintic, bool]:
-    """Coefficients of a quintic that is speed⁶ dκ/ds of a piece divided by its size, and whether the piece is bent."""
-    ax, ay = 3 * (cubics[j, 1, 0] - cubics[j, 0, 0]) / size, 3 * (cubics[j, 1, 1] - cubics[j, 0, 1]) / size
-    bx, by = 3 * (cubics[j, 2, 0] - cubics[j, 1, 0]) / size, 3 * (cubics[j, 2, 1] - cubics[j, 1, 1]) / size
-    cx, cy = 3 * (cubics[j, 3, 0] - cubics[j, 2, 0]) / size, 3 * (cubics[j, 3, 1] - cubics[j, 2, 1]) / size
+def _polynomials(cubics: FloatArray, j: int, size: float) -> tuple[bool, Coefficients, Coefficients, Coefficients]:
+    """Whether a piece is bent at all, and of the piece divided by its size three polynomials: the cross product of
+    velocity and acceleration, the squared speed, and speed⁶ dκ/ds, whose roots are the extrema of curvature.
+    """
+    scale = 3 / size
+    ax, ay = scale * (cubics[j, 1, 0] - cubics[j, 0, 0]), scale * (cubics[j, 1, 1] - cubics[j, 0, 1])
+    bx, by = scale * (cubics[j, 2, 0] - cubics[j, 1, 0]), scale * (cubics[j, 2, 1] - cubics[j, 1, 1])
+    cx, cy = scale * (cubics[j, 3, 0] - cubics[j, 2, 0]), scale * (cubics[j, 3, 1] - cubics[j, 2, 1])
     bx, by, cx, cy = 2 * (bx - ax), 2 * (by - ay), cx - 2 * bx + ax, cy - 2 * by + ay  # velocity a + b t + c t²
-    # Velocity and acceleration: their cross product x, the squared speed s, half of whose derivative is their product w
+    # The cross product x, the squared speed s, and half of its derivative w: velocity times acceleration.
     x0, x1, x2 = ax * by - ay * bx, 2 * (ax * cy - ay * cx), bx * cy - by * cx
     s0, s1, s4 = ax * ax + ay * ay, 2 * (ax * bx + ay * by), cx * cx + cy * cy
     s2, s3 = bx * bx + by * by + 2 * (ax * cx + ay * cy), 2 * (bx * cx + by * cy)
@@ -150,12 +158,13 @@ def _slope(cubics: FloatArray, j: int, size: float) -> tuple[Quintic, bool]:
         x1 * s4 + 2 * x2 * s3 - 3 * (x1 * w3 + x2 * w2),
         2 * x2 * s4 - 3 * x2 * w3,
     )
-    return slope, max(abs(x0), max(abs(x1), abs(x2))) > STRAIGHT
+    bent = max(abs(x0), max(abs(x1), abs(x2))) > STRAIGHT
+    return bent, (x0, x1, x2), (s0, s1, s2, s3, s4), slope
 
 
 @compiled(internal=True)
-def _places(q: Quintic, places: FloatArray) -> int:
-    """Write 0, the roots of a polynomial between 0 and 1, and 1 to ``places``, ascending; returns their number.
+def _places(q: Coefficients, places: FloatArray) -> int:
+    """Write 0, the roots of a quintic between 0 and 1, and 1 to ``places``, ascending; returns their number.
 
     Bernstein coefficients of one sign exclude a root, and one change of sign isolates it; other intervals are halved.
     Where intervals meet is a place too, as rounding errors may hide a root there from both.
@@ -213,15 +222,14 @@ def curvature_variation(cubics: FloatArray) -> float:
     for j in range(len(cubics)):
         size = size_of(cubics, j)
         if size > 0.0:
-            (q0, q1, q2, q3, q4, q5), bent = _slope(cubics, j, size)
+            bent, _, (s0, s1, s2, s3, s4), (q0, q1, q2, q3, q4, q5) = _polynomials(cubics, j, size)
             if not bent:
                 continue
             own = 0.0
             for part in range(PARTS):
                 for k in range(len(NODES)):
                     t = (part + (NODES[k] + 1) / 2) / PARTS
-                    _, _, dx, dy, _, _ = jet(cubics, j, t)
-                    speed = np.sqrt(dx * dx + dy * dy) / size
+                    speed = np.sqrt(max(s0 + t * (s1 + t * (s2 + t * (s3 + t * s4))), 0.0))
                     slope = (q0 + t * (q1 + t * (q2 + t * (q3 + t * (q4 + t * q5))))) / speed**5
                     own += WEIGHTS[k] * slope * slope / speed if speed > 0 else np.inf
             total += own / (2 * PARTS) / size**3
