@@ -21,7 +21,10 @@ from .types import FloatArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SHOWN = ("vertices", "segments", "iterations", "residual", "converged", "deviation", "bending_energy", "max_curvature")
+SHOWN = (
+    "vertices", "segments", "iterations", "residual", "converged", "deviation", "bending_energy", "max_curvature",
+    "curvature_extrema",
+)  # fmt: skip
 """Measures shown in a table."""
 
 HEIGHT = 320

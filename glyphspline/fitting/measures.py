@@ -9,14 +9,19 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.crossings import crossings_and_overshoot
+from ..curves.fairness import curvature_extrema
 from ..curves.integrals import integrals
 from ..errors import GlyphsplineError
 from ..interpolation.batched import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines
+from ..outlines.sampling import CORNER_ANGLE
 from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
+
+CORNER = float(np.cos(np.radians(CORNER_ANGLE)))
+"""Cosine of the turn from which a joint is a corner and has no curvature, whatever ``corner_angle`` the fit had."""
 
 Columns = dict[str, Sequence[Any]]
 """For each measure, its value for each contour."""
@@ -88,6 +93,8 @@ class Geometry(NamedTuple):
     area_change: FloatArray
     bending_energy: FloatArray
     max_curvature: FloatArray
+    curvature_extrema: IntArray
+    source_curvature_extrema: IntArray
     new_crossings: IntArray
 
 
@@ -101,23 +108,33 @@ def geometry(result: ContourArrays, source: ContourArrays, polygons: FloatArray,
     """
     C = len(offsets) - 1
     length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
-    crossings = np.empty(C, dtype=np.int64)
+    extrema, extrema_before, crossings = np.empty((3, C), dtype=np.int64)
     for c in range(C):
         cubics, given = contour_cubics(result, c), contour_cubics(source, c)
-        length[c], energy[c], curvature[c] = 0.0, 0.0, 0.0
-        for j in range(len(cubics)):
-            if result.degrees[result.offsets[c] + j] == 1:
-                length[c] += np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
-                continue
-            own_length, _, own_energy, own_curvature = integrals(cubics[j : j + 1])
-            length[c] += own_length
-            energy[c] += own_energy
-            curvature[c] = max(curvature[c], own_curvature)
+        length[c], energy[c], curvature[c] = _bends(cubics, result.degrees[result.offsets[c] : result.offsets[c + 1]])
+        length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
+        extrema[c] = curvature_extrema(cubics, length[c], CORNER)
+        extrema_before[c] = curvature_extrema(given, length_before, CORNER)
         change[c] = _area(cubics) - _area(given)
         found, beyond[c] = crossings_and_overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
         before, _ = crossings_and_overshoot(given, polygons[:0])
         crossings[c] = max(found - before, 0)
-    return Geometry(beyond, length, change, energy, curvature, crossings)
+    return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before, crossings)
+
+
+@compiled(internal=True)
+def _bends(cubics: FloatArray, degrees: IntArray) -> tuple[float, float, float]:
+    """Length, bending energy and largest absolute curvature of some segments; lines have no more than a length."""
+    length = energy = curvature = 0.0
+    for j in range(len(cubics)):
+        if degrees[j] == 1:
+            length += np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
+            continue
+        own_length, _, own_energy, own_curvature = integrals(cubics[j : j + 1])
+        length += own_length
+        energy += own_energy
+        curvature = max(curvature, own_curvature)
+    return length, energy, curvature
 
 
 @compiled

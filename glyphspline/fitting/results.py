@@ -37,6 +37,13 @@ class Measures:
         length: arc length. area_change: area of the result less that of the source contour.
         bending_energy: integral of curvature squared over arc length, in 1/unit.
         max_curvature: largest absolute curvature, in 1/unit.
+        curvature_extrema: significant extrema of the signed curvature of the result, before rounding, between corners:
+            where it has risen and then falls, or the reverse, each time by at least a tenth of the larger absolute
+            value, as less is the rounding of coordinates, and by 1/length, which is one radian around the contour, as
+            less is not seen. An 'o' has four, or eight if its shoulders are square. A corner that "smooth" rounds makes
+            four. See :func:`..curves.fairness.curvature_extrema`.
+        source_curvature_extrema: the same of the source contour. Sources of quadratics have many: each quadratic has a
+            peak of curvature of its own.
         new_crossings: self-crossings of the result beyond those of the source contour.
     """
 
@@ -56,6 +63,8 @@ class Measures:
     area_change: float | None = None
     bending_energy: float | None = None
     max_curvature: float | None = None
+    curvature_extrema: int | None = None
+    source_curvature_extrema: int | None = None
     new_crossings: int | None = None
 
 

@@ -3,7 +3,8 @@
 
 (() => {
   const COLUMNS = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound",
-    "overshoot", "max_curvature", "bending_energy", "converged", "within_tolerance"];
+    "overshoot", "max_curvature", "curvature_extrema", "source_curvature_extrema", "bending_energy", "converged",
+    "within_tolerance"];
 
   /** `dialog` as in gallery.html; `layersOn()` gives the set of layers; `labels` names the measures. */
   GS.detail = (dialog, layersOn, labels) => {

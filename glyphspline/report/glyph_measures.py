@@ -17,6 +17,8 @@ MEASURES: dict[str, tuple[str, Callable[[Sequence[Any]], Any]]] = {
     "fallbacks": ("fallbacks", sum),
     "bending_energy": ("bending energy", sum),
     "max_curvature": ("largest curvature", max),
+    "curvature_extrema": ("curvature extrema", sum),
+    "source_curvature_extrema": ("curvature extrema, source", sum),
     "overshoot": ("overshoot", max),
     "length": ("length", sum),
     "area_change": ("change of area", lambda values: max(values, key=abs)),

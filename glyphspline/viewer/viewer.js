@@ -9,7 +9,8 @@
     4: "as 2, each control point renewed at once (Algorithm 3)",
   };
   const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", rate_bound: "rate bound",
-    deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ", bending_energy: "energy" };
+    deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ",
+    curvature_extrema: "extrema of κ", source_curvature_extrema: "extrema of κ, source", bending_energy: "energy" };
   const number = (v) => (v === null || v === undefined ? "–" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
 
   const font = await (await fetch("/api/font")).json();

@@ -3,6 +3,8 @@
 FontForge is given the benefit of the doubt: of 30 settings of its ``simplify`` the one with the fewest numbers counts
 whose result, by dense sampling, truly stays within the tolerance; where none does, the source does. So is kurbo's fit,
 with its accuracies in the place of settings.
+
+The last rows say how fair the results are beside their sources: :func:`fairness_rows`.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.fairness import curvature_variation
 from glyphspline.types import FloatArray
 
 from .kurbo_fit import kurbo_results
@@ -60,7 +63,7 @@ FACES = (
 
 def rows() -> list[Row]:
     """All faces that are installed, or lie in a folder of GLYPHSPLINE_FACES."""
-    return [row for face in FACES for row in face_rows(face)]
+    return [row for measured in (face_rows, fairness_rows) for face in FACES for row in measured(face)]
 
 
 def outlines(face: Face) -> list[gs.Outline]:
@@ -154,6 +157,45 @@ def converted(glyphs: list[gs.Outline], options: gs.Options) -> tuple[FloatArray
         figures.append([sum(m.segments for m in measures), sum(m.numbers for m in measures), missed,
                         sum(m.vertices for m in measures)])  # fmt: skip
     return np.array(figures, dtype=np.float64), float(np.mean(seconds))
+
+
+WAYS = {
+    "smooth fast": gs.Options(tolerance=1.0),
+    "smooth best": gs.Options(tolerance=1.0, effort="best"),
+    "sharp fast": gs.Options(tolerance=1.0, corners="sharp"),
+    "sharp best": gs.Options(tolerance=1.0, corners="sharp", effort="best"),
+    "sharp best g1": gs.Options(tolerance=1.0, corners="sharp", effort="best", continuity="g1"),
+}
+"""Whose fairness is measured."""
+
+
+def fairness_rows(face: Face) -> list[Row]:
+    """Significant extrema of curvature a glyph, and those beyond each contour's source; how much C2 arcs vary."""
+    glyphs = outlines(face)
+    if not glyphs:
+        return []
+    found = {way: np.array([fairness(gs.convert(g, options)) for g in glyphs]) for way, options in WAYS.items()}
+    source, (c2, g1) = found["sharp best"][:, 0], (found[way][:, 3] for way in ("sharp best", "sharp best g1"))
+    ratio = np.median(c2[g1 > 0] / g1[g1 > 0])
+    return [
+        Row(f"{face.name}: extrema of curvature, source", source.mean(), "", None, None, False),
+        *(
+            Row(
+                f"{face.name}: extrema of curvature, {way}", each[:, 1].mean(), "", None, None, False,
+                f"{each[:, 2].mean():.3g} beyond the source's own",
+            )
+            for way, each in found.items()
+        ),
+        Row(f"{face.name}: ∫(dκ/ds)² ds, sharp best / g1", ratio, "x", None, None, False, "median of the glyphs"),
+    ]  # fmt: skip
+
+
+def fairness(result: gs.GlyphResult) -> tuple[int, int, int, float]:
+    """Extrema of the source and of the result, those of contours beyond their source's, and ∫(dκ/ds)² ds."""
+    pairs = [(c.measures.source_curvature_extrema or 0, c.measures.curvature_extrema or 0) for c in result.contours]
+    beyond = sum(max(own - given, 0) for given, own in pairs)
+    variation = sum(curvature_variation(contour.curve.cubics()) for contour in result.contours)
+    return sum(given for given, _ in pairs), sum(own for _, own in pairs), beyond, variation
 
 
 def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:

@@ -7,8 +7,9 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.curves.bezier import cross, derivative_points, evaluate, signed_curvature, split
-from glyphspline.curves.integrals import NODES, WEIGHTS, shape
+from glyphspline.curves.bezier import cross, evaluate
+from glyphspline.curves.fairness import curvature_variation
+from glyphspline.curves.integrals import shape
 from glyphspline.curves.parameters import Parametrisation, vertex_parameters
 from glyphspline.types import FloatArray
 
@@ -46,18 +47,6 @@ def _places(spline: gs.Spline, t: FloatArray) -> FloatArray:
     n, T = len(spline.knots) - 1, spline.period
     lap = np.floor(t / T)
     return np.asarray(lap * n + np.interp(t - lap * T, spline.knots, np.arange(n + 1)))
-
-
-def curvature_variation(pieces: FloatArray) -> float:
-    """∫(dκ/ds)² ds over Bézier pieces, each cut in four so that Gauss nodes meet sharp turns."""
-    for _ in range(2):
-        pieces = np.stack(split(pieces), axis=1).reshape(-1, *pieces.shape[1:])
-    x = np.tile((NODES + 1) / 2, len(pieces))
-    rows = np.repeat(np.arange(len(pieces)), len(NODES))
-    v, a, j = (evaluate(derivative_points(pieces, order)[rows], x) for order in (1, 2, 3))
-    speed = np.hypot(v[:, 0], v[:, 1])
-    slope = cross(v, j) / speed**3 - 3 * signed_curvature(v, a) * (v * a).sum(axis=1) / speed**2
-    return float((slope**2 / speed) @ np.tile(WEIGHTS, len(pieces)) / 2)
 
 
 def _span_points(pieces: FloatArray, places: FloatArray) -> FloatArray:
