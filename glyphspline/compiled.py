@@ -101,7 +101,8 @@ def _borrowed(context: Any, value: Any) -> Any:
 
     def uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         if isinstance(kind, types.BaseTuple):
-            for k, part in enumerate(kind):
+            parts: Any = kind
+            for k, part in enumerate(parts):
                 own = uncounted(context, builder, part, builder.extract_value(value, k))
                 value = builder.insert_value(value, own, k)
         if not isinstance(kind, types.Array):

@@ -34,13 +34,13 @@ SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 30, 4 / 3
 
 @compiled(internal=True)
 def improve(
-    fit: Fit, samples: Samples, near: float, margin: float, residual: float, rounds: int, start: int, width: int,
-    wobble: float,
+    fit: Fit, samples: Samples, near: float, margin: float, residual: float, settle: int, rounds: int, start: int,
+    width: int, wobble: float,
 ) -> float:  # fmt: skip
     """Move some slots of ``fit.curve`` until all rows are within ``near`` of the outline on a cold run of variant 2.
 
     Args:
-        near: the tolerance. margin, residual: of the interpolation. rounds: most steps.
+        near: the tolerance. margin, residual: of the interpolation. settle, rounds: least and most steps.
         start, width: the slots that move. wobble: weight of :func:`.spline_equations.third_derivatives`.
 
     Returns:
@@ -51,7 +51,7 @@ def improve(
     error = measure_afresh(samples, curve, near, rows)
     damping, failures = DAMPING, 0
     for n in range(rounds + 1):
-        if error <= near and is_graded(curve):
+        if n >= settle and error <= near and is_graded(curve):
             copy_curve(curve, trial)
             if interpolate_cold(trial, margin, residual) < residual:
                 copy_curve(trial, curve)
@@ -60,10 +60,10 @@ def improve(
                     return error
         if n == rounds:
             break
-        minimax = n >= 2
+        minimax, scale = n >= 2, near if settle > 0 else error
         differentiate(fit)
-        add_all(fit, error, minimax, wobble)
-        old = objective(curve, rows, error, minimax, wobble)
+        add_all(fit, scale, minimax, wobble)
+        old = objective(curve, rows, scale, minimax, wobble)
         while True:
             equations(fit, samples, damping, start, width)
             solve(fit.A, fit.step, fit.first, 2 * width)
@@ -71,7 +71,7 @@ def improve(
             if _advance(fit, 0.5 if minimax else 1.0, start, width):
                 iterate(trial, WARM * near, WARM_PASSES)
                 new = measure(samples, trial, near, rows, tried)
-                better = objective(trial, tried, error, minimax, wobble) < old
+                better = objective(trial, tried, scale, minimax, wobble) < old
             if better:
                 break
             failures += 1
