@@ -11,12 +11,12 @@ from ..types import FloatArray
 from .outline import Contour
 
 UNIT = 1e-3
-"""Of the em: the height in which a curve has to rise to an extremum and fall again, or it is a wave that rounding
-flattens; with a point at each, straight stems of closed splines would get dozens."""
+"""Of the em: the height by which a curve rises to an extremum and falls again, or it is a wave as high as the default
+tolerance, the fit's and not the letter's; with a point at each, straight stems of closed splines would get dozens."""
 
 SHORTEST = 2e-3
-"""Of the em: chord of the shortest piece that a split may leave. A third of it, a handle, still rounds to a whole unit,
-and the nearer joint misses the extremum by less than rounding does."""
+"""Of the em: chord of the shortest piece that a split may leave. A third of it, a handle, still rounds to a whole
+unit of 1/1000 em; off tight turns the nearer joint misses the extremum by far less."""
 
 AT_END = 1e-9
 """A root of the derivative within this parameter distance of an end of its segment is that end, but for rounding."""

@@ -77,7 +77,6 @@ def drawn_result(
     known = None not in measured
     deviation = max((value for value in measured if value is not None), default=0.0)
     room = max(tolerance - deviation, 0.0) if known else math.inf
-
     split = [extremal_pieces(c, em) if extrema else [[part] for part in c.segments()] for c in exact]
 
     def rounded(parts: int) -> tuple[list[Contour], float]:
