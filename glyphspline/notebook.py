@@ -47,16 +47,16 @@ def glyph_svg(glyph: GlyphResult) -> str:
 
 
 def glyph_html(glyph: GlyphResult) -> str:
-    """The result with its comb, above a table of its contours' measures."""
+    """The result with its comb, above a table of its contours' measures, its options and its notes."""
     head = "".join(f"<th>{name.replace('_', ' ')}</th>" for name in SHOWN)
     rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures)}</tr>" for c, each in enumerate(glyph.contours))
-    notes = "".join(f"<p>{escape(note)}</p>" for note in glyph.notes)
+    notes = "".join(f"<p>{escape(note)}</p>" for note in (glyph.options.words, *glyph.notes))
     return f"{glyph_svg(glyph)}<table><tr><th>contour</th>{head}</tr>{rows}</table>{notes}"
 
 
 def _cells(measures: Measures) -> str:
     values = [getattr(measures, name) for name in SHOWN]
-    return "".join(f"<td>{f'{v:.3g}' if isinstance(v, float) else '' if v is None else v}</td>" for v in values)
+    return "".join(f"<td>{f'{v:.3g}' if isinstance(v, float) else '–' if v is None else v}</td>" for v in values)
 
 
 def outline_svg(outline: Outline) -> str:

@@ -15,6 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.batch import atlas_run
 from glyphspline.cli import app
 from glyphspline.outlines.joins import joins
 from glyphspline.writers.figures.atlas import overview, profile
@@ -58,6 +59,7 @@ def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> 
         assert len(list(root.iter(f"{SVG}path"))) >= paths
     html = html_of(glyph)
     assert "<td>16</td>" in html
+    assert f"<p>{glyph.options.words}</p>" in html
     assert "a<b" not in html
 
 
@@ -116,10 +118,30 @@ def test_the_atlas_has_a_page_for_twelve_glyphs_and_one_for_each_profile(tmp_pat
     assert {path.name for path in tmp_path.iterdir()} == {"a.pdf", "b.pdf"}
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["--preset", "type"], "corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
+        (["--corners", "sharp", "--continuity", "g1", "--tolerance", "3"], "corners sharp, continuity g1, tolerance 3"),
+    ],
+)
+def test_the_atlas_is_made_and_captioned_by_the_options(
+    given: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[gs.GlyphResult] = []
+    monkeypatch.setattr(atlas_run, "write_atlas", lambda path, glyphs, scale, **_: len(drawn.__iadd__(glyphs)))
+    font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+    run = CliRunner().invoke(app, ["atlas", font, "--text", "O", *given, "--out", str(tmp_path / "a.pdf")])
+    assert run.exit_code == 0, run.output
+    (glyph,) = drawn
+    for figure in (overview([("broken", "no outline"), glyph], 0.01, "Font"), profile(glyph, 0.01)):
+        assert any(words in text.get_text() for text in figure.texts)
+
+
 def test_the_profile_draws_curvature_over_arc_length(glyph: gs.GlyphResult) -> None:
     figure = profile(glyph, 1 / 200)
     curves = {line.get_label(): line.get_xydata() for axes in figure.axes for line in axes.lines}
-    for name in ("source", "spline"):
+    for name in ("source", "result"):
         np.testing.assert_allclose(curves[name][:, 1], 1000 / 200, rtol=0.05)
         assert curves[name][-1, 0] == pytest.approx(2 * np.pi * 0.2, rel=0.03)
 

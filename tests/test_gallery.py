@@ -6,6 +6,7 @@ import json
 import re
 from base64 import b64encode
 from collections.abc import Iterator
+from dataclasses import asdict
 from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
@@ -133,6 +134,19 @@ def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:
     assert f"'sha256-{digest}'" in policy
     assert "default-src 'none'" in policy
     assert "http" not in policy
+
+
+def test_the_run_says_how_it_was_made(tmp_path: Path) -> None:
+    options = asdict(gs.Options(corners="sharp", continuity="g1"))
+    for given, words in (
+        ({"options": options}, gs.Options(**options).words),
+        ({}, ""),
+        ({"options": {"corners": HOSTILE}}, ""),
+        ({"options": options | {"of a later version": 1}}, ""),
+        ({"options": 3}, ""),
+    ):
+        write_report(tmp_path, [entry(1)], RUN | given)
+        assert data(tmp_path / "gallery" / "run.js")["words"] == words
 
 
 @pytest.mark.parametrize("count", [0, 1, 40, 41, 5001])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
+from glyphspline.fitting.options import PRESETS
 
 from .polygons import circle_contour
 
@@ -38,6 +39,24 @@ def test_a_value_out_of_range_is_refused_by_name(wrong: dict[str, Any]) -> None:
 def test_options_that_contradict_each_other_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(gs.OptionError, match="give"):
         gs.Options(**wrong)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({}, "variant 2, margin 0.02, corners smooth, tolerance 1/1000 em, effort fast"),
+        ({"step": 20, "variant": 3}, "variant 3, margin 0.02, corners smooth, step 20"),
+        (PRESETS["type"], "variant 2, margin 0.02, corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
+        (
+            {"corners": "sharp", "continuity": "g1", "tolerance": 0.5},
+            "corners sharp, continuity g1, tolerance 0.5, effort fast",
+        ),
+        ({"continuity": "g1", "count": 9}, "variant 2, margin 0.02, corners smooth, count 9"),
+    ],
+    ids=str,
+)
+def test_a_caption_says_what_made_a_difference(given: dict[str, Any], words: str) -> None:
+    assert gs.Options(**given).words == words
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli import app as shell
+from glyphspline.fitting.options import PRESETS, Continuity, Effort
 from glyphspline.viewer import make_app
 from glyphspline.viewer.conversion import shown_steps
 
@@ -51,14 +52,24 @@ def test_a_glyph_is_what_convert_gives(client: TestClient) -> None:
     assert ask(client, "svg")["svg"] == gs.to_svg(result)
 
 
-def test_the_command_gives_the_drawing_that_was_seen(client: TestClient, tmp_path: Path) -> None:
-    words = shlex.split(ask(client, variant=3, margin=0.1)["command"])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"variant": 3, "margin": 0.1},
+        {"sampling": "tolerance", "amount": 3, "corners": "sharp", "continuity": "g1"},
+        {"sampling": "tolerance", "amount": 3, "corners": "sharp", "effort": "best"},
+    ],
+)
+def test_the_command_gives_the_drawing_that_was_seen(
+    client: TestClient, changes: dict[str, Any], tmp_path: Path
+) -> None:
+    words = shlex.split(ask(client, **changes)["command"])
     assert words[:2] == ["glyphspline", "convert"]
     words[words.index("--out") + 1] = str(tmp_path)
     run = CliRunner().invoke(shell, [*words[1:], "--jobs", "0", "--quiet", "--format", "svg,curvature"])
     assert run.exit_code == 0, run.output
     (drawing,) = (tmp_path / "svg").iterdir()
-    assert drawing.read_text() == ask(client, "svg", variant=3, margin=0.1)["svg"]
+    assert drawing.read_text() == ask(client, "svg", **changes)["svg"]
 
 
 @pytest.mark.parametrize("corners", ["smooth", "sharp"])
@@ -67,6 +78,26 @@ def test_by_tolerance_the_result_is_within_it(client: TestClient, corners: str) 
     assert all(measures["within_tolerance"] for measures in found["measures"])
     assert len(found["residuals"]) >= len(found["polygons"])
     assert found["movable"] == [corners == "smooth"] * 2
+
+
+def test_continuity_and_effort_reach_the_fit_and_the_command(client: TestClient) -> None:
+    outline = gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O")
+    chosen: list[tuple[Continuity, Effort]] = [("c2", "best"), ("g1", "fast")]
+    for continuity, effort in chosen:
+        found = ask(client, sampling="tolerance", amount=4, corners="sharp", continuity=continuity, effort=effort)
+        options = gs.Options(tolerance=4, corners="sharp", continuity=continuity, effort=effort)
+        assert f'd="{found["result"]}"' in gs.to_svg(gs.convert(outline, options))
+        assert f"--continuity {continuity} --effort {effort}" in found["command"]
+        for measures in found["measures"] if continuity == "g1" else ():
+            assert [measures[name] for name in ("iterations", "residual", "converged", "rate_bound")] == [None] * 4
+    assert "--continuity" not in ask(client)["command"], "of sharp corners only"
+    assert "--effort" not in ask(client)["command"], "by tolerance only"
+
+
+def test_presets_are_those_of_the_shell(client: TestClient) -> None:
+    presets = client.get("/api/font").json()["presets"]
+    assert presets == PRESETS
+    assert all(set(values) <= {"corners", "margin", "continuity", "effort"} for values in presets.values())
 
 
 def test_sliding_and_resting_draw_the_same(client: TestClient) -> None:
@@ -142,6 +173,7 @@ def test_glyphs_are_found_by_character_code_index_and_name(client: TestClient) -
     [
         {"glyph": "nothing"}, {"glyph": 3}, {"variant": 7}, {"variant": True}, {"margin": "x"}, {"margin": 1e999},
         {"sampling": "eval"}, {"amount": None}, {"corners": []}, {"location": [1]}, {"location": {"wght": 3}},
+        {"continuity": "g3"}, {"effort": 1},
         {"corners": "sharp"}, {"moved": [[1, 2, 3]]}, {"moved": [[0, 0, 1e999, 0]]}, {"moved": [[0, 0, 0, 0]] * 1001},
     ],
 )  # fmt: skip

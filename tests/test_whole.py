@@ -14,10 +14,10 @@ import glyphspline as gs
 from glyphspline.batch import OutputError, RunSpec, convert_font
 from glyphspline.batch.store import from_text, to_text
 from glyphspline.fitting.options import Options
+from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
 from glyphspline.readers.svg_drawings import open_svg
 from glyphspline.readers.ufo import open_ufo
-from glyphspline.writers.ufo_folder import with_extrema
 
 from .test_batch import content
 from .test_writers_font import largest_distance
@@ -58,7 +58,9 @@ def test_all_formats_of_one_run_hold_the_same_outlines(out: Path) -> None:
         ]
         for a, b, c in zip(bezier, drawings.outline(name).contours, ufo.outline(name).contours, strict=True):
             np.testing.assert_allclose(a.rounded(2).points, b.points, atol=1e-9)
-            np.testing.assert_allclose(with_extrema(a).rounded(2).points, c.points, atol=1e-9)
+            np.testing.assert_allclose(
+                with_extrema(a, source.metrics.units_per_em).rounded(2).points, c.points, atol=1e-9
+            )
 
 
 def test_workers_and_interruptions_leave_no_trace(out: Path, tmp_path: Path) -> None:

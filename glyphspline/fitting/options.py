@@ -89,6 +89,18 @@ class Options:
         """Whether vertices are placed by ``step`` or ``count``, whatever the distance from the source."""
         return self.step is not None or self.count is not None
 
+    @property
+    def words(self) -> str:
+        """What a caption says of a conversion, in the words of the command line; only what made a difference."""
+        sharp = self.corners == "sharp"
+        interpolated = not (sharp and self.continuity == "g1")
+        said = [f"variant {self.variant}", f"margin {self.margin:g}"] if interpolated else []
+        said += [f"corners {self.corners}", *([f"continuity {self.continuity}"] if sharp else [])]
+        given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
+        said += [f"{name} {getattr(self, name):g}" for name in given] or ["tolerance 1/1000 em"]
+        said += [] if self.is_fixed else [f"effort {self.effort}"]
+        return ", ".join(said)
+
     def tolerance_for(self, units_per_em: float) -> float:
         """The geometric tolerance in font units."""
         return units_per_em / 1000 if self.tolerance is None else self.tolerance

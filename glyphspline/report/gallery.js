@@ -70,6 +70,7 @@
       : GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
         : `${labels[fact]} ${GS.number(GS.value(row, fact))}`));
     at("count").textContent = chosen.length === rows.length ? `${rows.length} glyphs` : `${chosen.length} of ${rows.length} glyphs`;
+    at("options").textContent = (runs.length === 1 ? runs[0] : runs.find((run) => run.folder === at("run").value))?.words ?? "";
     histogram(sort);
   };
 

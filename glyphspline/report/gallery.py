@@ -17,6 +17,8 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from ..errors import GlyphsplineError
+from ..fitting.options import Options
 from ..writers.svg.colours import SIDES, class_colour
 from ..writers.svg.markup import text
 from .data import COLUMNS, FOLDER, as_json, row_of, script
@@ -161,9 +163,18 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
         "metrics": metrics,
         "scale": run.get("curvature_scale") or 4 / metrics["units_per_em"],
         "options": run.get("options", {}),
+        "words": _words(run),
         "glyphs": count,
         "table": TABLE,
     }
+
+
+def _words(run: Mapping[str, Any]) -> str:
+    """What the page says of the conversion; nothing if the options are not those of this version."""
+    try:
+        return Options(**run["options"]).words
+    except (KeyError, TypeError, GlyphsplineError):
+        return ""
 
 
 def _replace(path: Path, content: str | bytes) -> None:

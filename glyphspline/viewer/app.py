@@ -17,6 +17,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from ..errors import GlyphsplineError
+from ..fitting.options import PRESETS
 from ..report.gallery import palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
@@ -82,6 +83,7 @@ def font_facts(work: Work) -> dict[str, Any]:
         "axes": [asdict(axis) for axis in font.axes],
         "first": next((font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap), font.glyph_names[0]),
         "scale": work.scale(),
+        "presets": PRESETS,
         "palette": palette(),
     }
 

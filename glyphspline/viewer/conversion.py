@@ -88,6 +88,8 @@ class Work:
             words += ["--location", ",".join(f"{tag}={value:g}" for tag, value in state.location)]
         words += ["--variant", str(options.variant), "--margin", f"{options.margin:g}", "--fallback", options.fallback]
         words += ["--corners", options.corners, f"--{state.sampling}", f"{state.amount:.6g}"]
+        words += ["--continuity", options.continuity] if options.corners == "sharp" else []
+        words += ["--effort", options.effort] if state.sampling == "tolerance" else []
         return shlex.join([*words, "--out", f"outputs/gid-{gid}"])
 
 

@@ -55,6 +55,8 @@ def read_state(given: Any, units_per_em: float) -> State:
         variant=given.get("variant", Options.variant),
         margin=min(max(_number(given, "margin", Options.margin), 0.0), 0.25),
         corners=given.get("corners", Options.corners),
+        continuity=given.get("continuity", Options.continuity),
+        effort=given.get("effort", Options.effort),
         fallback=given.get("fallback", Options.fallback),
         measure=given.get("measure") is True,
         tolerance=amount if sampling == "tolerance" else None,

@@ -8,15 +8,17 @@
     2: "the interval of Lemma 2: converges, and certified to with c > 0", 3: "only the knot u_i: no search, overshoots",
     4: "as 2, each control point renewed at once (Algorithm 3)",
   };
-  const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", rate_bound: "rate bound",
+const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", converged: "converged", rate_bound: "rate bound",
     deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ",
     curvature_extrema: "extrema of κ", source_curvature_extrema: "extrema of κ, source", bending_energy: "energy" };
-  const number = (v) => (v === null || v === undefined ? "–" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
+  /** Measures of the iteration, which keep their rows where nothing is iterated. */
+  const ITERATED = new Set(["iterations", "residual", "converged", "rate_bound"]);
+  const number = (v) => (v === null || v === undefined ? "–" : v === true ? "yes" : v === false ? "no" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
 
   const font = await (await fetch("/api/font")).json();
   GS.usePalette(font.palette);
   const em = font.metrics.units_per_em;
-  const state = { glyph: font.first, location: {}, variant: 2, margin: 0.02, sampling: "step", amount: 0, corners: "smooth", moved: [], measure: false };
+  const state = { glyph: font.first, location: {}, variant: 2, margin: 0.02, sampling: "step", amount: 0, corners: "smooth", continuity: "c2", effort: "fast", moved: [], measure: false };
   const layers = new Set(["source", "result", "vertices"]);
   let shown = null, compared = null, steps = null, playing = null;
 
@@ -72,7 +74,8 @@
     at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers));
     at("legend").replaceChildren(...(layers.has("comb") || layers.has("colour") ? [GS.legend(em, font.scale)] : []));
     at("step-out").textContent = step ? `${step.step}, error ${number(step.error)}` : "result";
-    GS.chart(at("chart"), shown.residuals.length ? shown.residuals : [[0]], 0.005, step ? step.step : null);
+    if (shown.measures.some((m) => m.iterations !== null)) GS.chart(at("chart"), shown.residuals, 0.005, step ? step.step : null);
+    else at("chart").textContent = "–";
   };
 
   const drawCompared = () => {
@@ -82,10 +85,11 @@
     at("compared").replaceChildren(...compared.map((result) => {
       const picture = GS.svg("svg", { class: "drawing", viewBox: at("picture").getAttribute("viewBox"), role: "img", "aria-label": `variant ${result.variant}` },
         GS.viewerDrawing(font, shown.source, result, small));
-      const sum = (key) => result.measures.reduce((total, m) => total + (m[key] ?? 0), 0);
-      const most = (key) => Math.max(0, ...result.measures.map((m) => m[key] ?? 0));
+      const known = (key) => result.measures.map((m) => m[key]).filter((v) => v !== null);
+      const sum = (key) => (known(key).length ? known(key).reduce((total, v) => total + v, 0) : null);
+      const most = (key) => (known(key).length ? Math.max(...known(key)) : null);
       return GS.element("figure", { class: result.variant === state.variant ? "chosen" : "" }, picture, GS.element("figcaption", {},
-        GS.element("b", {}, `variant ${result.variant}`), ` · ${most("iterations")} iterations · energy ${number(sum("bending_energy"))} · largest κ ${number(most("max_curvature") * em)}/em`));
+        GS.element("b", {}, `variant ${result.variant}`), ` · ${number(most("iterations"))} iterations · energy ${number(sum("bending_energy"))} · largest κ ${number(most("max_curvature") === null ? null : most("max_curvature") * em)}/em`));
     }));
   };
 
@@ -96,7 +100,7 @@
       ...(bad ? [`${bad} not converged`] : []), ...(state.sampling === "tolerance" ? shown.notes : [])].filter(Boolean).join(" · ");
     at("about").classList.toggle("bad", bad > 0);
     const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"), ...shown.measures.map((_, i) => GS.element("th", { scope: "col" }, String(i))));
-    const rows = Object.entries(MEASURES).filter(([key]) => shown.measures.some((m) => m[key] !== null)).map(([key, word]) =>
+    const rows = Object.entries(MEASURES).filter(([key]) => ITERATED.has(key) || shown.measures.some((m) => m[key] !== null)).map(([key, word]) =>
       GS.element("tr", {}, GS.element("th", { scope: "row" }, word), ...shown.measures.map((m) => GS.element("td", {}, number(m[key])))));
     at("measures").replaceChildren(head, ...rows);
     const whole = shown.movable.every(Boolean); // arcs between corners take a few updates each and are not stepped through
@@ -172,9 +176,19 @@
     state.variant = +document.querySelector("[name=variant]:checked").value;
     state.sampling = document.querySelector("[name=sampling]:checked").value;
     state.corners = document.querySelector("[name=corners]:checked").value;
+    state.continuity = document.querySelector("[name=continuity]:checked").value;
+    state.effort = document.querySelector("[name=effort]:checked").value;
     state.margin = +at("margin").value;
     at("margin-out").textContent = state.margin.toFixed(3);
-    at("variant-words").textContent = WORDS[state.variant];
+    const sharp = state.corners === "sharp", fitted = sharp && state.continuity === "g1"; // G1 cubics: nothing is iterated
+    at("continuities").disabled = !sharp;
+    at("efforts").disabled = state.sampling !== "tolerance";
+    if (fitted && at("compare").checked) at("compare").click(); // before it is disabled
+    for (const id of ["variants", "margin", "compare"]) at(id).disabled = fitted;
+    at("variant-words").textContent = fitted ? "no variant runs: G1 cubics are fitted, nothing is iterated" : WORDS[state.variant];
+    for (const input of document.querySelectorAll("[name=preset]")) {
+      input.checked = Object.entries(font.presets[input.value]).every(([key, value]) => state[key] === value);
+    }
     amount();
   };
   /* Step and count sample whole contours, which sharp corners cut. */
@@ -189,10 +203,24 @@
       else if (input.name === "sampling" && input.value !== "tolerance") together(input.value, "smooth");
     });
   }
+  for (const input of document.querySelectorAll("[name=preset]")) {
+    input.addEventListener("change", () => {
+      for (const [key, value] of Object.entries(font.presets[input.value])) {
+        const choice = document.querySelector(`[name=${key}][value="${value}"]`);
+        if (choice) choice.checked = true;
+        else at(key).value = String(value);
+      }
+      const { corners } = font.presets[input.value];
+      if (corners === "sharp" && state.sampling !== "tolerance") together("tolerance", corners);
+      state.moved = [];
+      read();
+      ask();
+    });
+  }
   const START = { step: 45, count: 50, tolerance: 35 };
   for (const input of document.querySelectorAll("[name=sampling]")) input.addEventListener("change", () => { at("amount").value = START[input.value]; });
-  for (const input of document.querySelectorAll("[name=sampling], [name=corners], #amount")) input.addEventListener("input", () => { state.moved = []; });
-  for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], #margin, #amount")) {
+  for (const input of document.querySelectorAll("[name=sampling], [name=corners], [name=continuity], [name=effort], #amount")) input.addEventListener("input", () => { state.moved = []; });
+  for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], [name=continuity], [name=effort], #margin, #amount")) {
     input.addEventListener(input.type === "radio" ? "change" : "input", () => { read(); ask(); });
   }
   for (const axis of font.axes) {

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import asdict, astuple
 from itertools import islice
 from pathlib import Path
@@ -19,13 +19,12 @@ from typing import Any
 import numpy as np
 from fontTools.ufoLib import UFOWriter
 
-from ..curves.bezier import split
 from ..curves.cubics import turns
 from ..errors import GlyphsplineError
 from ..fitting.results import ContourResult, GlyphResult
+from ..outlines.extrema import with_extrema
 from ..outlines.outline import Contour
 from ..readers import Source
-from ..types import FloatArray
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
@@ -36,9 +35,6 @@ SMOOTH = 1e-3
 
 NO_HANDLE = 1e-9
 """Handles up to this length in font units may be rounding errors and have no direction."""
-
-AT_END = 1e-3
-"""An extremum within this parameter distance of an end of its segment counts as that end."""
 
 
 def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *, family: str | None = None) -> int:
@@ -85,49 +81,13 @@ def _write(source: Source, glyphs: Iterable[GlyphResult], path: Path, family: st
 def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
-    curves = [with_extrema(contour.curve) for contour in result.contours]
+    curves = [with_extrema(contour.curve, outline.metrics.units_per_em) for contour in result.contours]
     lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(asdict(result.options))}
     width, note = _number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
     front.writeGlyph(outline.name, glyph, lambda pen: draw(curves, digits, pen))
     back.writeGlyph(outline.name, SimpleNamespace(width=width), lambda pen: draw(lines, digits, pen))
-
-
-def with_extrema(contour: Contour) -> Contour:
-    """The same curve with its cubics and quadratics split at their extrema in x and y."""
-    return Contour.from_segments(piece for segment in contour.segments() for piece in split_at_extrema(segment))
-
-
-def split_at_extrema(segment: FloatArray) -> Iterator[FloatArray]:
-    """The parts of a Bézier segment between its extrema in x and y."""
-    degree = len(segment) - 1
-    cuts: list[float] = []
-    if degree > 1:
-        d = np.diff(segment, axis=0)
-        for k in (0, 1):
-            power = [d[0, k], d[1, k] - d[0, k]] if degree == 2 else [
-                d[0, k], 2 * (d[1, k] - d[0, k]), d[0, k] - 2 * d[1, k] + d[2, k]]  # fmt: skip
-            cuts += [float(t) for t in real_roots(power) if AT_END < t < 1 - AT_END]
-    done = 0.0
-    for t in sorted(cuts):
-        if t - done > AT_END:
-            left, segment = split(segment, (t - done) / (1 - done))
-            yield left
-            done = t
-    yield segment
-
-
-def real_roots(power: list[float]) -> list[float]:
-    """Real roots of a polynomial of degree up to 2, coefficients in ascending order; without double roots."""
-    c, b, a = [*power, 0.0][:3]
-    if abs(a) <= 1e-12 * (abs(b) + abs(c)):
-        return [-c / b] if b else []
-    discriminant = b * b - 4 * a * c
-    if discriminant <= 0:
-        return []  # at a double root the curve has an inflection, not an extremum
-    q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
-    return [q / a, c / q] if q else [q / a]
 
 
 def draw(contours: Iterable[Contour], digits: int, pen: Any) -> None:

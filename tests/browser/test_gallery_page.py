@@ -32,6 +32,7 @@ def names(page: Any) -> list[str]:
 def test_shows_every_glyph_of_a_run_with_its_drawing(page: Any, gallery: Path) -> None:
     opened(page, gallery / "kouzan-gyosho")
     assert page.locator("#count").inner_text() == "18 glyphs"
+    assert page.locator("#options").inner_text() == "variant 2, margin 0.02, corners smooth, count 24"
     assert len(names(page)) == 18
     page.wait_for_function("() => document.querySelectorAll('.card .result').length === 17")  # all but the space
     drawn = page.locator(".card:has(b:text-is('O')) .result").get_attribute("d")
@@ -42,7 +43,9 @@ def test_shows_every_glyph_of_a_run_with_its_drawing(page: Any, gallery: Path) -
 def test_several_fonts_side_by_side(page: Any, gallery: Path) -> None:
     opened(page, gallery)
     assert page.locator("#count").inner_text() == "26 glyphs"
+    assert page.locator("#options").inner_text() == ""
     page.select_option("#run", "variable")
+    assert page.locator("#options").inner_text().endswith("step 90")
     assert page.locator("#count").inner_text() == "8 of 26 glyphs"
     page.locator(".card:not(.empty)").first.click()
     assert "Regular" in page.locator("[data-part=about]").inner_text()

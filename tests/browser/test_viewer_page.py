@@ -56,6 +56,33 @@ def test_the_curve_follows_the_sliders(shown: Any) -> None:
     assert "--count" in shown.locator("#command").inner_text()
 
 
+def test_presets_and_continuity(shown: Any) -> None:
+    choice = "[name={}][value={}]".format
+    assert shown.locator(choice("continuity", "g1")).is_disabled(), "smooth curves are C2"
+    assert shown.locator("[name=preset]:checked").count() == 0
+    changes(shown, lambda: shown.locator(choice("preset", "type")).check(force=True))
+    for name, value in (("corners", "sharp"), ("sampling", "tolerance"), ("continuity", "c2"), ("effort", "best")):
+        assert shown.locator(choice(name, value)).is_checked()
+    assert "--corners sharp" in shown.locator("#command").inner_text()
+    shown.locator("#compare").check()
+    shown.locator("#compared figure").nth(2).wait_for()
+    changes(shown, lambda: shown.locator(choice("continuity", "g1")).check(force=True))
+    assert "--continuity g1" in shown.locator("#command").inner_text()
+    assert shown.locator("[name=preset]:checked").count() == 0
+    assert shown.locator(choice("variant", "'2'")).is_disabled()
+    assert shown.locator("#compared").is_hidden()
+    for row in ("iterations", "residual", "converged", "rate bound"):
+        cells = shown.locator(f"#measures tr:has(th:text-is('{row}')) td").all_inner_texts()
+        assert cells
+        assert set(cells) == {"–"}, "nothing is iterated"
+    assert shown.locator("#chart").inner_text() == "–"
+    assert "undefined" not in shown.locator("body").inner_text()
+    changes(shown, lambda: shown.locator(choice("preset", "paper")).check(force=True))
+    assert shown.locator("#margin-out").inner_text() == "0.000"
+    assert shown.locator(choice("continuity", "g1")).is_disabled()
+    assert shown.locator(choice("variant", "'2'")).is_enabled()
+
+
 def test_another_glyph_by_search_and_by_arrow_keys(shown: Any) -> None:
     changes(shown, lambda: shown.locator("#words").fill("O"))
     assert shown.locator("#title").inner_text() == "O O"

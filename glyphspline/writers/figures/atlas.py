@@ -88,7 +88,7 @@ def write_atlas(
 
 def overview(glyphs: Sequence[Glyph], scale: float, heading: str) -> Any:
     """A page of combs as a matplotlib figure, on one pair of axes: ten times as fast as one pair per glyph."""
-    figure = _figure(heading)
+    figure = _figure(heading, next((glyph.options.words for glyph in glyphs if isinstance(glyph, GlyphResult)), ""))
     axes = figure.add_axes((0.04, 0.085, 0.92, 0.865))
     axes.set(xlim=(0, COLUMNS * CELL), ylim=(-ROWS * CELL, 0), aspect="equal")
     axes.set_axis_off()
@@ -111,16 +111,16 @@ def overview(glyphs: Sequence[Glyph], scale: float, heading: str) -> Any:
 
 
 def profile(glyph: GlyphResult, scale: float) -> Any:
-    """One glyph: the source with its breaks, the spline, and κ(s) of its longest contours, as a figure."""
+    """One glyph: the source with its breaks, the result, and κ(s) of its longest contours, as a figure."""
     em = glyph.outline.metrics.units_per_em
-    figure = _figure(_name(glyph))
+    figure = _figure(_name(glyph), glyph.options.words)
     longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:PROFILES]
     grid = figure.add_gridspec(
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
         height_ratios=[2.2] + [1] * len(longest),
     )  # fmt: skip
     as_read = replace(glyph, contours=tuple(replace(c, curve=c.source) for c in glyph.contours))
-    for column, (shown, title) in enumerate([(as_read, "source"), (glyph, "spline")]):
+    for column, (shown, title) in enumerate([(as_read, "source"), (glyph, "result")]):
         axes = figure.add_subplot(grid[0, column])
         _draw(axes, [c.curve.cubics() for c in shown.contours], teeth(shown, scale))
         axes.autoscale_view()
@@ -135,11 +135,12 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
     return figure
 
 
-def _figure(heading: str) -> Any:
+def _figure(heading: str, caption: str) -> Any:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=PAGE)
     figure.text(0.05, 0.967, ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
+    figure.text(0.05, 0.955, caption, fontsize=7, color="0.35", parse_math=False)
     return figure
 
 
@@ -169,18 +170,18 @@ def _mark_breaks(axes: Any, glyph: GlyphResult, scale: float) -> None:
 
 
 def _draw_profile(axes: Any, contour: ContourResult, index: int, scale: float, em: float) -> None:
-    """κ over arc length of the source, its breaks, and the spline, from the same point."""
-    source, spline = (comb(c.cubics(), SPACING * em / 2) for c in (contour.source, contour.curve))
+    """κ over arc length of the source, its breaks, and the result, from the same point."""
+    source, result = (comb(c.cubics(), SPACING * em / 2) for c in (contour.source, contour.curve))
     s, total = _arc_length(source)
-    t, length = _arc_length(spline)
-    start = s[np.argmin(np.hypot(*(source.points - spline.points[0]).T))]
+    t, length = _arc_length(result)
+    start = s[np.argmin(np.hypot(*(source.points - result.points[0]).T))]
     t = (start + t * total / length) % total
     order = np.argsort(t, kind="stable")
     limit = 2 * LONGEST * scale * em
     axes.axhspan(-scale * em, scale * em, color="0.96", zorder=0)
     axes.plot(s / em, np.clip(source.curvature * em, -limit, limit), color=SOURCE, linewidth=0.9, label="source")
-    curvature = np.clip(spline.curvature * em, -limit, limit)[order]
-    axes.plot(t[order] / em, curvature, color="black", linewidth=0.8, label="spline")
+    curvature = np.clip(result.curvature * em, -limit, limit)[order]
+    axes.plot(t[order] / em, curvature, color="black", linewidth=0.8, label="result")
     found = joins(contour.source)
     at = s[source.pieces[:-1]]
     for kind, (marker, colour, _) in MARKS.items():

@@ -1,7 +1,8 @@
 """A font with the interpolated outlines in place of the source's: OTF (CFF, cubic) or TTF (quadratic).
 
-Advances, characters, kerning and features are kept. A variable font becomes static at the source's location. Hints,
-bitmaps and SVG pictures, which belong to the old outlines, are removed; colour layers (COLR) are kept.
+Converted glyphs get points at extrema. Advances, characters, kerning and features are kept. A variable font becomes
+static at the source's location. Hints, bitmaps and SVG pictures, which belong to the old outlines, are removed; colour
+layers (COLR) are kept.
 Glyphs that were not converted keep their outlines: unchanged if the format is the source's, else converted to the
 other format, within 1 unit. A composite with a replaced component is decomposed first, so it looks as before.
 """
@@ -37,12 +38,14 @@ class FontSummary:
         family: the new name. replaced: number of glyphs with new outlines.
         largest_error: bound of their distance from the source, in font units; None if not measured.
         beyond: names of the glyphs that may be farther from the source than their tolerance.
+        extrema: number of points added at extrema.
     """
 
     family: str
     replaced: int
     largest_error: float | None
     beyond: tuple[str, ...]
+    extrema: int
 
 
 def to_font(
@@ -52,6 +55,7 @@ def to_font(
     *,
     family: str | None = None,
     tolerance: float | None = None,
+    extrema: bool = True,
 ) -> tuple[bytes, FontSummary]:
     """The font as a file's bytes; the same input gives the same bytes.
 
@@ -60,6 +64,7 @@ def to_font(
         flavour: "otf" or "ttf". family: the new family name; None is the source's with "Spline".
         tolerance: largest distance of the written outlines from the source, in font units; None is each glyph's own.
             A TTF has whole units, so fit within :func:`.font_glyphs.fitting_tolerance`.
+        extrema: whether points are added at horizontal and vertical extrema of the new outlines.
 
     Raises:
         GlyphsplineError: the source has no outlines, or a coordinate does not fit into a font.
@@ -68,11 +73,12 @@ def to_font(
     font = base_tables(source)
     in_place = ("glyf" if flavour == "ttf" else "CFF ") in font
     target = _InPlace(font, flavour) if in_place else _Rebuilt(font, source, flavour, family)
-    beyond, errors = [], []
+    beyond, errors, added = [], [], 0
     for result in glyphs:
         allowed = result.options.tolerance_for(source.metrics.units_per_em) if tolerance is None else tolerance
-        drawn = target.replace(result, allowed)
+        drawn = target.replace(result, allowed, extrema)
         errors.append(drawn.error)
+        added += drawn.extrema
         if drawn.error is not None and drawn.error > allowed:
             beyond.append(result.outline.name)
     target.finish()
@@ -80,7 +86,7 @@ def to_font(
     largest = max((error for error in errors if error is not None), default=None)
     file = BytesIO()
     font.save(file, reorderTables=False)
-    return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond))
+    return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond), added)
 
 
 class _InPlace:
@@ -94,9 +100,9 @@ class _InPlace:
             font["CFF "].cff.remove_hints()
             self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
 
-    def replace(self, result: GlyphResult, tolerance: float) -> Drawn:
+    def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
-        drawn = drawn_result(result, tolerance, self.flavour, self._width(name))
+        drawn = drawn_result(result, tolerance, self.flavour, self._width(name), extrema)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
         else:
@@ -164,9 +170,10 @@ class _Rebuilt:
             self.of_name = dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
         self.glyphs: dict[str, Any] = {}
 
-    def replace(self, result: GlyphResult, tolerance: float) -> Drawn:
+    def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         outline = result.outline
-        return self._put(drawn_result(result, tolerance, self.flavour, round(outline.advance)), outline)
+        drawn = drawn_result(result, tolerance, self.flavour, round(outline.advance), extrema)
+        return self._put(drawn, outline)
 
     def _put(self, drawn: Drawn, outline: Outline) -> Drawn:
         name = self.of_name[outline.name]
@@ -211,6 +218,7 @@ def write_font(
     *,
     family: str | None = None,
     tolerance: float | None = None,
+    extrema: bool = True,
 ) -> FontSummary:
     """Write the result of :func:`to_font` to a file, OTF or TTF by its suffix.
 
@@ -221,6 +229,7 @@ def write_font(
     flavour = path.suffix.lower().lstrip(".")
     if flavour not in ("otf", "ttf"):
         raise GlyphsplineError("a font's file name ends in .otf or .ttf", font=str(path))
-    data, summary = to_font(source, glyphs, flavour, family=family, tolerance=tolerance)  # type: ignore[arg-type]
+    chosen: Flavour = "otf" if flavour == "otf" else "ttf"
+    data, summary = to_font(source, glyphs, chosen, family=family, tolerance=tolerance, extrema=extrema)
     path.write_bytes(data)
     return summary

@@ -1,10 +1,11 @@
-"""A glyph as a font stores it, in whole units or, where those are too coarse, in CFF fractions; with its error."""
+"""A glyph as a font stores it, with its error: points at extrema, whole units or, where too coarse, CFF fractions."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any, Literal
 
 import numpy as np
@@ -18,7 +19,9 @@ from ...curves.bezier import as_cubic
 from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...fitting.results import GlyphResult
+from ...outlines.extrema import extremal_pieces
 from ...outlines.outline import Contour, Outline
+from ...types import FloatArray
 
 Flavour = Literal["otf", "ttf"]
 
@@ -41,11 +44,13 @@ class Drawn:
     """A glyph ready to be stored: ``data`` for the table, and its bounds.
 
     ``error`` bounds the two-sided distance from the source in font units; None if the conversion measured none.
+    ``extrema`` is the number of points added at extrema.
     """
 
     data: Any
     bounds: tuple[float, float, float, float] | None
     error: float | None
+    extrema: int = 0
 
 
 def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
@@ -58,22 +63,63 @@ def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
     return left if left > 0 else tolerance / 2
 
 
-def drawn_result(result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None) -> Drawn:
-    """A converted glyph within ``tolerance`` of its source; ``width`` is for :func:`char_string`."""
-    contours = oriented([contour.curve for contour in result.contours], flavour)
+def drawn_result(
+    result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool = True
+) -> Drawn:
+    """A converted glyph within ``tolerance`` of its source; ``width`` is for :func:`char_string`.
+
+    With ``extrema`` points are added at extrema, but not where rounding them moves a segment farther than the tolerance
+    leaves room for and than rounding it whole does.
+    """
+    name, em = result.outline.name, result.outline.metrics.units_per_em
+    exact = oriented([contour.curve for contour in result.contours], flavour)
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
-    deviation = max((value for value in measured if value is not None), default=0.0)
     known = None not in measured
-    left = tolerance - deviation - ROUNDING
+    deviation = max((value for value in measured if value is not None), default=0.0)
+    room = max(tolerance - deviation, 0.0) if known else math.inf
+    split = [extremal_pieces(c, em) if extrema else [[part] for part in c.segments()] for c in exact]
+
+    def rounded(parts: int) -> tuple[list[Contour], float]:
+        contours = [chosen(*each, parts, room) for each in zip(exact, split, strict=True)]
+        return contours, displacement(chain.from_iterable(map(as_stored, contours)), parts)
+
+    contours, error = rounded(1)
+    parts = 1 if error <= room else FINE
     if flavour == "otf":
-        whole = not known or left >= 0 or all(np.array_equal(c.points, np.rint(c.points)) for c in contours)
-        data = char_string(contours, width, 1 if whole else FINE, result.outline.name)
-        error = ROUNDING if whole else ROUNDING / FINE
+        if parts == FINE:
+            contours, error = rounded(FINE)
+        data = char_string(contours, width, parts, name)
     else:
-        step = max(left if known else 0.0, QUADRATIC_SHARE * tolerance)
-        data = quadratic_glyph(contours, step, result.outline.name)
+        step = max(room - ROUNDING if known else 0.0, QUADRATIC_SHARE * tolerance)
+        data = quadratic_glyph(contours, step, name)
         error = ROUNDING + (step if any((c.degrees == 3).any() for c in contours) else 0.0)
-    return Drawn(data, bounds_of(data, contours), deviation + error if known else None)
+    added = sum(map(len, contours)) - sum(map(len, exact))
+    return Drawn(data, bounds_of(data, contours), deviation + error if known else None, added)
+
+
+def chosen(contour: Contour, split: Sequence[list[FloatArray]], parts: int, room: float) -> Contour:
+    """The contour with its segments in pieces, or whole where rounding moves these too far, and farther than those."""
+    if room >= ROUNDING / parts:
+        return Contour.from_segments(chain.from_iterable(split))
+    found: list[FloatArray] = []
+    for segment, pieces in zip(contour.segments(), split, strict=True):
+        near = len(pieces) == 1 or displacement(pieces, parts) <= max(room, displacement([segment], parts))
+        found += pieces if near else [segment]
+    return Contour.from_segments(found)
+
+
+def displacement(segments: Iterable[FloatArray], parts: int) -> float:
+    """Largest distance by which rounding to multiples of 1/``parts`` moves control points and so, by convexity, curves.
+
+    It is at most ``ROUNDING / parts``.
+    """
+    points = np.concatenate([np.empty((0, 2)), *segments])
+    return float(np.hypot(*(on_grid(points, parts) - points).T).max(initial=0.0))
+
+
+def on_grid(points: FloatArray, parts: int) -> FloatArray:
+    """Points with coordinates in multiples of 1/``parts``."""
+    return np.rint(parts * points) / parts + 0.0
 
 
 def drawn_outline(outline: Outline, flavour: Flavour) -> Drawn:
@@ -99,17 +145,17 @@ def oriented(contours: Sequence[Contour], flavour: Flavour) -> list[Contour]:
 def char_string(contours: Sequence[Contour], width: float | None, parts: int, name: str) -> Any:
     """A Type 2 char string with coordinates in multiples of 1/``parts`` unit; ``width`` is stored as given."""
     pen = T2CharStringPen(width, None, roundTolerance=0)
-    stored = [rounded_cubics(contour, parts) for contour in contours]
+    raised = [Contour.from_segments(segments) for segments in map(as_stored, contours)]
+    stored = [Contour(on_grid(contour.points, parts), contour.degrees) for contour in raised]
     for contour in stored:
         check_size(contour.points, name)
         contour.draw(_WholeNumbers(pen) if parts == 1 else pen)
     return pen.getCharString(optimize=not any(map(doubles_back, stored)))
 
 
-def rounded_cubics(contour: Contour, parts: int) -> Contour:
-    """The contour as lines and cubics with coordinates in multiples of 1/``parts``."""
-    raised = Contour.from_segments(part if len(part) == 2 else as_cubic(part) for part in contour.segments())
-    return Contour(np.rint(parts * raised.points) / parts + 0.0, raised.degrees)
+def as_stored(contour: Contour) -> list[FloatArray]:
+    """The segments as CFF has them: lines, (2, 2), and cubics, (4, 2)."""
+    return [part if len(part) == 2 else as_cubic(part) for part in contour.segments()]
 
 
 def doubles_back(contour: Contour) -> bool:
@@ -140,6 +186,8 @@ def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
     for contour in contours:
         check_size(contour.points, name)
         contour.draw(pen)
+    # What is equal but for rounding errors rounds alike: a handle and its point at an extremum half a unit from whole.
+    collected.points = [(round(x, 6), round(y, 6)) for x, y in collected.points]
     return collected.glyph()
 
 

@@ -1,0 +1,111 @@
+"""Points at the horizontal and vertical extrema of contours, where type designers expect them: exact splits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..curves.bezier import evaluate, split
+from ..types import FloatArray
+from .outline import Contour
+
+UNIT = 1e-3
+"""Of the em: the height by which a curve rises to an extremum and falls again, or it is a wave as high as the default
+tolerance, the fit's and not the letter's; with a point at each, straight stems of closed splines would get dozens."""
+
+SHORTEST = 2e-3
+"""Of the em: chord of the shortest piece that a split may leave. A third of it, a handle, still rounds to a whole
+unit of 1/1000 em; off tight turns the nearer joint misses the extremum by far less."""
+
+AT_END = 1e-9
+"""A root of the derivative within this parameter distance of an end of its segment is that end, but for rounding."""
+
+
+def with_extrema(contour: Contour, em: float) -> Contour:
+    """The same curve with its quadratics and cubics split at their extrema in x and y; see :func:`extremal_pieces`."""
+    return Contour.from_segments(piece for pieces in extremal_pieces(contour, em) for piece in pieces)
+
+
+def extremal_pieces(contour: Contour, em: float) -> list[list[FloatArray]]:
+    """The pieces of each segment, (degree + 1, 2), between its extrema in x and y.
+
+    Where a point is added, it and its handles agree exactly in one coordinate, and so they do when rounded. None is
+    added on a wave lower than ``UNIT``, nor closer to a joint than ``SHORTEST``, in parts of ``em``, the units per em.
+    """
+    cubics = contour.cubics()
+    cuts: dict[int, list[tuple[float, int]]] = {}
+    for k in (0, 1):
+        for place in extremal_places(cubics[..., k], UNIT * em):
+            if place % 1:
+                cuts.setdefault(int(place), []).append((place % 1, k))
+    segments = enumerate(contour.segments())
+    return [parts(segment, sorted(cuts[j]), SHORTEST * em) if j in cuts else [segment] for j, segment in segments]
+
+
+def parts(segment: FloatArray, cuts: Sequence[tuple[float, int]], shortest: float) -> list[FloatArray]:
+    """A segment, (degree + 1, 2), cut at extrema: ascending parameters, each with its coordinate, 0 or 1."""
+    done, pieces, flat, rest = 0.0, [], [], segment
+    for t, k in cuts:
+        left, right = split(rest, (t - done) / (1 - done))
+        if min(np.hypot(*(left[-1] - left[0])), np.hypot(*(right[-1] - right[0]))) >= shortest:
+            pieces.append(left)
+            flat.append(k)
+            done, rest = t, right
+    pieces.append(rest)
+    for k, left, right in zip(flat, pieces, pieces[1:], strict=False):
+        left[-2, k] = right[1, k] = left[-1, k]  # equal but for rounding errors: now they round alike
+    return pieces
+
+
+def extremal_places(values: FloatArray, height: float) -> list[float]:
+    """The places where a closed chain of cubics is largest or smallest around, in one coordinate.
+
+    Args:
+        values: (m, 4) the coordinate of the Bézier points. height: see :func:`peaks`.
+
+    Returns:
+        j + t for an extremum at local parameter t of segment j; whole numbers are joints.
+    """
+    steps = np.diff(values, axis=1)
+    turning = np.flatnonzero(~((steps >= 0).all(axis=1) | (steps <= 0).all(axis=1)))
+    roots = stationary(steps[turning])
+    inner = (roots > AT_END) & (roots < 1 - AT_END)
+    of, t = np.repeat(turning, inner.sum(axis=1)), roots[inner]
+    places = np.concatenate([np.arange(float(len(values))), of + t])
+    heights = np.concatenate([values[:, 0], evaluate(values[of, :, None], t)[:, 0]])
+    order = np.argsort(places)
+    return [float(places[order[i]]) for i in peaks(heights[order].tolist(), height)]
+
+
+def peaks(values: Sequence[float], height: float) -> list[int]:
+    """Indices of the largest and smallest around in a cyclic sequence, in turn, from the largest of all on.
+
+    Only those between which the sequence rises and falls by ``height`` or more.
+    """
+    if not values or max(values) - min(values) < height:
+        return []
+    first = best = max(range(len(values)), key=values.__getitem__)
+    chosen, sign = [first], -1
+    for i in (*range(first + 1, len(values)), *range(first + 1)):
+        beyond = sign * (values[i] - values[best])
+        if beyond > 0:
+            best = i
+        elif -beyond >= height:
+            chosen.append(best)
+            best, sign = i, -sign
+    return chosen
+
+
+def stationary(steps: FloatArray) -> FloatArray:
+    """(r, 2) the parameters where cubics turn in one coordinate, of which (r, 3) are the steps between Bézier points.
+
+    NaN where there are fewer. At a double root a curve has an inflection, not an extremum.
+    """
+    c, b, a = steps[:, 0], 2 * (steps[:, 1] - steps[:, 0]), steps[:, 0] - 2 * steps[:, 1] + steps[:, 2]
+    linear = np.abs(a) <= 1e-12 * (np.abs(b) + np.abs(c))  # a quadratic as a cubic, but for rounding errors
+    with np.errstate(divide="ignore", invalid="ignore"):
+        discriminant = b * b - 4 * a * c
+        q = -0.5 * (b + np.copysign(np.sqrt(np.where(discriminant > 0, discriminant, np.nan)), b))
+        found = np.stack([np.where(linear, -c / b, q / a), np.where(linear, np.nan, c / q)], axis=1)
+    return np.sort(found, axis=1)
