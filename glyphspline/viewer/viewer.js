@@ -8,7 +8,7 @@
     2: "the interval of Lemma 2: converges, and certified to with c > 0", 3: "only the knot u_i: no search, overshoots",
     4: "as 2, each control point renewed at once (Algorithm 3)",
   };
-const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", converged: "converged", rate_bound: "rate bound",
+  const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", converged: "converged", rate_bound: "rate bound",
     deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ",
     curvature_extrema: "extrema of κ", source_curvature_extrema: "extrema of κ, source", bending_energy: "energy" };
   /** Measures of the iteration, which keep their rows where nothing is iterated. */
