@@ -172,8 +172,8 @@ def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, 
 def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
     """The pieces that are kept, in each contour's own direction.
 
-    Of a spline and its cut version the one that stores less is kept; what is farther off than ``near`` becomes the
-    source's own segments.
+    Of a spline and its cut version the one that stores less is kept, the cut one if they store the same: a corner that
+    is rounded is a peak of curvature. What is farther off than ``near`` becomes the source's own segments.
     """
     P = len(pieces.where)
     kept = np.ones(P, dtype=np.bool_)
@@ -187,8 +187,7 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
             numbers = 0
             for r in range(q + 1, last):
                 numbers += 2 * pieces.where[r, SPANS] + (4 if pieces.where[r, SPANS] > 0 else 2)
-            cheaper = numbers < 2 * pieces.where[q, SPANS] + 4 or pieces.errors[q] > near
-            cut = worst <= near and cheaper
+            cut = worst <= near and (numbers <= 2 * pieces.where[q, SPANS] + 4 or pieces.errors[q] > near)
             for r in range(q, last):
                 kept[r] = cut == (r > q)
         q = last

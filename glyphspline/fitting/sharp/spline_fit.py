@@ -28,19 +28,20 @@ MOST_SLIDE = 0.3
 FAILURES = 4
 """Steps that fail in a row before a fit is given up."""
 
-SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 30, 4 / 3
-"""Lengths between which the end handles of an arc are kept, in chords of their end."""
+SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 8, 4 / 3
+"""Lengths between which the end handles of an arc are kept, in chords of their end: shorter ones end in a spike of
+curvature."""
 
 
 @compiled(internal=True)
 def improve(
-    fit: Fit, samples: Samples, near: float, margin: float, residual: float, settle: int, rounds: int, start: int,
-    width: int, wobble: float,
+    fit: Fit, samples: Samples, near: float, margin: float, residual: float, rounds: int, start: int, width: int,
+    wobble: float,
 ) -> float:  # fmt: skip
     """Move some slots of ``fit.curve`` until all rows are within ``near`` of the outline on a cold run of variant 2.
 
     Args:
-        near: the tolerance. margin, residual: of the interpolation. settle, rounds: least and most steps.
+        near: the tolerance. margin, residual: of the interpolation. rounds: most steps.
         start, width: the slots that move. wobble: weight of :func:`.spline_equations.third_derivatives`.
 
     Returns:
@@ -51,7 +52,7 @@ def improve(
     error = measure_afresh(samples, curve, near, rows)
     damping, failures = DAMPING, 0
     for n in range(rounds + 1):
-        if n >= settle and error <= near and is_graded(curve):
+        if error <= near and is_graded(curve):
             copy_curve(curve, trial)
             if interpolate_cold(trial, margin, residual) < residual:
                 copy_curve(trial, curve)
@@ -60,10 +61,10 @@ def improve(
                     return error
         if n == rounds:
             break
-        minimax, scale = n >= 2, near if settle > 0 else error
+        minimax = n >= 2
         differentiate(fit)
-        add_all(fit, scale, minimax, wobble)
-        old = objective(curve, rows, scale, minimax, wobble)
+        add_all(fit, error, minimax, wobble)
+        old = objective(curve, rows, error, minimax, wobble)
         while True:
             equations(fit, samples, damping, start, width)
             solve(fit.A, fit.step, fit.first, 2 * width)
@@ -71,7 +72,7 @@ def improve(
             if _advance(fit, 0.5 if minimax else 1.0, start, width):
                 iterate(trial, WARM * near, WARM_PASSES)
                 new = measure(samples, trial, near, rows, tried)
-                better = objective(trial, tried, scale, minimax, wobble) < old
+                better = objective(trial, tried, error, minimax, wobble) < old
             if better:
                 break
             failures += 1

@@ -16,7 +16,7 @@ from .feet import Samples, find_places, measure_afresh, span_errors
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
 from .spline_curve import Curve, copy_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
-from .spline_equations import Fit, empty_fit, third_along, third_derivatives
+from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import improve
 from .stretches import Stretches, samples_of
 
@@ -26,11 +26,8 @@ SOME_MORE = 30.0
 STARTS = 3
 """First guesses, each with more vertices, before a stretch is given up."""
 
-POLISHES = (1.0, 0.1)
-"""Weights of the wobble, tried in turn: that of the best curve counts as if samples were so many tolerances off."""
-
-BEGIN, INSERT, REMOVE, RESTART, POLISH = 0, 1, 2, 3, 4
-"""What is tried: a first guess, more vertices, one vertex less, a new guess with one less, a fairer curve."""
+BEGIN, INSERT, REMOVE, RESTART = 0, 1, 2, 3
+"""What is tried: a first guess, more vertices, one vertex less, a new guess with one less."""
 
 
 @compiled
@@ -121,7 +118,7 @@ def find_spline(
     if max(guess, given) > min(search.most, n - 1):
         return 0, np.inf
     tried, costs = np.zeros(len(fit.gram) + 1, dtype=np.bool_), np.empty(len(fit.gram))
-    what, at, starts, slow, turn, tries, polishes, removed = BEGIN, 0 * n, 1, 0, 0, 0, 0, True
+    what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
     best_error = last = np.inf
     while True:
         # What is tried, in ``curve``.
@@ -132,10 +129,8 @@ def find_spline(
             possible = place_vertices(curve, samples, directions, guess, len(fit.gram) - 1)
         elif what == INSERT:
             possible = insert_vertices(fit, near, search)
-        elif what == REMOVE:
-            remove_vertex(curve, best, at)
         else:
-            copy_curve(best, curve)
+            remove_vertex(curve, best, at)
         error = np.inf
         if possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
             k = curve.size[0]
@@ -144,21 +139,10 @@ def find_spline(
             if what == REMOVE and 2 * search.reach < width:
                 start = (at - search.reach) % k if closed else min(max(at - search.reach, 0), width - 2 * search.reach)
                 width = 2 * search.reach
-            wobble, settle = search.fairness * mean_chord(curve) ** 3, 0 * k
-            if what == POLISH:
-                wobble, settle = POLISHES[polishes] * n / max(third_derivatives(curve), 1e-300), rounds - 2
-            error = improve(fit, samples, near, search.margin, search.residual, settle, rounds, start, width, wobble)
+            wobble = search.fairness * mean_chord(curve) ** 3
+            error = improve(fit, samples, near, search.margin, search.residual, rounds, start, width, wobble)
         # How it went.
         good = error <= near
-        if what == POLISH:
-            if good and third_derivatives(curve) < third_derivatives(best):
-                copy_curve(curve, best)
-                best_error = error
-                break
-            polishes += 1
-            if polishes == len(POLISHES):
-                break
-            continue
         if good:
             copy_curve(curve, best)
             best_error, removed = error, True
@@ -177,13 +161,11 @@ def find_spline(
         if what == REMOVE:
             mark_tried(tried, at, good, best.size[0])
         elif not good or given > 1:
-            what = POLISH
-            continue
+            break
         at = cheapest(best, costs, tried, search.dear * near)
         if what != REMOVE or tries == 0 or at < 0:
             if turn == search.passes or best.size[0] <= least:
-                what = POLISH
-                continue
+                break
             if removed:
                 turn, removed = turn + 1, False
                 tries = max(int(np.ceil(search.removals * best.size[0])), 1)
