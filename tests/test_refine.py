@@ -15,7 +15,7 @@ from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.measures import geometric_columns
 from glyphspline.fitting.smooth import steps
-from glyphspline.fitting.smooth.canonical_contours import canonical_contours
+from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
@@ -52,6 +52,24 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     assert truth - 0.06 <= bound
     assert gap <= bound <= gap + 0.011
     assert bound <= bounds.max() + 1e-9
+
+
+def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
+    pieces = np.array(circle_contour(100).cubics(), dtype=np.float64)
+    parts = []
+    for c in pieces:
+        a = c[:-1] + 0.1 * np.diff(c, axis=0)
+        b = a[:-1] + 0.1 * np.diff(a, axis=0)
+        cut = b[0] + 0.1 * (b[1] - b[0])
+        parts += [np.array([c[0], a[0], b[0], cut]), np.array([cut, b[1], a[2], c[3]])]
+    outline = np.array(parts, dtype=np.float64)
+    ends, none = np.array([0, 8]), np.zeros(8)
+    canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros((8, 17)))
+    places = np.arange(1, 9, 2) + 0.02  # in the second part of each quarter; the spans begin with the first
+    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    trial = steps.measured(canonical, which, places, np.array([0, 4]), outline[::2, 0].copy(), pieces, near)
+    assert trial.bounds.max() < 1
+    np.testing.assert_allclose(trial.ends, np.arange(0, 10, 2), atol=0.05)
 
 
 def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
