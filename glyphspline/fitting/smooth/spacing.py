@@ -186,7 +186,7 @@ def lay(field: FloatArray, steps: FloatArray, a: int, whole: float, parts: int, 
             i += 1
         b, c, x = field[i % n], field[i % n + 1], (goal - passed) / steps[i % n]
         share = b * ((c / b) ** x - 1) / (c - b) if abs(c - b) > 1e-6 * b else x
-        places[part] = (i % n + share) / TABLE
+        places[part] = (i % n + share) / TABLE % (n // TABLE)  # the last entry's end is the first joint
 
 
 @compiled(internal=True)
