@@ -23,7 +23,7 @@ from .canonical_contours import CanonicalContours
 ROUNDS = 80
 """Rounds before giving up."""
 
-EARLY = {"fast": 1, "best": 2}
+EARLY = 1
 """Rounds that also remove vertices that seem unnecessary."""
 
 PRUNINGS = {"fast": 0, "best": 12}
@@ -82,7 +82,7 @@ def refined(
         By contour, the round with the fewest vertices that passed; if none did, that with the smallest bound.
     """
     search = _Search(contours, options, near)
-    search.refine(which, EARLY[options.effort] if early is None else early)
+    search.refine(which, EARLY if early is None else early)
     if THINNINGS[options.effort]:
         search.thin(which)
     return search.kept
