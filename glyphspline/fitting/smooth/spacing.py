@@ -24,10 +24,10 @@ from ...types import FloatArray, IntArray
 from .canonical_contours import TABLE
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
-"""The three numbers, with something to spare at corners, where a span that just fails would be halved."""
+"""The three numbers, with something to spare at corners, where a span that just fails costs a vertex."""
 
-GROWTH = 0.97
-"""Share of the ratio allowed by which chords grow."""
+GROWTH, FASTEST = 0.97, 4.0
+"""Share of the ratio allowed by which chords grow, and the ratio beyond which faster growth takes more of them."""
 
 AT_CORNER_3, GROWTH_3 = 0.1, 2.5
 """The same for variant 3."""
@@ -72,7 +72,7 @@ def first_field(
 @compiled(internal=True)
 def growth_of(ratio: float, variant: int) -> float:
     """The factor by which chords grow at most."""
-    return min(GROWTH * ratio, GROWTH_3) if variant == 3 else GROWTH * ratio
+    return GROWTH * min(ratio, GROWTH_3 / GROWTH if variant == 3 else FASTEST)
 
 
 @compiled(internal=True)
