@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 import pytest
 
 import glyphspline as gs
+from glyphspline.curves.curvature import comb
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.measures import geometric_columns
 from glyphspline.fitting.smooth import steps
-from glyphspline.fitting.smooth.canonical_contours import canonical_contours
+from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import convert_smooth
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
@@ -50,6 +52,24 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     assert truth - 0.06 <= bound
     assert gap <= bound <= gap + 0.011
     assert bound <= bounds.max() + 1e-9
+
+
+def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
+    pieces = np.array(circle_contour(100).cubics(), dtype=np.float64)
+    parts = []
+    for c in pieces:
+        a = c[:-1] + 0.1 * np.diff(c, axis=0)
+        b = a[:-1] + 0.1 * np.diff(a, axis=0)
+        cut = b[0] + 0.1 * (b[1] - b[0])
+        parts += [np.array([c[0], a[0], b[0], cut]), np.array([cut, b[1], a[2], c[3]])]
+    outline = np.array(parts, dtype=np.float64)
+    ends, none = np.array([0, 8]), np.zeros(8)
+    canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros((8, 17)))
+    places = np.array([1.02, 3.02, 5.02, 7.02])  # in the second part of each quarter; the spans begin with the first
+    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    trial = steps.measured(canonical, which, places, np.array([0, 4]), outline[::2, 0].copy(), pieces, near)
+    assert trial.bounds.max() < 1
+    np.testing.assert_allclose(trial.ends, np.arange(0, 10, 2), atol=0.05)
 
 
 def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
@@ -91,7 +111,7 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
     near = np.ones(2)
-    places, offsets = steps.first_places(canonical, np.arange(2), np.radians(12), 4.0, near, 2)
+    _, places, offsets = steps.first_places(canonical, np.arange(2), np.radians(12), 4.0, near, 2)
     points = steps.polygons(canonical, np.arange(2), places, offsets)
     square = points[: offsets[1]]
     h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)
@@ -101,6 +121,59 @@ def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     for corner in square_contour(900).points:
         assert (square == corner).all(axis=1).any()
     assert 4 <= len(points) - len(square) <= 12
+
+
+def round_letter(width: float, height: float, fullness: float) -> gs.Contour:
+    """An o as TrueType fonts draw it: eight quadratics, joined at the sides and halfway between these.
+
+    Args:
+        width, height: half of those of the letter. fullness: 0.414 makes an ellipse, more fills its corners.
+    """
+    middle = (1 + fullness) / 2
+    quarter = np.array([[1, 0], [1, fullness], [middle, middle], [fullness, 1]]) * [width, height]
+    other = quarter[:, ::-1] / [height, width] * [-width, height]  # from the top to the left
+    return gs.Contour(np.concatenate([quarter, other, -quarter, -other]), np.full(8, 2))
+
+
+def extrema(curve: gs.Contour) -> int:
+    """The extrema of a closed curve's curvature from which it comes back on both sides, by a tenth or 1/length."""
+    found = comb(curve.cubics(), 1.0)
+    kappa, length, count = found.curvature, found.weights.sum(), 0
+    for i in range(len(kappa)):
+        least = max(abs(kappa[i]) / 10, 1 / length)
+        both = np.roll(kappa, -i)[1:], np.roll(kappa, -i - 1)[::-1][1:]
+        for sign in (1, -1):
+            falls = []
+            for k, side in enumerate(both):
+                beyond = np.flatnonzero(sign * (side - kappa[i]) > 0 if k else sign * (side - kappa[i]) >= 0)
+                until = side[: beyond[0]] if len(beyond) else side
+                falls.append(len(until) > 0 and (sign * (kappa[i] - until)).max() >= least)
+            count += all(falls)
+    return count
+
+
+@pytest.mark.parametrize("effort", ["fast", "best"])
+@pytest.mark.parametrize("form", [(200, 300, 0.5), (200, 300, 0.52), (250, 290, 0.45), (250, 290, 0.5)])
+def test_a_round_letter_of_quadratics_has_even_chords_and_no_extrema_of_its_own(
+    form: tuple[float, float, float], effort: Literal["fast", "best"]
+) -> None:
+    letter = round_letter(*form)
+    (result,) = smoothed([letter], gs.Options(effort=effort), 1.0)
+    h = np.hypot(*(np.roll(result.polygon, -1, axis=0) - result.polygon).T)
+    assert result.measures.within_tolerance
+    assert len(h) <= 13
+    assert max((h / np.roll(h, 1)).max(), (np.roll(h, 1) / h).max()) < 1.9
+    assert extrema(result.curve) <= 8
+
+
+def test_what_is_laid_anew_keeps_its_corners() -> None:
+    bowl = round_letter(250, 290, 0.5).cubics()[:4]  # the upper half, closed by a line
+    half = gs.Contour.from_segments([*bowl, np.array([bowl[-1][3], bowl[0][0]])])
+    (result,) = smoothed([half], gs.Options(), 1.0)
+    assert result.measures.within_tolerance
+    for corner in (bowl[0][0], bowl[-1][3]):
+        assert (result.polygon == corner).all(axis=1).any()
+    assert result.measures.vertices <= 24
 
 
 def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon() -> None:

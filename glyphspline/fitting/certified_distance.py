@@ -215,7 +215,7 @@ def near_place(cubics: FloatArray, place: float, low: float, high: float, x: flo
             if s + z != end or end in (low, high):
                 break
             here = end
-        if place != np.floor(place):
+        if place != np.floor(place) and at != np.floor(place):  # it may lie in the segment before
             break
     return at
 

@@ -1,7 +1,8 @@
-"""Closed curves within a tolerance, for all contours of a batch at once, by inserting and removing vertices.
+"""Closed curves within a tolerance, for all contours of a batch at once, by laying and removing vertices.
 
-Each round interpolates the unfinished contours in one compiled call, measures the curves as they are written, and
-inserts vertices where a span misses the tolerance. The measure is the certificate: a contour that passes is certified.
+Each round interpolates the unfinished contours in one compiled call, measures the curves as they are written, and where
+a span misses the tolerance lays vertices anew, more and evenly, between the corners beside it. What has not come to
+pass after some rounds gets vertices where it fails. The measure is the certificate: a contour that passes is certified.
 """
 
 from __future__ import annotations
@@ -22,11 +23,14 @@ from .canonical_contours import CanonicalContours
 ROUNDS = 80
 """Rounds before giving up."""
 
-EARLY = {"fast": 1, "best": 2}
+EARLY = 1
 """Rounds that also remove vertices that seem unnecessary."""
 
 PRUNINGS = {"fast": 0, "best": 12}
 """How often a contour that passed loses such vertices and is refined again until it passes."""
+
+LAID = 6
+"""Rounds that lay vertices anew; later ones put them into the spans that fail, which ends sooner but is uneven."""
 
 POWERS = (3.0, 2.0, 1.5, 1.0)
 """In turn, the assumed power of a span's length with which its error grows when a vertex is removed."""
@@ -78,7 +82,7 @@ def refined(
         By contour, the round with the fewest vertices that passed; if none did, that with the smallest bound.
     """
     search = _Search(contours, options, near)
-    search.refine(which, EARLY[options.effort] if early is None else early)
+    search.refine(which, EARLY if early is None else early)
     if THINNINGS[options.effort]:
         search.thin(which)
     return search.kept
@@ -93,12 +97,14 @@ class _Search:
         self.kept: Kept = {}
 
     def refine(self, which: IntArray, early: int) -> None:
-        """Start from vertices spaced by the outline; insert and remove vertices until all contours pass."""
+        """Start from vertices spaced by the outline; add and remove vertices until all contours pass."""
         contours, options, near = self.contours, self.options, self.near
         left = np.full(len(near), PRUNINGS[options.effort])
         passed = np.zeros(len(near), dtype=np.bool_)
         every = np.ones(len(near), dtype=np.bool_)
-        places, offsets = steps.first_places(contours, which, self.angle, options.max_ratio, near, options.variant)
+        fields, places, offsets = steps.first_places(
+            contours, which, self.angle, options.max_ratio, near, options.variant
+        )
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
             passed[which] = done.most <= near[which]
@@ -106,8 +112,9 @@ class _Search:
             left[which] -= passed[which]
             power = POWERS[turn % len(POWERS)]
             which, places, offsets = steps.changed(
-                contours, done.trial, near, ~passed, fewer, self.angle, options.max_ratio, power
-            )
+                contours, fields, done.trial, near, ~passed, fewer, self.angle, options.max_ratio, options.variant,
+                power, turn < LAID,
+            )  # fmt: skip
             if len(which) == 0:
                 break
 

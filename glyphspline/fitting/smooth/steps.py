@@ -12,10 +12,11 @@ import numpy as np
 from ...compiled import compiled
 from ...types import BoolArray, FloatArray, IntArray
 from ..certified_distance import measure_spans
-from .canonical_contours import CanonicalContours, points_at
+from .canonical_contours import TABLE, CanonicalContours, points_at
 from .insertion import MOST_VERTICES, graded, with_more
 from .pruning import put_back, sparse
-from .spacing import seeds
+from .respacing import failed, relaid, vertices_at_corners
+from .spacing import corners_of, first_field, growth_of, laid
 
 ROUGHLY = 0.1
 """Sharpness of the bounds during the search, as a share of ``near``."""
@@ -24,18 +25,26 @@ ROUGHLY = 0.1
 @compiled
 def first_places(
     contours: CanonicalContours, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
-) -> tuple[FloatArray, IntArray]:
-    """Ragged places to begin with, of the contours ``which``."""
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """The fields of all contours end to end, and ragged places to begin with, of the contours ``which``."""
+    fields = np.empty(len(contours.cubics) * TABLE + len(near))
     offsets, values = np.empty(len(which) + 1, dtype=np.int64), np.empty(1024)
     offsets[0] = 0
     for i in range(len(which)):
         a, b = contours.offsets[which[i]], contours.offsets[which[i] + 1]
         cubics, lengths = contours.cubics[a:b], contours.lengths[a:b]
-        some = seeds(cubics, lengths, contours.turns[a:b], corner_angle, ratio, near[which[i]], variant)
-        part = graded(cubics, lengths, some, ratio)
+        turns, field = contours.turns[a:b], field_of(fields, contours.offsets, which[i])
+        first_field(cubics, lengths, turns, corner_angle, ratio, near[which[i]], variant, field)
+        part = graded(cubics, lengths, laid(field, lengths, corners_of(turns, corner_angle)), ratio)
         values = appended(values, offsets[i], part)
         offsets[i + 1] = offsets[i] + len(part)
-    return values[: offsets[-1]], offsets
+    return fields, values[: offsets[-1]], offsets
+
+
+@compiled(internal=True)
+def field_of(fields: FloatArray, offsets: IntArray, k: int) -> FloatArray:
+    """The field of contour k."""
+    return fields[offsets[k] * TABLE + k : offsets[k + 1] * TABLE + k + 1]
 
 
 @compiled(internal=True)
@@ -105,15 +114,18 @@ def measured(
 
 @compiled
 def changed(
-    contours: CanonicalContours, trial: Trial, near: FloatArray, more: BoolArray, fewer: BoolArray,
-    corner_angle: float, ratio: float, power: float,
+    contours: CanonicalContours, fields: FloatArray, trial: Trial, near: FloatArray, more: BoolArray, fewer: BoolArray,
+    corner_angle: float, ratio: float, variant: int, power: float, anew: bool,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours of a trial that change, and their ragged places.
 
     Args:
-        more: (K,) whether to insert vertices where a contour misses the tolerance. fewer: (K,) whether to remove
+        fields: of all contours, see :func:`first_places`; lowered where vertices are laid anew.
+        more: (K,) whether to have more vertices where a contour misses the tolerance. fewer: (K,) whether to remove
             vertices that seem unnecessary. Both are indexed by contour.
+        variant: of the method.
         power: the error of a span is assumed to grow with this power of its length.
+        anew: whether more vertices are laid anew, evenly, or put into the spans that miss the tolerance.
     """
     which, places, offsets, points, bounds, gaps, worst, _ = trial
     those, new = np.empty(len(which), dtype=np.int64), np.empty(len(which) + 1, dtype=np.int64)
@@ -127,6 +139,9 @@ def changed(
         cubics, lengths, turns = contours.cubics[s:t], contours.lengths[s:t], contours.turns[s:t]
         here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
         n = b - a
+        again = anew and more[k]
+        if again:  # what is laid anew is not thinned first
+            _, needed[a:b] = failed(vertices_at_corners(here, turns, corner_angle), bound, near[k])
         if fewer[k]:
             keep = sparse(points[a:b], here, turns, corner_angle, needed[a:b], gaps[a:b], near[k], ratio, power)
             n = 0
@@ -136,7 +151,12 @@ def changed(
                     n += 1
             here = here[:n]
         if more[k]:
-            here = with_more(lengths, here, bound[:n], at[:n], near[k])
+            corners = vertices_at_corners(here, turns, corner_angle)
+            if again and len(corners) > 0:
+                field, growth = field_of(fields, contours.offsets, k), np.log(growth_of(ratio, variant))
+                here = relaid(field, lengths, here, corners, bound[:n], near[k], growth)
+            else:
+                here = with_more(lengths, here, bound[:n], at[:n], near[k])
         same = len(here) == b - a
         for j in range(len(here)):
             same = same and here[j] == places[a + j]
