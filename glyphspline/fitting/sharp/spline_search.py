@@ -162,9 +162,11 @@ def find_spline(
             mark_tried(tried, at, good, best.size[0])
         elif not good or given > 1:
             break
+        if best.size[0] <= least:
+            break
         at = cheapest(best, costs, tried, search.dear * near)
         if what != REMOVE or tries == 0 or at < 0:
-            if turn == search.passes or best.size[0] <= least:
+            if turn == search.passes:
                 break
             if removed:
                 turn, removed = turn + 1, False
