@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: venv demo test test-browser lint check-reference bench paper clean
+.PHONY: venv demo test test-browser docs lint check-reference bench paper clean
 
 venv: .venv/.ready
 
@@ -34,6 +34,11 @@ bench: venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python -m scripts.benchmark
 
+# The pages of docs/ into docs/_build/html; a broken reference or a docstring that does not parse is an error.
+docs: venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+
 # Playwright drives Debian's Chromium; nothing else is downloaded.
 test-browser: venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[browser]'
@@ -43,5 +48,5 @@ test-browser: venv
 
 # Also the cache of compiled code, which does not notice edits in functions that are called from another file.
 clean:
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis *.egg-info build outputs/demo
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis *.egg-info build outputs/demo docs/_build
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

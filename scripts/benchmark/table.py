@@ -1,4 +1,4 @@
-"""Rows of a suite as a Markdown table between two markers of the README, and as JSON."""
+"""Rows of a suite as a Markdown table between two markers of ``docs/benchmarks.md``, and as JSON."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def markdown(rows: list[Row]) -> str:
 
 
 def write(suite: str, rows: list[Row], root: Path) -> None:
-    """Put the table into README.md, where it has the suite's markers, and everything into outputs/benchmark/."""
+    """Put the table into docs/benchmarks.md, between the suite's markers, and everything into outputs/benchmark/."""
     begin, end = (marker.format(suite=suite) for marker in MARKERS)
-    readme = root / "README.md"
-    text = readme.read_text(encoding="utf-8") if readme.exists() else ""
+    page = root / "docs" / "benchmarks.md"
+    text = page.read_text(encoding="utf-8") if page.exists() else ""
     if begin in text and end in text:
         before, rest = text.split(begin, 1)
         after = rest.split(end, 1)[1]
-        readme.write_text(f"{before}{begin}\n{markdown(rows)}\n{end}{after}", encoding="utf-8")
+        page.write_text(f"{before}{begin}\n{markdown(rows)}\n{end}{after}", encoding="utf-8")
     target = root / "outputs" / "benchmark" / f"{suite}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(json.dumps([row.as_json() for row in rows], indent=1) + "\n", encoding="utf-8")

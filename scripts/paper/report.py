@@ -38,7 +38,8 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f"| {c['source']} | [{c['id']}](#{c['id']}) | {SIGN[c['verdict']]} {c['verdict']} |" for c in claims.values()
+        f'| {c["source"]} | <a href="#{c["id"]}">{c["id"]}</a> | {SIGN[c["verdict"]]} {c["verdict"]} |'
+        for c in claims.values()
     ]
     return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
 

@@ -1,0 +1,21 @@
+"""Sphinx's settings for the pages of ``docs/``: ``make docs`` builds them."""
+
+from glyphspline import __version__
+
+project = "glyphspline"
+author = "The glyphspline authors"
+release = __version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+html_theme = "furo"
+html_title = f"glyphspline {release}"
+exclude_patterns = ["_build"]
+
+myst_heading_anchors = 3
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("BoolArray", "FloatArray", "IntArray")}
+autodoc_default_options = {"members": True, "undoc-members": False}
+napoleon_use_ivar = True
+
+# What is written in other people's pages is theirs to keep; ours are checked by ``-W``.
+linkcheck_ignore = [r"https?://"]
