@@ -13,7 +13,7 @@ exclude_patterns = ["_build"]
 myst_heading_anchors = 3
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_type_aliases = {name: name for name in ("BoolArray", "FloatArray", "IntArray")}
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "BoolArray", "FloatArray", "IntArray")}
 autodoc_default_options = {"members": True, "undoc-members": False}
 napoleon_use_ivar = True
 
