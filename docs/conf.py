@@ -1,5 +1,10 @@
 """Sphinx's settings for the pages of ``docs/``: ``make docs`` builds them."""
 
+import re
+from typing import Any
+
+from sphinx.application import Sphinx
+
 from glyphspline import __version__
 
 project = "glyphspline"
@@ -19,3 +24,14 @@ napoleon_use_ivar = True
 
 # What is written in other people's pages is theirs to keep; ours are checked by ``-W``.
 linkcheck_ignore = [r"https?://"]
+
+
+def plain_aliases(*event: Any) -> tuple[str | None, str | None]:
+    """A signature with the names of aliases as they are: in unions Sphinx writes how it refers to them."""
+    signature, result = (part and re.sub(r"TypeAliasForwardRef\('(\w+)'\)", r"\1", part) for part in event[-2:])
+    return signature, result
+
+
+def setup(app: Sphinx) -> None:
+    """Sphinx calls this once."""
+    app.connect("autodoc-process-signature", plain_aliases)
