@@ -94,7 +94,8 @@ def to_curvature_svg(
 
     A tooth stands on the curve along its normal, on the outer (convex) side, away from the centre of curvature. Its
     length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot. Colour
-    is signed κ: blue and violet turn left, yellow and red turn right in the contour's own direction. The legend is in 1/em.
+    is signed κ: blue and violet turn left, yellow and red turn right in the contour's own direction. The legend is in
+    1/em.
 
     Args:
         glyph: a result of :func:`convert`.
