@@ -18,6 +18,10 @@ NOTICED = 0.5
 """Points of the curve between two feet count from this share of the tolerance on."""
 
 
+SHORT = 0.01
+"""Share of a span below which Newton's step to a foot is the last."""
+
+
 class Samples(NamedTuple):
     """The stretch of outline that a curve follows.
 
@@ -82,13 +86,11 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
             later = guessed and (known.span[j] > s0 or (known.span[j] == s0 and known.x[j] > at0))
             s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0 * k, 0.0))
             end = k if not closed else (span[0] + k + 1 if j > 0 else k)
-            s, at = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
-        cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
-        ex, ey, speed = Q[j, 0] - cx, Q[j, 1] - cy, max(length(dx, dy), 1e-12)
-        span[j], x[j], nx[j], ny[j] = s, at, -dy / speed, dx / speed
-        away = length(ex, ey)
-        e[j] = away if ex * nx[j] + ey * ny[j] > 0 else -away
-        worst = max(worst, away)
+            span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
+        else:
+            span[j], x[j] = s, at
+            e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
+        worst = max(worst, abs(e[j]))
     count = n
     for j in range(n if closed else n - 1):
         i = j + 1 if j + 1 < n else 0
@@ -126,8 +128,13 @@ def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> f
 @compiled(internal=True)
 def _foot(
     b: FloatArray, k: int, s: int, at: float, s0: int, at0: float, end: int, qx: float, qy: float
-) -> tuple[int, float]:
-    """The nearest point to (qx, qy) from span s, parameter ``at``; not before (s0, at0), nor from span ``end`` on."""
+) -> tuple[int, float, float, float, float]:
+    """The nearest point to (qx, qy) from span s, parameter ``at``; not before (s0, at0), nor from span ``end`` on.
+
+    Returns:
+        Span, parameter, and as :func:`_distance`. Where Newton's last step is short, its normal and distance are those
+        of the point before it: the distance changes by the square of the step.
+    """
     for _ in range(12):
         cx, cy, dx, dy, ax, ay = jet(b, _wrapped(s, k), at)
         speed = dx * dx + dy * dy
@@ -149,11 +156,25 @@ def _foot(
             new = 0.0
         moved = abs(new - at)
         at = new
-        if moved < 1e-4:
+        if moved < SHORT:
+            if 0.0 < at < 1.0 and (s > s0 or at > at0):
+                size = np.sqrt(speed)
+                nx, ny = -dy / size, dx / size
+                return s, at, (qx - cx) * nx + (qy - cy) * ny, nx, ny
             break
     if s < s0 or (s == s0 and at < at0):
         s, at = s0, at0
-    return s, at
+    e, nx, ny = _distance(b, k, s, at, qx, qy)
+    return s, at, e, nx, ny
+
+
+@compiled(internal=True)
+def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
+    """The distance of (qx, qy) from a point of the curve, positive on its left, and the normal there."""
+    cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
+    ex, ey, speed = qx - cx, qy - cy, max(length(dx, dy), 1e-12)
+    nx, ny, away = -dy / speed, dx / speed, length(ex, ey)
+    return (away if ex * nx + ey * ny > 0 else -away), nx, ny
 
 
 @compiled(internal=True)

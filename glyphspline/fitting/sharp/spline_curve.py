@@ -25,6 +25,9 @@ PEAK_SHARE = 0.9
 Lemma 2 has no interval there and needs none: each step multiplies the error of a single vertex by 1 - B_i < 1.
 """
 
+SHORT = 0.01
+"""Share of a span below which Newton's step to a footpoint is the last of a pass."""
+
 MOST_PASSES = 200
 """Passes of variant 2 before a curve counts as lost."""
 
@@ -201,22 +204,28 @@ def iterate(curve: Curve, tolerance: float, most: int) -> float:
 def foot_error(
     curve: Curve, i: int, x: float, y: float, t: float, low: float, high: float
 ) -> tuple[float, float, float]:
-    """Vertex i less its footpoint, and the footpoint, as a signed share of the span before or after u_i."""
+    """Vertex i less its footpoint, and the footpoint, as a signed share of the span before or after u_i.
+
+    Where Newton's last step is short, it is the part along the normal at the point before it.
+    """
     before, after = curve.h[i + 1], curve.h[i + 2]
     last = i - 1 if i > 0 else curve.size[0] - 1
-    cx = cy = 0.0
+    ex = ey = 0.0
     for step in range(3):
         ahead = t >= 0
         s, h = (i, after) if ahead else (last, before)
         cx, cy, dx, dy, ax, ay = jet(curve.b, s, t if ahead else t + 1)
+        ex, ey = x - cx, y - cy
         speed = dx * dx + dy * dy
         if step == 2 or speed <= 0:
             break
-        slope = (cx - x) * dx + (cy - y) * dy
-        bend = speed + (cx - x) * ax + (cy - y) * ay
+        slope = -ex * dx - ey * dy
+        bend = speed - ex * ax - ey * ay
         new = newton_step(t * h, slope * h, speed, bend, -before, after)
-        t = min(max(new / after if new >= 0 else new / before, low), high)
-    return x - cx, y - cy, t
+        old, t = t, min(max(new / after if new >= 0 else new / before, low), high)
+        if abs(t - old) < SHORT and low < t < high:
+            return ex - (ex * dx + ey * dy) / speed * dx, ey - (ex * dx + ey * dy) / speed * dy, t
+    return ex, ey, t
 
 
 @compiled(internal=True)
