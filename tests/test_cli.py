@@ -29,7 +29,7 @@ def test_convert_writes_what_it_says(tmp_path: Path) -> None:
     assert result.stdout == ""
     assert "not in the font: U+9F98" in result.stderr
     assert "1 ok, 1 empty, 0 failed" in result.stderr
-    assert (out / "svg" / "O_.svg").exists()
+    assert (out / "svg" / "O.svg").exists()
     assert (out / "index.html").exists()
     options = json.loads((out / "run.json").read_text())["options"]
     assert (options["step"], options["variant"], options["margin"]) == (90, 2, 0.02)
@@ -129,7 +129,7 @@ def test_report_makes_a_gallery_afterwards(tmp_path: Path) -> None:
     assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
     assert not (out / "index.html").exists()
     assert runner.invoke(app, ["report", str(out), "--font", FONT]).exit_code == 0
-    assert '"source":"M' in (out / "gallery" / "O_.glyph.js").read_text()
+    assert '"source":"M' in (out / "gallery" / "O.glyph.js").read_text()
     other = runner.invoke(app, ["report", str(out), "--font", str(FONTS / "kouzan-gyosho.otf")])
     assert (other.exit_code, "another font" in other.stderr) == (2, True)
 

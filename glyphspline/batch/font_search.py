@@ -10,7 +10,7 @@ from pathlib import Path
 from fontTools.ufoLib.filenames import reservedFileNames
 
 from ..errors import GlyphsplineError
-from .files import LONGEST_NAME
+from .file_names import LONGEST_NAME
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
 """Suffixes of fonts in a folder. A file given by its own name may have any suffix."""
