@@ -11,11 +11,12 @@ from pathlib import Path
 import pytest
 
 from glyphspline.batch import OutputError, RunSpec, convert_font, entries_of
-from glyphspline.batch.file_names import Names, file_names
+from glyphspline.batch.file_names import file_names
 from glyphspline.batch.lock import LOCK, locked
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font, open_source
+from glyphspline.types import Names
 
 ROOT = Path(__file__).parents[1]
 FONTS = ROOT / "fonts_test"

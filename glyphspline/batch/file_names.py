@@ -6,11 +6,12 @@ import re
 import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Literal, get_args
+from typing import get_args
 
 from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
 
-Names = Literal["glyph", "unicode", "gid", "char"]
+from ..types import Names
+
 NAMES = get_args(Names)
 
 LONGEST_NAME = 150

@@ -17,8 +17,9 @@ from ..readers import Font, Source
 from ..report.data import FOLDER as GALLERY
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
+from ..types import Names
 from .calls import survey, work
-from .file_names import Names, file_names
+from .file_names import file_names
 from .files import make_folder, remove_partials
 from .job import Job, Task, failed
 from .lock import locked

@@ -15,8 +15,9 @@ from ..errors import GlyphsplineError, OutputError, is_positive, require, requir
 from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
+from ..types import Names
 from ..writers.svg.document import VIEW_BOXES, ViewBox
-from .file_names import NAMES, Names
+from .file_names import NAMES
 from .files import write_whole
 
 if TYPE_CHECKING:
