@@ -11,6 +11,9 @@ from .entry import journal_line, manifest_line
 from .spec import RunSpec
 from .summary import NO_FACTS, Facts
 
+Place = tuple[Path, int, tuple[tuple[str, float], ...]]
+"""A file, a face and a location, as a worker opens them."""
+
 
 @dataclass(frozen=True)
 class Job:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ..readers import Source
     from .closing import FontRun
 
-PATIENCE = 300.0
-"""Time limit of ``info`` in seconds."""
+PATIENCE = 60.0
+"""Time limit in seconds of ``info --deep`` for some hundred glyphs."""
 
 LOOKED_AT = 64
 """Outlines that are looked at to tell type from brush."""
@@ -187,18 +187,34 @@ def conduct(given: Mapping[str, Any]) -> dict[str, Any]:
 
 @app.command()
 def info(
-    font: opt.FontFile, face_index: opt.OneFace = None, location: opt.Location = None, as_json: opt.Json = False
+    font: opt.FontFile,
+    face_index: opt.OneFace = None,
+    location: opt.Location = None,
+    deep: opt.Deep = False,
+    as_json: opt.Json = False,
 ) -> None:
-    """Show what a font file holds: faces, axes, units per em, numbers of glyphs and contours."""
+    """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
     with errors():
-        from ..batch.schedule import workers
         from ..readers.facts import file_facts
+        from .closing import printable
         from .describe import lines_of
 
-        # In a separate process with a time limit: counting the contours of a hostile font can take years.
-        with workers(1, PATIENCE) as executor:
-            facts = executor.submit(file_facts, font, face_index, opt.location_of(location)).result()
-    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else "\n".join(lines_of(facts)))
+        facts = file_facts(font, face_index, opt.location_of(location))
+        if deep:
+            look_deep(font, facts)
+    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else printable("\n".join(lines_of(facts))))
+
+
+def look_deep(font: Path, facts: dict[str, Any]) -> None:
+    """Add what needs all outlines, with progress on a terminal."""
+    from ..batch.deep_facts import add_glyph_facts
+    from ..batch.schedule import workers
+    from ..readers.open import STDIN, standard_input
+
+    path = standard_input() if str(font) == STDIN else font
+    # In processes with a time limit: counting the contours of a hostile font can take years.
+    with workers(None, PATIENCE) as executor, progress(quiet=False) as observer:
+        add_glyph_facts(path.absolute(), facts, executor, observer)
 
 
 @app.command()
