@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -87,3 +89,13 @@ def test_a_font_without_characters_has_none_to_count(tmp_path: Path) -> None:
     font.save(tmp_path / "symbols.ttf")
     assert file_facts(tmp_path / "symbols.ttf")["fonts"][0]["characters"] == 0
     assert len(open_source(tmp_path / "symbols.ttf").cmap) == 0
+
+
+def test_info_reads_no_glyphs_and_imports_no_compiler() -> None:
+    code = (
+        "import sys; from glyphspline.cli import app; from typer.testing import CliRunner\n"
+        f"assert '18 glyphs' in CliRunner().invoke(app, ['info', {str(FONTS / 'kouzan-gyosho.ttf')!r}]).stdout\n"
+        "print(*sys.modules)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numba", "scipy", "matplotlib", "glyphspline.batch.pool"} & set(run.stdout.split())

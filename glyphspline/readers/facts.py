@@ -7,10 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ..curves.integrals import area
 from ..errors import GlyphsplineError
 from ..outlines.outline import Outline
-from ..outlines.overlaps import contours_of
 from .open import STDIN, is_font, open_source, standard_input
 from .opentype.face import Face, open_faces
 from .opentype.tables import Location
@@ -88,6 +86,9 @@ def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
 def overlaps(outline: Outline) -> bool:
     """Whether any part of a glyph is filled twice or inside out: its area then differs from the sum over contours."""
     import pathops
+
+    from ..curves.integrals import area  # imports the compiler, which what is said at once does not need
+    from ..outlines.overlaps import contours_of
 
     if not outline.contours:
         return False
