@@ -224,12 +224,12 @@ def test_the_summary_as_json_is_alone_on_standard_output(tmp_path: Path) -> None
     alone = ["convert", FONT, "--text", "O", "--out", str(tmp_path / "one"), "-j", "0", "--json", "--format", "svg"]
     result = runner.invoke(app, alone)
     (run,) = json.loads(result.stdout)["fonts"]
-    assert (run["out"], run["tolerance"]) == (str(tmp_path / "one"), 1.024)
+    assert (run["out"], run["aim"]) == (str(tmp_path / "one"), "1.02 units")
     assert "1 glyph in" in result.stderr
 
 
 def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
-    summary = Summary(tolerance=1.0, seconds=0.25, done=9)
+    summary = Summary(aim="1 units", seconds=0.25, done=9)
     for k in range(9):
         summary.count(f"g{k}", "ok", None, Facts(outside=k > 1, deviation=k / 4, crossings=k == 3))
     assert summary.headline() == "9 glyphs in 0.2 s, 7 not within 1 units"
@@ -237,7 +237,7 @@ def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
         "not within 1 units: g2, g3, g4, g5, g6 and 2 more",
         "cross themselves where the source does not: g3",
     ]
-    summary = Summary(tolerance=1.024, seconds=0.4, done=2)
+    summary = Summary(aim="1.02 units", seconds=0.4, done=2)
     for name in "龍好":
         summary.count(name, "ok", None, Facts(deviation=1.0))
     assert summary.headline() == "2 glyphs in 0.4 s, all within 1.02 units"

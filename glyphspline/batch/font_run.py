@@ -14,6 +14,7 @@ from pathlib import Path
 from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
+from ..readers.svg_drawings import SvgDrawings
 from ..report.data import FOLDER as GALLERY
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
@@ -76,7 +77,7 @@ def convert_font(
     with locked(out):
         summary = _convert(source, glyphs, out, spec, jobs, executor, restart, observer)
     summary.missing = getattr(glyphs, "missing", ())
-    summary.tolerance = None if spec.options.is_fixed else spec.options.tolerance_for(source.metrics.units_per_em)
+    summary.aim = aim(source, spec)
     summary.seconds = time.perf_counter() - started
     return summary
 
@@ -120,6 +121,15 @@ def _convert(
     if left or missing(source, out, spec):
         summary.remarks += write_fonts(source, out, spec)
     return summary
+
+
+def aim(source: Source, spec: RunSpec) -> str:
+    """The tolerance in words; "" if there is none. Each drawing has an em of its own."""
+    if spec.options.is_fixed:
+        return ""
+    if spec.options.tolerance is None and isinstance(source, SvgDrawings):
+        return "1/1000 em"
+    return f"{spec.options.tolerance_for(source.metrics.units_per_em):.3g} units"
 
 
 def workers_for(

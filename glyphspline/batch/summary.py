@@ -14,7 +14,7 @@ from .entry import columns_of
 SHOWN = 10
 """Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
 
-SLOW = 0.5
+SLOW = 5.0
 """Seconds from which the slowest glyphs are listed."""
 
 NAMED = 5
@@ -66,8 +66,8 @@ class Summary:
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
         slowest: (seconds, glyph). done: number of glyphs converted in this run, not in an earlier one.
         remarks: on formats with one file a font.
-        missing: what was asked for and is not in the font. tolerance: in font units; None if vertices are placed by
-            step or count. seconds: that the run took.
+        missing: what was asked for and is not in the font. seconds: that the run took.
+        aim: the tolerance in words; "" if vertices are placed by step or count, whatever the distance.
     """
 
     statuses: Counter[str] = field(default_factory=Counter)
@@ -83,7 +83,7 @@ class Summary:
     done: int = 0
     remarks: list[str] = field(default_factory=list)
     missing: tuple[str, ...] = ()
-    tolerance: float | None = None
+    aim: str = ""
     seconds: float = 0.0
 
     def add(self, entry: Mapping[str, Any]) -> None:
@@ -122,17 +122,17 @@ class Summary:
         earlier = sum(self.statuses.values()) - self.done
         before = f" ({earlier} of them before)" if earlier > 0 else ""
         how = []
-        if self.worst and self.tolerance is not None:
+        if self.worst and self.aim:
             far = self.outside_tolerance
-            how.append(f"{f'{far} not' if far else 'all'} within {self.tolerance:.3g} units")
+            how.append(f"{f'{far} not' if far else 'all'} within {self.aim}")
         elif self.worst:
             how.append(f"at most {self.worst[0][0]:.3g} units from the source")
         return ", ".join([" and ".join(parts) + f" in {self.seconds:.1f} s{before}", *how])
 
     def lines(self) -> Iterator[str]:
         """What there is to say of single glyphs and files, as lines of text; failures come last."""
-        if self.worst and self.tolerance is not None and self.outside_tolerance:
-            yield f"not within {self.tolerance:.3g} units: {listed(self.outside, self.outside_tolerance)}"
+        if self.worst and self.aim and self.outside_tolerance:
+            yield f"not within {self.aim}: {listed(self.outside, self.outside_tolerance)}"
         if self.new_crossings:
             yield f"cross themselves where the source does not: {listed(self.crossing, self.new_crossings)}"
         if self.not_converged:
