@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
-from typer.testing import CliRunner
+from fontTools.ttLib import TTFont
+from typer.testing import CliRunner, Result
 
+import glyphspline
 from glyphspline import Outline, open_font
+from glyphspline.batch import locked
+from glyphspline.batch.summary import Facts, Summary
 from glyphspline.cli import app
 from glyphspline.outlines.corner_share import share_of_corners
 
 from .polygons import circle_contour, square_contour
+from .test_batch import content
 
 ROOT = Path(__file__).parents[1]
 FONTS = ROOT / "fonts_test"
@@ -28,8 +36,8 @@ def test_convert_writes_what_it_says(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     assert result.stdout == ""
     assert "not in the font: U+9F98" in result.stderr
-    assert "1 ok, 1 empty, 0 failed" in result.stderr
-    assert (out / "svg" / "O_.svg").exists()
+    assert re.search(r"1 glyph and 1 empty in [0-9.]+ s; open .*index.html", result.stderr)
+    assert (out / "svg" / "O.svg").exists()
     assert (out / "index.html").exists()
     options = json.loads((out / "run.json").read_text())["options"]
     assert (options["step"], options["variant"], options["margin"]) == (90, 2, 0.02)
@@ -129,7 +137,7 @@ def test_report_makes_a_gallery_afterwards(tmp_path: Path) -> None:
     assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
     assert not (out / "index.html").exists()
     assert runner.invoke(app, ["report", str(out), "--font", FONT]).exit_code == 0
-    assert '"source":"M' in (out / "gallery" / "O_.glyph.js").read_text()
+    assert '"source":"M' in (out / "gallery" / "O.glyph.js").read_text()
     other = runner.invoke(app, ["report", str(out), "--font", str(FONTS / "kouzan-gyosho.otf")])
     assert (other.exit_code, "another font" in other.stderr) == (2, True)
 
@@ -142,7 +150,7 @@ def test_a_process_of_its_own_with_workers(tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = call("-m", "glyphspline", "convert", FONT, "--text", "O8", "--step", "90", "--out", str(out), "--jobs", "2")
     assert (done.returncode, done.stdout) == (0, "")
-    assert "2 ok" in done.stderr
+    assert "2 glyphs in" in done.stderr
     assert "\x1b" not in done.stderr  # no progress bar off a terminal
 
 
@@ -160,6 +168,178 @@ def test_the_batch_script_gives_each_font_a_folder(tmp_path: Path) -> None:
     options = ["--text", "8", "--count", "20", "--out", str(tmp_path / "out"), "--jobs", "0"]
     done = call("scripts/batch_convert.py", *inputs, *options)
     assert done.returncode == 1
-    assert "bad.ttf: not a TTF" in done.stderr
+    assert done.stderr.splitlines()[-1] == f"failed: {tmp_path / 'bad.ttf'}: not a TTF, OTF, TTC, WOFF or WOFF2 file"
     made = {path.parent.relative_to(tmp_path / "out").as_posix() for path in tmp_path.glob("out/**/manifest.jsonl")}
     assert made == {"kouzan-gyosho-otf", "kouzan-ttc/face-0", "kouzan-ttc/face-1"}
+    before = content(tmp_path / "out")
+    assert {name.rpartition("/")[2] for name in before} == {
+        "run.json", "manifest.jsonl", ".sizes.txt", "index.html", "run.js", "table-00000.js", "eight.svg",
+        "eight.glyph.js",
+    }  # fmt: skip
+    options[options.index("--out") + 1] = str(tmp_path / "command")
+    result = runner.invoke(app, ["convert", *inputs, *options])
+    assert result.exit_code == 1
+    assert content(tmp_path / "command") == before
+
+
+def test_the_batch_script_converts_every_glyph_of_one_font_into_a_folder_of_it(tmp_path: Path) -> None:
+    options = ["--step", "90", "--jobs", "0", "--format", "svg"]
+    done = call("scripts/batch_convert.py", FONT, "--out", str(tmp_path / "script"), *options)
+    assert done.returncode == 0, done.stderr
+    alone = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "alone"), *options])
+    assert alone.exit_code == 0
+    assert content(tmp_path / "script" / "kouzan-gyosho-ttf") == content(tmp_path / "alone")
+
+
+def several(tmp_path: Path, *more: str) -> Result:
+    """A run over two fonts and something that is no font, by a list."""
+    (tmp_path / "bad\x1b[31m.ttf").write_bytes(b"no font at all")
+    (tmp_path / "list.txt").write_text(f"{FONTS / 'variable.ttf'}\n# no\n{tmp_path}/bad*\n", encoding="utf-8")
+    inputs = [FONT, f"@{tmp_path / 'list.txt'}"]
+    return runner.invoke(app, ["convert", *inputs, "--text", "Oo", "--out", str(tmp_path / "out"), "-j", "0", *more])
+
+
+def test_several_fonts_end_with_a_table_whose_failures_come_last(tmp_path: Path) -> None:
+    result = several(tmp_path, "--format", "svg")
+    assert (result.exit_code, result.stdout) == (1, "")
+    lines = result.stderr.splitlines()
+    assert f"{FONT}: not in the font: U+006F o" in lines
+    assert f"{FONTS / 'variable.ttf'}: not in the font: U+004F O" in lines
+    heading = next(k for k, line in enumerate(lines) if "outside tolerance" in line)
+    cells = [[cell.strip() for cell in line.split("|")] for line in lines[heading:-1] if "|" in line]
+    assert cells[0] == ["font", "glyphs", "failed", "outside tolerance", "seconds"]
+    assert [row[1:4] for row in cells[1:]] == [["1", "0", "0"], ["1", "0", "0"], ["-", "-", "-"], ["2", "0", "0"]]
+    assert lines[-1].startswith("failed: ")
+    assert "\x1b" not in result.stderr
+    run = json.loads((tmp_path / "out" / "variable-ttf" / "run.json").read_text())
+    assert run["missing"] == {"count": 1, "first": ["U+004F"]}
+    assert not list(tmp_path.glob("**/.lock"))
+
+
+def test_the_summary_as_json_is_alone_on_standard_output(tmp_path: Path) -> None:
+    result = several(tmp_path, "--json", "--quiet", "--format", "svg")
+    facts = json.loads(result.stdout)
+    assert (facts["glyphs"], facts["failed"], facts["unreadable"], facts["missing"]) == (2, 0, 1, 2)
+    assert [run["statuses"] for run in facts["fonts"] if run["error"] is None] == [{"ok": 1}, {"ok": 1}]
+    alone = ["convert", FONT, "--text", "O", "--out", str(tmp_path / "one"), "-j", "0", "--json", "--format", "svg"]
+    result = runner.invoke(app, alone)
+    (run,) = json.loads(result.stdout)["fonts"]
+    assert (run["out"], run["aim"]) == (str(tmp_path / "one"), "1.02 units")
+    assert "1 glyph in" in result.stderr
+
+
+def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
+    summary = Summary(aim="1 units", seconds=0.25, done=9)
+    for k in range(9):
+        summary.count(f"g{k}", "ok", None, Facts(outside=k > 1, deviation=k / 4, crossings=k == 3))
+    assert summary.headline() == "9 glyphs in 0.2 s, 7 not within 1 units"
+    assert list(summary.lines()) == [
+        "not within 1 units: g2, g3, g4, g5, g6 and 2 more",
+        "cross themselves where the source does not: g3",
+    ]
+    summary = Summary(aim="1.02 units", seconds=0.4, done=2)
+    for name in "龍好":
+        summary.count(name, "ok", None, Facts(deviation=1.0))
+    assert summary.headline() == "2 glyphs in 0.4 s, all within 1.02 units"
+    assert list(summary.lines()) == []
+
+
+def test_a_run_into_a_folder_that_is_locked_is_refused(tmp_path: Path) -> None:
+    with locked(tmp_path):
+        options = ["--text", "O", "--out", str(tmp_path), "-j", "0", "--format", "svg"]
+        for inputs in ([FONT], [FONT, str(FONTS / "variable.ttf")]):
+            result = runner.invoke(app, ["convert", *inputs, *options])
+            assert result.exit_code == 2
+            assert f"another run is writing to it: process {os.getpid()}" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def old_font(path: Path) -> None:
+    """A font of which fontTools says that its time of creation is very low."""
+    font = TTFont(FONT, recalcTimestamp=False)
+    font["head"].created = 1_300_000_000
+    font.save(path)
+
+
+def test_what_fonttools_logs_is_said_once_and_not_if_quiet(tmp_path: Path) -> None:
+    old_font(tmp_path / "old.ttf")
+    options = ["--text", "O8", "--out", str(tmp_path / "out"), "-j", "1", "--format", "svg"]
+    said = call("-m", "glyphspline", "convert", str(tmp_path / "old.ttf"), *options).stderr
+    assert said.count("'created' timestamp seems very low") == 1
+    assert said.startswith("fontTools: ")
+    done = call("-m", "glyphspline", "convert", str(tmp_path / "old.ttf"), *options, "--quiet", "--restart")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_settings_come_from_files_and_the_command_line_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def converted(*more: str) -> dict[str, Any]:
+        result = runner.invoke(app, ["convert", FONT, "--text", "O", "--restart", "-j", "0", *more])
+        assert result.exit_code == 0, result.output
+        return json.loads((tmp_path / "out" / "run.json").read_text())
+
+    monkeypatch.chdir(tmp_path)
+    project = '[tool.glyphspline]\nout = "out"\nformat = ["svg"]\ntolerance = 4\ncorner-angle = 30\nmeasure = true\n'
+    (tmp_path / "pyproject.toml").write_text(project)
+    run = converted()
+    assert (run["formats"], run["options"]["tolerance"], run["options"]["corner_angle"]) == (["svg"], 4.0, 30.0)
+    assert run["options"]["measure"] is True
+    (tmp_path / "mine.toml").write_text('tolerance = 3.0\ncorners = "sharp"\nview_box = "ink"\n')
+    run = converted("--config", "mine.toml", "--corners", "smooth")
+    assert (run["options"]["tolerance"], run["options"]["corners"], run["view_box"]) == (3.0, "smooth", "ink")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("tolerence = 3", "mine.toml: no option 'tolerence'"),
+        ("config = 'x'", "mine.toml: no option 'config'"),
+        ("tolerance = ", "mine.toml: is not TOML"),
+        ("tolerance = {a = 1}", "mine.toml: tolerance cannot be"),
+        ("tolerance = 'x'", "'--tolerance': 'x' is not a number"),
+        (None, "mine.toml: cannot be read"),
+    ],
+)
+def test_settings_that_are_none_are_refused(text: str | None, words: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / "mine.toml").write_text(text)
+    given = ["--config", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]
+    result = runner.invoke(app, ["convert", FONT, "--text", "O", *given])
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--tolerance", "-1"], "--tolerance is a positive distance, not -1.0"),
+        (["--tolerance", "abc"], "'--tolerance': 'abc' is not a number"),
+        (["--tolerance", "nan"], "--tolerance is a positive distance, not nan"),
+        (["--corner-angle", "0"], "--corner-angle is an angle in degrees, above 0 and up to 180, not 0.0"),
+        (["--margin", "0.7"], "--margin is 0 to 0.5, not 0.7"),
+        (["--precision", "12"], "--precision is a whole number from 0 to 9, not 12"),
+        (["--count", "2.5"], "'--count': '2.5' is not a whole number"),
+        (["--jobs", "-1"], "-1 is below 0"),
+        (["--face-index", "x"], "'--face-index': 'x' is not a whole number"),
+        (["--out", ""], "'--out' / '-o': it is empty"),
+    ],
+)
+def test_a_bad_number_names_option_and_value(arguments: list[str], words: str, tmp_path: Path) -> None:
+    result = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "out"), *arguments])
+    assert result.exit_code == 2
+    assert words in " ".join(result.stderr.replace("│", " ").split())
+
+
+def test_short_help_version_and_completion() -> None:
+    assert runner.invoke(app, ["--version"]).stdout == f"glyphspline {glyphspline.__version__}\n"
+    said = runner.invoke(app, ["-h"]).stdout
+    assert "--show-completion" in said
+    said = runner.invoke(app, ["convert", "-h"]).stdout
+    for words in ("Which glyphs", "How close to the source", "How sharp a turn counts as a corner", "Lemma 2"):
+        assert words in said
+
+
+def test_files_are_called_after_characters_if_asked(tmp_path: Path) -> None:
+    options = ["--text", "龍O", "--names", "char", "--format", "svg", "--out", str(tmp_path / "out"), "-j", "0"]
+    assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
+    assert {path.name for path in (tmp_path / "out" / "svg").iterdir()} == {"龍.svg", "O.svg"}

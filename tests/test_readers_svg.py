@@ -115,7 +115,7 @@ def test_what_is_not_filled_or_not_drawn_is_left_out_and_noted(tmp_path: Path) -
         "contour 1 left out: it encloses nothing",
         "1 clones (use) left out",
         "1 text left out",
-        "1 shapes without fill left out",
+        "1 shapes without fill (strokes are not read) left out",
     }
 
 

@@ -9,9 +9,11 @@ if TYPE_CHECKING:
     from ..errors import OutputError as OutputError
     from .atlas_run import make_atlas as make_atlas
     from .font_run import convert_font as convert_font
+    from .font_search import faces_of as faces_of
     from .font_search import find_fonts as find_fonts
     from .font_search import folders_for as folders_for
     from .galleries import write_gallery as write_gallery
+    from .lock import locked as locked
     from .manifest import entries_of as entries_of
     from .spec import Limits as Limits
     from .spec import RunSpec as RunSpec
@@ -24,8 +26,10 @@ _HOMES = {
     "Summary": ".summary",
     "convert_font": ".font_run",
     "entries_of": ".manifest",
+    "faces_of": ".font_search",
     "find_fonts": ".font_search",
     "folders_for": ".font_search",
+    "locked": ".lock",
     "make_atlas": ".atlas_run",
     "write_gallery": ".galleries",
 }

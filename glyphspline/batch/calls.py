@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .job import Done, Job, Task
+from .job import Done, Job, Place, Task
 
 if TYPE_CHECKING:
     from ..curves.curvature import Comb
@@ -23,3 +23,11 @@ def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
     from .worker import survey
 
     return survey(job, tasks)
+
+
+def look(place: Place, gids: Sequence[int]) -> dict[str, Any]:
+    """:func:`..readers.facts.glyph_facts` of glyphs one after the other, in a worker."""
+    from ..readers.facts import glyph_facts
+    from .worker import source_of
+
+    return glyph_facts(source_of(*place), gids[0], gids[-1] + 1)

@@ -21,14 +21,19 @@ def manifest_line(
     status: str,
     files: str,
     contours: str,
+    *,
+    deviation: float | None = None,
+    notes: Sequence[str] = (),
     error: str | None = None,
 ) -> str:
     """One glyph's line, without the line end; ``files`` and ``contours`` are JSON without the brackets."""
+    said = ",".join(map(quoted, notes))
     codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
-    said = "null" if error is None else quoted(error)
+    failed = "null" if error is None else quoted(error)
     return (
         f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{files}}},"contours":[{contours}],"error":{said}}}'
+        f'"status":"{status}","files":{{{files}}},"deviation":{number(deviation)},"contours":[{contours}],'
+        f'"notes":[{said}],"error":{failed}}}'
     )
 
 

@@ -1,59 +1,19 @@
-"""Files of a run: safe names that differ in more than case, and atomic writes."""
+"""Files of a run: folders, atomic writes, and what a run has left."""
 
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
-
 from ..errors import OutputError
-
-LONGEST_NAME = 150
-"""Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
 
 PARTIAL = ".part"
 """Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
 
 O_BINARY = getattr(os, "O_BINARY", 0)
 """On Windows: do not translate line ends."""
-
-_PLAIN = re.compile(r"[a-z0-9_]{1,75}")
-"""Names that the UFO rules do not change. For a large font, applying the rules to all names takes half a second."""
-
-_NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
-
-
-def file_names(glyph_names: Iterable[str]) -> list[str]:
-    """A file name, without suffix, for each glyph name; no two are alike without regard to case.
-
-    They depend on all names of the font in order, not on which glyphs are selected.
-    """
-    names = list(glyph_names)
-    taken: set[str] = set()
-    first = [_stem(name, taken) for name in names[:1]]  # .notdef in most fonts, which is not plain
-    rest = names[1:]
-    others = {*taken, *reservedFileNames}
-    if all(map(_PLAIN.fullmatch, rest)) and len(others.union(rest)) == len(others) + len(rest):
-        return first + rest
-    return first + [_stem(name, taken) for name in rest]
-
-
-def _stem(name: str, taken: set[str]) -> str:
-    """A name's file name, which is added to ``taken``."""
-    plain = _PLAIN.fullmatch(name) and name not in taken and name not in reservedFileNames
-    stem = name if plain else userNameToFileName(_tame(name), taken)
-    taken.add(stem.lower())
-    return stem
-
-
-def _tame(name: str) -> str:
-    """Make a valid name where the UFO rules do not: the name is too long in bytes, empty, or has lone surrogates."""
-    clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
-    return clipped.decode(errors="ignore").rstrip(". ") or "_"
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Container, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -13,17 +14,20 @@ from pathlib import Path
 from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
+from ..readers.svg_drawings import SvgDrawings
 from ..report.data import FOLDER as GALLERY
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
+from ..types import Names
 from .calls import survey, work
-from .entry import columns_of
-from .files import file_names, make_folder, remove_partials
+from .file_names import file_names
+from .files import make_folder, remove_partials
 from .job import Job, Task, failed
+from .lock import locked
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
-from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
-from .summary import Summary, facts_of
+from .spec import REQUEST, RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from .summary import Summary, facts_of_entry
 from .whole import check_possible, missing, write_fonts
 
 SCALE_SAMPLE = 200
@@ -62,12 +66,34 @@ def convert_font(
         observer: called after each chunk of glyphs.
 
     Raises:
-        OutputError: the folder cannot be written, or was made with other options and ``restart`` is not given.
+        OutputError: the folder cannot be written, another run writes to it, or it was made with other options and
+            ``restart`` is not given.
         GlyphsplineError: the options are out of range.
     """
+    started = time.perf_counter()
     spec = spec or RunSpec()
     check_possible(spec)
-    record = prepare(source, out, spec, restart)
+    make_folder(out)
+    with locked(out):
+        summary = _convert(source, glyphs, out, spec, jobs, executor, restart, observer)
+    summary.missing = getattr(glyphs, "missing", ())
+    summary.aim = aim(source, spec)
+    summary.seconds = time.perf_counter() - started
+    return summary
+
+
+def _convert(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    jobs: int | None,
+    executor: Executor | None,
+    restart: bool,
+    observer: Observer | None,
+) -> Summary:
+    """:func:`convert_font` in a folder that is there and locked."""
+    record = prepare(source, glyphs, out, spec, restart)
     job = Job(
         source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
         source.metrics, type(source) is Font,
@@ -75,9 +101,9 @@ def convert_font(
     finished = record.finished()
     summary = Summary()
     with nullcontext(executor) if executor else workers_for(source, glyphs, finished, spec, jobs) as pool:
-        tasks = tasks_of(source, glyphs)
+        tasks = tasks_of(source, glyphs, spec.names)
         left = [task for task in tasks if task.gid not in finished]
-        job = with_scale(job, source, tasks, pool)
+        job = with_scale(job, source, glyphs, tasks, pool)
         if left:
             journal = Journal(out, record)
             try:
@@ -97,6 +123,15 @@ def convert_font(
     return summary
 
 
+def aim(source: Source, spec: RunSpec) -> str:
+    """The tolerance in words; "" if there is none. Each drawing has an em of its own."""
+    if spec.options.is_fixed:
+        return ""
+    if spec.options.tolerance is None and isinstance(source, SvgDrawings):
+        return "1/1000 em"
+    return f"{spec.options.tolerance_for(source.metrics.units_per_em):.3g} units"
+
+
 def workers_for(
     source: Source, glyphs: Sequence[str], finished: Container[int], spec: RunSpec, jobs: int | None
 ) -> Executor:
@@ -106,12 +141,11 @@ def workers_for(
     return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
-def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
+def prepare(source: Source, glyphs: Sequence[str], out: Path, spec: RunSpec, restart: bool) -> Record:
     """Make the folders, and read the record of an earlier run."""
-    make_folder(out)
     old = None if restart else read_run(out)
     if old is not None:
-        changed = differences(old, describe(source, spec, None))
+        changed = differences(old, describe(source, spec, glyphs, None))
         if changed:
             raise OutputError(
                 "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
@@ -128,10 +162,10 @@ def prepare(source: Source, out: Path, spec: RunSpec, restart: bool) -> Record:
     return read_record(out) if old is not None else Record()
 
 
-def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
+def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
-    stems = file_names(source.glyph_names)
+    stems = file_names(source.glyph_names, names, source.cmap)
     unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
     for code, name in source.cmap.items():
         if name in unicodes:
@@ -140,10 +174,13 @@ def tasks_of(source: Source, glyphs: Sequence[str]) -> list[Task]:
     return [Task(gid, name, stems[gid], codes) for gid, name, codes in chosen]
 
 
-def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> Job:
-    """The job with the run's curvature scale: from the folder's run.json, or computed now."""
+def with_scale(job: Job, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> Job:
+    """The job with the run's curvature scale: from the folder's run.json, or computed now. Writes run.json."""
     old = read_run(job.out)
     if old is not None:
+        now = describe(source, job.spec, glyphs, old["curvature_scale"])
+        if any(old.get(name) != now[name] for name in REQUEST):
+            write_run(job.out, now)
         return replace(job, curvature_scale=old["curvature_scale"])
     if {"curvature", "png", "pdf"} & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
@@ -153,7 +190,7 @@ def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> J
         em = source.metrics.units_per_em
         scale = robust_scale(combs) or 1 / em
         job = replace(job, curvature_scale=float(f"{scale:.6g}"))
-    write_run(job.out, describe(source, job.spec, job.curvature_scale))
+    write_run(job.out, describe(source, job.spec, glyphs, job.curvature_scale))
     return job
 
 
@@ -189,4 +226,4 @@ def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) ->
 def _noted(line: bytes) -> Note:
     """The note on a glyph converted in an earlier run."""
     entry = json.loads(line)
-    return entry["glyph"], entry["status"], "", facts_of(columns_of(entry["contours"]))
+    return entry["glyph"], entry["status"], "", facts_of_entry(entry)

@@ -1,4 +1,4 @@
-"""Many fonts: where they are, and a folder for each face of each."""
+"""Many fonts: where they are, their faces, and a folder for each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from pathlib import Path
 from fontTools.ufoLib.filenames import reservedFileNames
 
 from ..errors import GlyphsplineError
-from .files import LONGEST_NAME
+from ..readers.open import STDIN, AnySource, open_source
+from ..readers.opentype.tables import Location
+from .file_names import LONGEST_NAME
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
 """Suffixes of fonts in a folder. A file given by its own name may have any suffix."""
@@ -20,9 +22,9 @@ def find_fonts(inputs: Iterable[str]) -> list[Path]:
     """The font files of the inputs, each once, sorted by path.
 
     Args:
-        inputs: files, UFO folders, other folders (searched to the bottom), globs (``**`` too), and ``@list``: a text
-            file with one of these a line, relative to where the command was called; empty lines and lines with ``#``
-            are ignored.
+        inputs: files, UFO folders, other folders (searched to the bottom; one without fonts that holds SVG drawings is
+            a font of these), globs (``**`` too), ``-`` for standard input, and ``@list``: a text file with one of these
+            a line, relative to where the command was called; empty lines and lines with ``#`` are ignored.
 
     Raises:
         GlyphsplineError: an input does not exist, or a list cannot be read.
@@ -34,11 +36,12 @@ def _found(item: str) -> Iterator[Path]:
     path = Path(item)
     if item.startswith("@"):
         yield from find_fonts(_listed(Path(item[1:])))
-    elif is_ufo(path):
+    elif item == STDIN or is_ufo(path):
         yield path
     elif path.is_dir():
-        yield from (file for file in path.rglob("*") if file.suffix.lower() in SUFFIXES and file.is_file())
-        yield from (folder for folder in path.rglob("*.ufo") if is_ufo(folder))
+        fonts = [file for file in path.rglob("*") if file.suffix.lower() in SUFFIXES and file.is_file()]
+        fonts += [folder for folder in path.rglob("*.ufo") if is_ufo(folder)]
+        yield from fonts or ([path] if next(path.glob("*.svg"), None) else [])
     elif path.exists():
         yield path
     else:
@@ -79,3 +82,16 @@ def folders_for(fonts: Iterable[Path]) -> list[str]:
         taken.add(name.lower())
         found.append(name)
     return found
+
+
+def faces_of(font: Path, location: Location = None, face_index: int | None = None) -> Iterator[AnySource]:
+    """The faces of a font file one after the other, or the one that is asked for.
+
+    Raises:
+        FontError: as in :func:`open_source`.
+    """
+    first = open_source(font, face_index or 0, location)
+    yield first
+    if face_index is None:
+        for index in range(1, first.num_faces):
+            yield open_source(font, index, location)

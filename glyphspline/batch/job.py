@@ -11,6 +11,9 @@ from .entry import journal_line, manifest_line
 from .spec import RunSpec
 from .summary import NO_FACTS, Facts
 
+Place = tuple[Path, int, tuple[tuple[str, float], ...]]
+"""A file, a face and a location, as a worker opens them."""
+
 
 @dataclass(frozen=True)
 class Job:
@@ -57,5 +60,5 @@ class Done(NamedTuple):
 
 def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
     """The message for a glyph that could not be converted, or whose worker was lost."""
-    line = manifest_line(task.name, task.gid, task.unicodes, None, "failed", "", "", error)
+    line = manifest_line(task.name, task.gid, task.unicodes, None, "failed", "", "", error=error)
     return Done(task.gid, task.name, "failed", journal_line((), line), seconds, NO_FACTS, "")

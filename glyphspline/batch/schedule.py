@@ -6,14 +6,11 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from ..fitting.options import Options
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
 from .warm import modules_for
-
-if TYPE_CHECKING:
-    from .job import Job, Task
 
 LARGEST_CHUNK = 40
 """Maximum number of glyphs in a call: enough to make the exchange cheap, few enough for a smooth progress bar."""
@@ -25,6 +22,9 @@ TRIALS = 3
 """Attempts at a glyph whose worker died: the glyph need not be the cause."""
 
 Result = TypeVar("Result")
+Job = TypeVar("Job")
+Task = TypeVar("Task")
+"""What a call is about, a glyph of it, and what it returns."""
 
 
 class InProcess(Executor):

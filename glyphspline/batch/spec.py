@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field, replace
+import shlex
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +15,9 @@ from ..errors import GlyphsplineError, OutputError, is_positive, require, requir
 from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
+from ..types import Names
 from ..writers.svg.document import VIEW_BOXES, ViewBox
+from .file_names import NAMES
 from .files import write_whole
 
 if TYPE_CHECKING:
@@ -62,12 +66,14 @@ class RunSpec:
 
     Attributes:
         options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
+        names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
     """
 
     options: Options = field(default_factory=Options)
     formats: tuple[str, ...] = ("svg", "curvature", GALLERY)
     view_box: ViewBox = "em"
+    names: Names = "glyph"
     limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
@@ -77,6 +83,7 @@ class RunSpec:
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
         require_choice("view_box", self.view_box, VIEW_BOXES)
+        require_choice("names", self.names, NAMES)
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
         object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
@@ -103,10 +110,25 @@ class RunSpec:
         return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))
 
 
-def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> dict[str, Any]:
-    """The content of ``run.json``, independent of the machine, the clock and the number of workers."""
+REQUEST = ("command", "selection", "selected", "missing")
+"""Keys of ``run.json`` of the last call for the folder; calls for other glyphs go on with the same run."""
+
+FIRST_MISSING = 20
+"""Missing characters that ``run.json`` lists; it counts all."""
+
+
+def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_scale: float | None) -> dict[str, Any]:
+    """The content of ``run.json``, independent of the machine, the clock and the number of workers.
+
+    Its options are those in effect: tolerances are numbers, in font units.
+    """
+    em = source.metrics.units_per_em
+    effective = {"tolerance": spec.options.tolerance_for(em), "residual_tolerance": spec.options.solver_tolerance}
+    asked = asked_for(source, glyphs)
+    missing = getattr(glyphs, "missing", ())
     return {
         "glyphspline": __version__,
+        "command": shlex.join(command(source, spec, asked)),
         "font": {
             "file": source.path.name,
             "sha256": source.sha256,
@@ -116,11 +138,51 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
             "style": source.style,
             "metrics": asdict(source.metrics),
         },
-        "options": asdict(spec.options),
+        "selection": asked,
+        "selected": len(glyphs),
+        "missing": {"count": len(missing), "first": list(missing[:FIRST_MISSING])},
+        "options": asdict(spec.options) | effective,
         "formats": list(spec.formats),
         "view_box": spec.view_box,
+        "names": spec.names,
         "curvature_scale": curvature_scale,
     }
+
+
+def asked_for(source: Source, glyphs: Sequence[str]) -> dict[str, Any]:
+    """The arguments of :meth:`Source.select` that choose these glyphs."""
+    asked = dict(getattr(glyphs, "asked", {}))
+    if not asked:
+        asked = {"all": True} if len(glyphs) == len(source.glyph_names) else {"glyphs": list(glyphs)}
+    if "text" in asked:  # an argument of the command line may hold bytes that are no text
+        asked["text"] = asked["text"].encode(errors="replace").decode()
+    return asked
+
+
+def command(source: Source, spec: RunSpec, asked: dict[str, Any]) -> Iterator[str]:
+    """The arguments of the command line that make the run's files, without the folder: what is not default."""
+    yield from ("glyphspline", "convert", source.path.name)
+    for name, value in asked.items():
+        yield f"--{name}"
+        if name != "all":
+            yield value if isinstance(value, str) else ",".join(map(str, value))
+    if source.face_index:
+        yield from ("--face-index", str(source.face_index))
+    if source.location:
+        yield from ("--location", ",".join(f"{tag}={value:g}" for tag, value in source.location.items()))
+    for name, (value, default) in _choices(spec).items():
+        if value != default and name not in ("max_ratio", "residual_tolerance", "max_iterations"):
+            yield f"--{name.replace('_', '-')}"
+            if value is not True:
+                yield str(value)
+
+
+def _choices(spec: RunSpec) -> dict[str, tuple[Any, Any]]:
+    """The choices of a run, each with its default."""
+    plain = RunSpec()
+    given = {f.name: (getattr(spec.options, f.name), getattr(plain.options, f.name)) for f in fields(Options)}
+    given |= {name: (getattr(spec, name), getattr(plain, name)) for name in ("view_box", "names")}
+    return given | {"format": (",".join(spec.formats), ",".join(plain.formats))}
 
 
 def write_run(out: Path, run: dict[str, Any]) -> None:
@@ -148,11 +210,11 @@ def read_run(out: Path) -> dict[str, Any] | None:
 
 
 def differences(old: dict[str, Any], new: dict[str, Any], prefix: str = "") -> list[str]:
-    """The differences between two runs, a phrase each; the file's name and the scale do not count."""
+    """The differences between two runs, a phrase each; the file's name, the scale and the selection do not count."""
     found = []
     for key in dict.fromkeys([*old, *new]):
         name = f"{prefix}{key}"
-        if name in ("font.file", "curvature_scale"):
+        if name in ("font.file", "curvature_scale", *REQUEST):
             continue
         a, b = old.get(key), new.get(key)
         if isinstance(a, dict) and isinstance(b, dict):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..fitting.results import MeasureColumns
 from .entry import columns_of
@@ -14,21 +14,45 @@ from .entry import columns_of
 SHOWN = 10
 """Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
 
-SLOW = 0.5
+SLOW = 5.0
 """Seconds from which the slowest glyphs are listed."""
 
-Facts = tuple[bool, bool, float | None]
-"""For a glyph: whether a contour did not converge, whether one is outside the tolerance, the largest deviation."""
+NAMED = 5
+"""Glyphs outside the tolerance, or with new self-crossings, that are named; of the others there is the number."""
 
-NO_FACTS: Facts = (False, False, None)
+
+class Facts(NamedTuple):
+    """What the summary takes from a glyph.
+
+    Attributes:
+        not_converged, outside: whether a contour did not converge, whether one is outside the tolerance.
+        deviation: the largest of its contours; None if none was measured.
+        crossings: whether a contour crosses itself where its source does not.
+        notes: of a glyph that came out empty: what was left out.
+    """
+
+    not_converged: bool = False
+    outside: bool = False
+    deviation: float | None = None
+    crossings: bool = False
+    notes: tuple[str, ...] = ()
+
+
+NO_FACTS = Facts()
 
 
 def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) -> Facts:
     """The facts of a glyph whose contours are those from ``first`` up to ``last``."""
-    names = ("converged", "within_tolerance", "deviation")
-    converged, within, deviations = (measures.get(name, ())[first:last] for name in names)
+    names = ("converged", "within_tolerance", "deviation", "new_crossings")
+    converged, within, deviations, crossings = (measures.get(name, ())[first:last] for name in names)
     known = [value for value in deviations if value is not None]
-    return False in converged, False in within, max(known, default=None)
+    return Facts(False in converged, False in within, max(known, default=None), any(crossings))
+
+
+def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
+    """The facts of a glyph from its line of the manifest."""
+    facts = facts_of(columns_of(entry["contours"]))
+    return facts._replace(notes=tuple(entry.get("notes") or ())) if entry["status"] == "empty" else facts
 
 
 @dataclass
@@ -36,35 +60,51 @@ class Summary:
     """Counts of a folder's glyphs, and the extreme ones by name.
 
     Attributes:
-        statuses: glyphs by status. not_converged, outside_tolerance: glyphs with such a contour.
+        statuses: glyphs by status. not_converged, outside_tolerance, new_crossings: glyphs with such a contour.
+        outside, crossing: the first few of the last two. left_out: (glyph, notes), the first few that came out empty
+            because of what was left out.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
         slowest: (seconds, glyph). done: number of glyphs converted in this run, not in an earlier one.
         remarks: on formats with one file a font.
+        missing: what was asked for and is not in the font. seconds: that the run took.
+        aim: the tolerance in words; "" if vertices are placed by step or count, whatever the distance.
     """
 
     statuses: Counter[str] = field(default_factory=Counter)
     not_converged: int = 0
     outside_tolerance: int = 0
+    new_crossings: int = 0
+    outside: list[str] = field(default_factory=list)
+    crossing: list[str] = field(default_factory=list)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
     worst: list[tuple[float, str]] = field(default_factory=list)
     slowest: list[tuple[float, str]] = field(default_factory=list)
     failures: list[tuple[str, str]] = field(default_factory=list)
     done: int = 0
     remarks: list[str] = field(default_factory=list)
+    missing: tuple[str, ...] = ()
+    aim: str = ""
+    seconds: float = 0.0
 
     def add(self, entry: Mapping[str, Any]) -> None:
         """Count one line of the manifest."""
-        self.count(entry["glyph"], entry["status"], entry["error"], facts_of(columns_of(entry["contours"])))
+        self.count(entry["glyph"], entry["status"], entry["error"], facts_of_entry(entry))
 
     def count(self, glyph: str, status: str, error: str | None, facts: Facts) -> None:
         """Count one glyph."""
         self.statuses[status] += 1
         if status == "failed" and len(self.failures) < SHOWN:
             self.failures.append((glyph, error or ""))
-        not_converged, outside_tolerance, deviation = facts
-        self.not_converged += not_converged
-        self.outside_tolerance += outside_tolerance
-        if deviation is not None:
-            keep_largest(self.worst, (deviation, glyph))
+        self.not_converged += facts.not_converged
+        self.outside_tolerance += facts.outside
+        self.new_crossings += facts.crossings
+        for those, is_one in ((self.outside, facts.outside), (self.crossing, facts.crossings)):
+            if is_one and len(those) < NAMED:
+                those.append(glyph)
+        if facts.notes and len(self.left_out) < NAMED:
+            self.left_out.append((glyph, ", ".join(facts.notes)))
+        if facts.deviation is not None:
+            keep_largest(self.worst, (facts.deviation, glyph))
 
     def time(self, seconds: float, glyph: str) -> None:
         """Count a glyph converted in this run, and its time."""
@@ -75,17 +115,31 @@ class Summary:
         """The summary as JSON data."""
         return {**asdict(self), "statuses": dict(self.statuses)}
 
+    def headline(self) -> str:
+        """The run in one clause: how many glyphs, in what time, how near to the source."""
+        kinds = [(self.statuses["empty"], "empty"), (self.failed, "failed")]
+        parts = [plural(self.statuses["ok"], "glyph"), *(f"{count} {kind}" for count, kind in kinds if count)]
+        earlier = sum(self.statuses.values()) - self.done
+        before = f" ({earlier} of them before)" if earlier > 0 else ""
+        how = []
+        if self.worst and self.aim:
+            far = self.outside_tolerance
+            how.append(f"{f'{far} not' if far else 'all'} within {self.aim}")
+        elif self.worst:
+            how.append(f"at most {self.worst[0][0]:.3g} units from the source")
+        return ", ".join([" and ".join(parts) + f" in {self.seconds:.1f} s{before}", *how])
+
     def lines(self) -> Iterator[str]:
-        """The summary as lines of text."""
-        counts = ", ".join(f"{self.statuses[status]} {status}" for status in ("ok", "empty", "failed"))
-        yield f"{counts}; {self.done} done now"
+        """What there is to say of single glyphs and files, as lines of text; failures come last."""
+        if self.worst and self.aim and self.outside_tolerance:
+            yield f"not within {self.aim}: {listed(self.outside, self.outside_tolerance)}"
+        if self.new_crossings:
+            yield f"cross themselves where the source does not: {listed(self.crossing, self.new_crossings)}"
         if self.not_converged:
-            yield f"{self.not_converged} glyphs with a contour that did not converge"
-        if self.outside_tolerance:
-            yield f"{self.outside_tolerance} glyphs with a contour outside the tolerance"
+            yield f"{plural(self.not_converged, 'glyph')} with a contour that did not converge"
+        for glyph, notes in self.left_out:
+            yield f"{glyph} came out empty: {notes}"
         yield from self.remarks
-        if self.worst:
-            yield "largest deviations: " + ", ".join(f"{glyph} {value:.3g}" for value, glyph in self.worst[:5])
         if self.slowest and self.slowest[0][0] > SLOW:
             yield "slowest: " + ", ".join(f"{glyph} {value:.1f} s" for value, glyph in self.slowest[:5])
         for glyph, error in self.failures:
@@ -103,3 +157,14 @@ def keep_largest(items: list[tuple[float, str]], item: tuple[float, str]) -> Non
     """Insert an item into a descending list of at most ``SHOWN`` largest items."""
     if len(items) < SHOWN or item[0] > items[-1][0]:
         items[:] = heapq.nlargest(SHOWN, [*items, item], key=lambda each: each[0])
+
+
+def listed(names: Sequence[str], count: int) -> str:
+    """The names, and how many more there are of ``count``."""
+    more = f" and {count - len(names)} more" if count > len(names) else ""
+    return ", ".join(names) + more
+
+
+def plural(count: int, thing: str) -> str:
+    """A number of things."""
+    return f"{count} {thing}{'' if count == 1 else 's'}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
@@ -39,6 +40,9 @@ Location = tuple[tuple[str, float], ...]
 BATCH = 40_000
 """Segments and vertices converted at once: some 40 glyphs of a CJK face. A worker's time limit and memory are for one
 batch."""
+
+# The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
+logging.getLogger("fontTools").addHandler(logging.NullHandler())
 
 
 class Read(NamedTuple):
@@ -214,10 +218,15 @@ def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seco
     files = {} if empty else {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in formats}
     sizes = [write_whole(f"{job.out}/{path}", WRITERS[name](job, glyph, files)) for name, path in files.items()]
     status, advance = "empty" if empty else "ok", glyph.result.outline.advance
-    line = manifest_line(task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures)
+    notes = tuple(dict.fromkeys([*glyph.result.outline.notes, *glyph.result.notes]))
+    facts = glyph.facts._replace(notes=notes if empty else ())
+    line = manifest_line(
+        task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures,
+        deviation=facts.deviation, notes=notes,
+    )  # fmt: skip
     row = row_of(line) if GALLERY in formats else ""
     seconds += time.perf_counter() - started
-    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, glyph.facts, row)
+    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, facts, row)
 
 
 def reason(error: Exception) -> str:

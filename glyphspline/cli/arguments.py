@@ -11,86 +11,290 @@ import typer
 
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
+from ..types import Names
 from ..writers.svg.document import ViewBox
 
 if TYPE_CHECKING:
     from ..batch import RunSpec
     from ..readers import Selection, Source
 
+GLYPHS = "Which glyphs"
+CLOSENESS = "How close to the source"
+CORNERS = "Corners"
+FILES = "What is written"
+RUN = "The run"
+METHOD = "The method, in the paper's terms"
+
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
+FONTS_HELP = (
+    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, SVG; - is standard input), folders, globs, or @file with one a line."
+)
+
+
+def number(text: Any) -> float:
+    """A number, in words that name the value if it is none."""
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        raise typer.BadParameter(f"{text!r} is not a number") from None
+
+
+def whole(text: Any) -> int:
+    """A whole number, in words that name the value if it is none."""
+    try:
+        if isinstance(text, float | bool):
+            raise ValueError
+        return int(text)
+    except (TypeError, ValueError):
+        raise typer.BadParameter(f"{text!r} is not a whole number") from None
+
+
+def natural(text: Any) -> int:
+    """A whole number from 0 on, in words that name the value if it is none."""
+    found = whole(text)
+    if found < 0:
+        raise typer.BadParameter(f"{found} is below 0")
+    return found
+
+
+def place(text: Any) -> Path:
+    """A path; one of no characters would be the current folder, which nobody means."""
+    if not str(text):
+        raise typer.BadParameter("it is empty: give a folder, or . for this one")
+    return Path(text)
+
+
+def configured(context: typer.Context, path: Path | None) -> Path | None:
+    """Take defaults from a file of settings, before the other options are read."""
+    from ..errors import GlyphsplineError
+    from .config import settings
+
+    if not context.resilient_parsing:
+        try:
+            context.default_map = settings(path, context.command.params)
+        except GlyphsplineError as error:
+            typer.echo(f"glyphspline: {error}", err=True)
+            raise typer.Exit(2) from None
+    return path
+
 
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
+FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]
 OwnFont = Annotated[Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)]
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)]
 RunFont = Annotated[Path | None, typer.Option("--font", metavar="FONT", help="The font that the run was made of.")]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Folder to write to.", show_default=False)]
 
-Text = Annotated[str | None, typer.Option("--text", help="Glyphs of these characters.")]
-TextFile = Annotated[Path | None, typer.Option("--text-file", help="Glyphs of a UTF-8 file's characters.")]
-Unicodes = Annotated[str | None, typer.Option("--unicodes", help="Code points: U+4E00-4E10,9F8D or *.")]
-Glyphs = Annotated[str | None, typer.Option("--glyphs", help="Glyph names, between commas, or *.")]
-Gids = Annotated[str | None, typer.Option("--gids", help="Glyph indices: 5,10-20 or *.")]
-Every = Annotated[bool, typer.Option("--all", help="Every glyph of the font.")]
+Text = Annotated[str | None, typer.Option("--text", help="Glyphs of these characters.", rich_help_panel=GLYPHS)]
+TextFile = Annotated[
+    Path | None, typer.Option("--text-file", help="Glyphs of a UTF-8 file's characters.", rich_help_panel=GLYPHS)
+]
+Unicodes = Annotated[
+    str | None, typer.Option("--unicodes", help="Code points: U+4E00-4E10,9F8D or *.", rich_help_panel=GLYPHS)
+]
+Glyphs = Annotated[
+    str | None, typer.Option("--glyphs", help="Glyph names, between commas, or *.", rich_help_panel=GLYPHS)
+]
+Gids = Annotated[str | None, typer.Option("--gids", help="Glyph indices: 5,10-20 or *.", rich_help_panel=GLYPHS)]
+Every = Annotated[bool, typer.Option("--all", help="Every glyph of the font.", rich_help_panel=GLYPHS)]
 
-FaceIndex = Annotated[int, typer.Option("--face-index", min=0, help="Which font of a collection.")]
-OneFace = Annotated[int | None, typer.Option("--face-index", min=0, help="Only this font of a collection.")]
+FaceIndex = Annotated[
+    int,
+    typer.Option(
+        "--face-index", parser=natural, metavar="N", help="Which font of a collection.", rich_help_panel=GLYPHS
+    ),
+]
+OneFace = Annotated[
+    int | None,
+    typer.Option(
+        "--face-index", parser=natural, metavar="N", help="Only this font of a collection.", rich_help_panel=GLYPHS
+    ),
+]
 Location = Annotated[
     str | None,
     typer.Option(
-        "--location", metavar="TAG=VALUE,…", help="Place of a variable font: wght=700,wdth=80, or a name: Bold."
+        "--location", metavar="TAG=VALUE,…", help="Place of a variable font: wght=700,wdth=80, or a name: Bold.",
+        rich_help_panel=GLYPHS,
     ),
-]
+]  # fmt: skip
 
-Variant = Annotated[int, typer.Option("--variant", help="Of the paper's Table 1, 0 to 4.")]
-Margin = Annotated[float, typer.Option("--margin", help="c of Lemma 2, 0 to 0.5.")]
-WhereNone = Annotated[Fallback, typer.Option("--fallback", help="Where Lemma 2 has no interval.")]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        "--tolerance", parser=number, metavar="UNITS",
+        help="How far a curve may be from its source, in font units. Without it, 1/1000 em.",
+        rich_help_panel=CLOSENESS,
+    ),
+]  # fmt: skip
+HowHard = Annotated[
+    Effort, typer.Option("--effort", help="best takes longer to find fewer points.", rich_help_panel=CLOSENESS)
+]
+Step = Annotated[
+    float | None,
+    typer.Option(
+        "--step", parser=number, metavar="UNITS", help="Instead: a point at every so many font units of the outline.",
+        rich_help_panel=CLOSENESS,
+    ),
+]  # fmt: skip
+Count = Annotated[
+    int | None,
+    typer.Option(
+        "--count", parser=whole, metavar="N", help="Instead: this number of points a contour.",
+        rich_help_panel=CLOSENESS,
+    ),
+]  # fmt: skip
+Measure = Annotated[
+    bool,
+    typer.Option(
+        "--measure", help="With --step and --count too: measure distance, length, curvature.",
+        rich_help_panel=CLOSENESS,
+    ),
+]  # fmt: skip
+
+Choice = Annotated[
+    Preset | None,
+    typer.Option(
+        "--preset", help="type: sharp corners, few points, for letters. paper: smooth, c = 0, as the paper has it.",
+        rich_help_panel=CORNERS,
+    ),
+]  # fmt: skip
 CornerMode = Annotated[
     Corners,
     typer.Option(
-        "--corners", help="smooth: one curve a contour, for brush and traced outlines. sharp: corners stay, for type."
+        "--corners", help="smooth: one curve a contour, for brush and traced outlines. sharp: corners stay, for type.",
+        rich_help_panel=CORNERS,
     ),
-]
+]  # fmt: skip
+CornerAngle = Annotated[
+    float,
+    typer.Option(
+        "--corner-angle", parser=number, metavar="DEGREES", help="How sharp a turn counts as a corner.",
+        rich_help_panel=CORNERS,
+    ),
+]  # fmt: skip
 Between = Annotated[
     Continuity,
-    typer.Option("--continuity", help="Between corners: c2, one spline; g1, cubics that only meet without a kink."),
+    typer.Option(
+        "--continuity",
+        help="Between corners: c2, one spline, whose curvature has no jumps; g1, cubics that only meet without a kink.",
+        rich_help_panel=CORNERS,
+    ),
 ]
-Choice = Annotated[
-    Preset | None,
-    typer.Option("--preset", help="paper: smooth, c = 0, as the paper has it. type: sharp, c2, best."),
-]
-Tolerance = Annotated[
-    float | None,
-    typer.Option("--tolerance", help="Distance allowed from the source, in font units. Without it, 1/1000 em."),
-]
-Step = Annotated[float | None, typer.Option("--step", help="Instead: distance between vertices, in font units.")]
-Count = Annotated[int | None, typer.Option("--count", help="Instead: this number of vertices a contour.")]
-HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
-Region = Annotated[ViewBox, typer.Option("--view-box", help="Region an SVG drawing shows.")]
-Precision = Annotated[int, typer.Option("--precision", help="Decimals written, 0 to 9.")]
-RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
-Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
-Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.")]
 
-Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=0, help="Worker processes. Without it, one a core.")]
-Resume = Annotated[bool, typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.")]
-Scheduler = Annotated[
-    str | None, typer.Option("--scheduler", metavar="TCP://…", help="Work on this dask.distributed cluster instead.")
+Out = Annotated[
+    Path,
+    typer.Option("--out", "-o", parser=place, metavar="DIR", help="Folder to write to.", show_default=False,
+                 rich_help_panel=FILES),
+]  # fmt: skip
+Formats = Annotated[
+    str,
+    typer.Option(
+        "--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.", rich_help_panel=FILES
+    ),
 ]
-JsonLog = Annotated[bool, typer.Option("--json-log", help="Progress and summary as JSON lines on standard error.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing but errors.")]
-AtlasFile = Annotated[Path, typer.Option("--out", "-o", help="PDF to write.")]
+FileNames = Annotated[
+    Names,
+    typer.Option(
+        "--names",
+        help="What files are called after: the glyph's name, its code point (uni9F8D), its index, its character.",
+        rich_help_panel=FILES,
+    ),
+]
+Each = Annotated[
+    bool,
+    typer.Option("--each", help="A folder in DIR for each font, as of several, for one font too.",
+                 rich_help_panel=FILES),
+]  # fmt: skip
+Region = Annotated[ViewBox, typer.Option("--view-box", help="Region an SVG drawing shows.", rich_help_panel=FILES)]
+Precision = Annotated[
+    int,
+    typer.Option("--precision", parser=whole, metavar="N", help="Decimals written, 0 to 9.", rich_help_panel=FILES),
+]
+RemoveOverlaps = Annotated[
+    bool, typer.Option("--remove-overlaps", help="Unite overlapping contours first.", rich_help_panel=FILES)
+]
+
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs",
+        "-j",
+        parser=natural,
+        metavar="N",
+        help="Worker processes. Without it, one a core.",
+        rich_help_panel=RUN,
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.", rich_help_panel=RUN),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler", metavar="TCP://…", help="Work on this dask.distributed cluster instead.", rich_help_panel=RUN
+    ),
+]
+Config = Annotated[
+    Path | None,
+    typer.Option(
+        "--config", metavar="FILE", callback=configured, is_eager=True, rich_help_panel=RUN,
+        help="TOML with options by name: tolerance = 2. So is the table tool.glyphspline of ./pyproject.toml.",
+    ),
+]  # fmt: skip
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing but errors.", rich_help_panel=RUN)]
+JsonSummary = Annotated[
+    bool, typer.Option("--json", help="The summary as JSON on standard output.", rich_help_panel=RUN)
+]
+JsonLog = Annotated[
+    bool,
+    typer.Option("--json-log", help="Progress and summary as JSON lines on standard error.", rich_help_panel=RUN),
+]
+
+Variant = Annotated[
+    int,
+    typer.Option(
+        "--variant", parser=whole, metavar="0…4", help="How footpoints are sought (Table 1).", rich_help_panel=METHOD
+    ),
+]
+Margin = Annotated[
+    float,
+    typer.Option(
+        "--margin", parser=number, metavar="C", rich_help_panel=METHOD,
+        help="How much less than it might a footpoint moves from its knot, 0 to 0.5 (c of Lemma 2).",
+    ),
+]  # fmt: skip
+WhereNone = Annotated[
+    Fallback,
+    typer.Option(
+        "--fallback", help="Where chords are too uneven for a guarantee (Lemma 2 has no interval).",
+        rich_help_panel=METHOD,
+    ),
+]  # fmt: skip
+
+AtlasFile = Annotated[Path, typer.Option("--out", "-o", parser=place, metavar="FILE", help="PDF to write.")]
 Profiles = Annotated[
     str | None, typer.Option("--profiles", help="Characters that get a page with κ(s); of up to 12 glyphs, all.")
 ]
 Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 takes any that is free.")]
 Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")]
 Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
+Deep = Annotated[
+    bool,
+    typer.Option("--deep", help="Read every glyph: count contours, find overlaps and what is broken. Takes minutes."),
+]
 
 
 def options_of(given: Mapping[str, Any]) -> Options:
     """The options of a conversion, from a command's arguments by name."""
+    from ..errors import OptionError
+
     given = {**given, **preset_of(given)}
-    return Options(**{field.name: given[field.name] for field in fields(Options) if field.name in given})
+    names = [field.name for field in fields(Options) if field.name in given]
+    try:
+        return Options(**{name: given[name] for name in names})
+    except OptionError as error:
+        first, _, rest = error.message.partition(" is ")
+        raise OptionError(f"--{first.replace('_', '-')} is {rest}" if first in names else error.message) from None
 
 
 def preset_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -111,20 +315,27 @@ def spec_of(given: Mapping[str, Any]) -> RunSpec:
     from ..batch import RunSpec
 
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    return RunSpec(options_of(given), formats, given["view_box"])
+    return RunSpec(options_of(given), formats, given["view_box"], given["names"])
 
 
 def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:
     """The selected glyphs."""
     from ..errors import GlyphsplineError
 
+    if not is_selected(given):
+        raise GlyphsplineError("no glyphs asked for: give --text, --text-file, --unicodes, --glyphs, --gids or --all")
     text = given["text"]
     if given["text_file"] is not None:
         text = (text or "") + given["text_file"].read_text(encoding="utf-8-sig")
     asked = {name: given[name] for name in ("unicodes", "glyphs", "gids")}
-    if not given["every"] and text is None and all(value is None for value in asked.values()):
-        raise GlyphsplineError("no glyphs asked for: give --text, --text-file, --unicodes, --glyphs, --gids or --all")
     return source.select(text=text, **asked, all_glyphs=given["every"])
+
+
+def is_selected(given: Mapping[str, Any]) -> bool:
+    """Whether any glyphs are asked for."""
+    return given["every"] or any(
+        given[name] is not None for name in ("text", "text_file", "unicodes", "glyphs", "gids")
+    )
 
 
 def location_of(text: str | None) -> dict[str, float] | str:

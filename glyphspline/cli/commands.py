@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from ..fitting.options import Options
 from . import arguments as opt
 
 if TYPE_CHECKING:
@@ -20,9 +22,10 @@ if TYPE_CHECKING:
 
     from ..batch import RunSpec, Summary
     from ..readers import Source
+    from .closing import FontRun
 
-PATIENCE = 300.0
-"""Time limit of ``info`` in seconds."""
+PATIENCE = 60.0
+"""Time limit in seconds of ``info --deep`` for some hundred glyphs."""
 
 LOOKED_AT = 64
 """Outlines that are looked at to tell type from brush."""
@@ -33,14 +36,33 @@ MEMORY = 16 << 30
 app = typer.Typer(
     help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def said_version(asked: bool) -> None:
+    """Print the version and end, if it is asked for."""
+    if asked:
+        from .._version import __version__
+
+        typer.echo(f"glyphspline {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=said_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
+    listen()
 
 
 @app.command()
 def convert(
-    font: opt.FontFile,
+    fonts: opt.FontFiles,
     out: opt.Out,
     text: opt.Text = None,
     text_file: opt.TextFile = None,
@@ -48,18 +70,21 @@ def convert(
     glyphs: opt.Glyphs = None,
     gids: opt.Gids = None,
     every: opt.Every = False,
-    face_index: opt.FaceIndex = 0,
+    face_index: opt.OneFace = None,
     location: opt.Location = None,
     variant: opt.Variant = 2,
     margin: opt.Margin = 0.02,
     fallback: opt.WhereNone = "peak",
     preset: opt.Choice = None,
     corners: opt.CornerMode = "smooth",
+    corner_angle: opt.CornerAngle = Options.corner_angle,
     continuity: opt.Between = "c2",
     tolerance: opt.Tolerance = None,
     step: opt.Step = None,
     count: opt.Count = None,
     effort: opt.HowHard = "fast",
+    names: opt.FileNames = "glyph",
+    each: opt.Each = False,
     view_box: opt.Region = "em",
     precision: opt.Precision = 2,
     remove_overlaps: opt.RemoveOverlaps = False,
@@ -68,40 +93,128 @@ def convert(
     jobs: opt.Jobs = None,
     scheduler: opt.Scheduler = None,
     resume: opt.Resume = True,
+    config: opt.Config = None,
     quiet: opt.Quiet = False,
+    as_json: opt.JsonSummary = False,
     json_log: opt.JsonLog = False,
 ) -> None:
-    """Convert glyphs of a font to SVG drawings and curvature maps, with a manifest and an index."""
+    """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
+
+    One font goes to the folder itself, several to a folder each in it, each face of a collection to one in that.
+
+    Of several fonts, or a folder, glob or list of them, every glyph is converted unless some are asked for.
+    """
     given = dict(locals())
     with errors():
+        listen(quiet)
         spec = opt.spec_of(given)
-        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
-            from ..readers import open_source
+        from ..batch import find_fonts
 
-            source = open_source(font, face_index, opt.location_of(location))
-            names = opt.selection_of(source, given)
-            if names.missing and not quiet:
-                say(f"not in the font: {', '.join(names.missing)}")
-            if not names:
-                stop("none of the glyphs asked for is in the font")
-            summary = run(source, names, out, spec, executor, restart=not resume, quiet=quiet, json_log=json_log)
-    raise typer.Exit(1 if summary.failed else 0)
+        found = find_fonts(fonts)
+        if not found:
+            stop("no fonts found")
+        alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
+        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
+            if alone:
+                runs = [convert_alone(found[0], spec, executor, given)]
+            else:
+                runs = convert_several(found, spec, executor, given)
+        from . import closing
+
+        if not (quiet or json_log or alone):
+            say(closing.table(runs))
+        if as_json:
+            typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
+    raise typer.Exit(1 if any(run.failed for run in runs) else 0)
+
+
+def convert_alone(font: Path, spec: RunSpec, executor: Executor, given: Mapping[str, Any]) -> FontRun:
+    """Convert one font into the folder itself."""
+    from ..readers import open_source
+    from .closing import FontRun, missing_words
+
+    source = open_source(font, given["face_index"] or 0, opt.location_of(given["location"]))
+    names = opt.selection_of(source, given)
+    if names.missing and not given["quiet"]:
+        say(f"not in the font: {missing_words(names.missing)}")
+    if not names:
+        stop("none of the glyphs asked for is in the font")
+    summary = run(source, names, given["out"], spec, executor, **conduct(given))
+    if not (given["quiet"] or given["json_log"]) and looks_like_type(source, names, spec):
+        say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
+    return FontRun(str(font), given["out"], summary)
+
+
+def convert_several(
+    fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any]
+) -> list[FontRun]:
+    """Convert fonts, each face into a folder of its own. A font that cannot be read is named and passed over."""
+    from ..batch import OutputError, faces_of, folders_for, locked
+    from ..batch.files import make_folder
+    from ..errors import GlyphsplineError
+    from .closing import FontRun, missing_words
+
+    given = {**given, "every": given["every"] or not opt.is_selected(given)}
+    location = opt.location_of(given["location"])
+    runs = []
+    make_folder(given["out"])
+    with locked(given["out"]):
+        for font, folder in zip(fonts, folders_for(fonts), strict=True):
+            out = given["out"] / folder
+            try:
+                for source in faces_of(font, location, given["face_index"]):
+                    many = source.num_faces > 1
+                    name = f"{font}, face {source.face_index}" if many else str(font)
+                    names = opt.selection_of(source, given)
+                    if names.missing and not given["quiet"]:
+                        say(f"{name}: not in the font: {missing_words(names.missing)}")
+                    place = out / f"face-{source.face_index}" if many else out
+                    summary = run(source, names, place, spec, executor, **conduct(given), name=name)
+                    runs.append(FontRun(name, place, summary))
+            except OutputError:
+                raise
+            except GlyphsplineError as error:
+                if given["quiet"] or given["json_log"]:  # or else it is said below the table
+                    say(str(error))
+                runs.append(FontRun(str(font), out, error=str(error)))
+    return runs
+
+
+def conduct(given: Mapping[str, Any]) -> dict[str, Any]:
+    """How a run goes on and what it says, from a command's arguments by name."""
+    return {"restart": not given["resume"], "quiet": given["quiet"], "json_log": given["json_log"]}
 
 
 @app.command()
 def info(
-    font: opt.FontFile, face_index: opt.OneFace = None, location: opt.Location = None, as_json: opt.Json = False
+    font: opt.FontFile,
+    face_index: opt.OneFace = None,
+    location: opt.Location = None,
+    deep: opt.Deep = False,
+    as_json: opt.Json = False,
 ) -> None:
-    """Show what a font file holds: faces, axes, units per em, numbers of glyphs and contours."""
+    """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
     with errors():
-        from ..batch.schedule import workers
         from ..readers.facts import file_facts
+        from .closing import printable
         from .describe import lines_of
 
-        # In a separate process with a time limit: counting the contours of a hostile font can take years.
-        with workers(1, PATIENCE) as executor:
-            facts = executor.submit(file_facts, font, face_index, opt.location_of(location)).result()
-    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else "\n".join(lines_of(facts)))
+        facts = file_facts(font, face_index, opt.location_of(location))
+        if deep:
+            look_deep(font, facts)
+    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else printable("\n".join(lines_of(facts))))
+
+
+def look_deep(font: Path, facts: dict[str, Any]) -> None:
+    """Add what needs all outlines, with progress on a terminal."""
+    from ..batch.deep_facts import add_glyph_facts
+    from ..batch.schedule import workers
+    from ..readers.open import STDIN, standard_input
+
+    path = standard_input() if str(font) == STDIN else font
+    # In processes with a time limit: counting the contours of a hostile font can take years.
+    with workers(None, PATIENCE) as executor, progress(quiet=False) as observer:
+        add_glyph_facts(path.absolute(), facts, executor, observer)
 
 
 @app.command()
@@ -137,6 +250,7 @@ def atlas(
     fallback: opt.WhereNone = "peak",
     preset: opt.Choice = None,
     corners: opt.CornerMode = "smooth",
+    corner_angle: opt.CornerAngle = Options.corner_angle,
     continuity: opt.Between = "c2",
     tolerance: opt.Tolerance = None,
     step: opt.Step = None,
@@ -193,6 +307,7 @@ def demo(
         from ..batch import RunSpec
         from ..readers import open_source
 
+        listen(quiet)
         shown, spec = [], RunSpec()
         with workplace(jobs, None, spec) as executor:
             for path, characters in [(font, "龍好")] if font else demo_fonts():
@@ -252,20 +367,21 @@ def run(
     restart: bool,
     quiet: bool,
     json_log: bool = False,
+    name: str | None = None,
 ) -> Summary:
-    """Convert glyphs with progress on a terminal, then print the summary."""
+    """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
     from ..batch import convert_font
+    from ..report.data import FOLDER as GALLERY
 
     with json_lines() if json_log else progress(quiet) as observer:
         summary = convert_font(source, names, out, spec, executor=executor, restart=restart, observer=observer)
     if json_log:
         say(json.dumps({"out": str(out), **summary.facts()}))
     elif not quiet:
+        seen = f"open {out / 'index.html'}" if GALLERY in spec.formats else f"written to {out}"
+        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}; {seen}")
         for line in summary.lines():
-            say(line)
-        say(f"written to {out}")
-        if looks_like_type(source, names, spec):
-            say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
+            say(f"  {line}" if name else line)
     return summary
 
 
@@ -345,8 +461,33 @@ def errors() -> Iterator[None]:
 
 
 def say(line: str) -> None:
-    """Print a line on standard error."""
-    typer.echo(line, err=True)
+    """Print a line on standard error. What fonts have in names does not move the cursor."""
+    from .closing import printable
+
+    typer.echo(printable(line), err=True)
+
+
+class Said(logging.Handler):
+    """Prints what this package and fontTools log, each sentence once."""
+
+    def __init__(self, level: int) -> None:
+        super().__init__(level)
+        self._before: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record as a line on standard error."""
+        line = f"{record.name.partition('.')[0]}: {record.getMessage()}"
+        if line not in self._before:
+            self._before.add(line)
+            say(line)
+
+
+def listen(quiet: bool = False) -> None:
+    """Print warnings of the libraries on standard error, or only their errors."""
+    for name in ("glyphspline", "fontTools"):
+        log = logging.getLogger(name)
+        log.handlers[:] = [handler for handler in log.handlers if not isinstance(handler, Said)]
+        log.addHandler(Said(logging.ERROR if quiet else logging.WARNING))
 
 
 def stop(message: str) -> NoReturn:

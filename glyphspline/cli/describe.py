@@ -22,10 +22,10 @@ def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:
             yield f"  axis {axis['tag']} ({axis['name']}): {limits}"
         if font["instances"]:
             yield f"  named instances: {', '.join(font['instances'])}"
-        yield (
-            f"  {font['glyphs']} glyphs, {font['characters']} characters, {font['contours']} contours,"
-            f" {font['segments']} segments"
-        )
+        counts = [f"{font[what]} {what}" for what in ("glyphs", "characters", "contours", "segments") if what in font]
+        yield f"  {', '.join(counts)}"
+        if "broken" not in font:
+            continue
         yield from _glyphs(font["broken"], "cannot be read")
         yield from _glyphs(font["degenerate"], "with contours that enclose nothing")
         yield from _glyphs(font["overlaps"] or (), "with overlaps")

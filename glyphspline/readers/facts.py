@@ -7,41 +7,54 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ..curves.integrals import area
 from ..errors import GlyphsplineError
 from ..outlines.outline import Outline
-from ..outlines.overlaps import contours_of
-from .open import open_source
-from .opentype.font import Font
+from .open import STDIN, is_font, open_source, standard_input
+from .opentype.face import Face, open_faces
 from .opentype.tables import Location
 from .source import Source
 
 OVERLAP = 1e-5
 """Share of a square em below which the area of an overlap counts as rounding."""
 
-BATCH = 200
-"""Glyphs read at once: a few megabytes of outlines."""
-
 
 def file_facts(path: str | Path, face_index: int | None = None, location: Location = None) -> dict[str, Any]:
-    """The file's format, and the facts of each face or of the one requested. Every glyph is drawn.
+    """The file's format, and the facts of each face or of the one requested. No glyph is read.
 
     Raises:
         FontError: as in :func:`open_source`.
     """
-    first = open_source(path, face_index or 0, location)
-    indices = range(first.num_faces) if face_index is None else [face_index]
-    sources = [first if index == first.face_index else open_source(path, index, location) for index in indices]
+    if is_font(path):
+        file = standard_input() if str(path) == STDIN else path
+        faces: list[Face | Source] = [*open_faces(file, face_index, location)]
+    else:
+        faces = [open_source(path, face_index or 0, location)]
     return {
         "file": str(path),
-        "format": first.format,
-        "faces": first.num_faces,
-        "fonts": [source_facts(source) for source in sources],
+        "format": faces[0].format,
+        "faces": faces[0].num_faces,
+        "fonts": [face_facts(face) for face in faces],
     }
 
 
-def source_facts(source: Source) -> dict[str, Any]:
-    """The facts of one face: names, metrics, axes, instances, counts, and the names of unusual glyphs.
+def face_facts(face: Face | Source) -> dict[str, Any]:
+    """The facts of one face: names, metrics, axes, instances, and the numbers of glyphs and characters."""
+    glyphs, characters = face.counts() if isinstance(face, Face) else (len(face.glyph_names), len(face.cmap))
+    return {
+        "face_index": face.face_index,
+        "family": face.family,
+        "style": face.style,
+        **asdict(face.metrics),
+        "axes": [asdict(axis) for axis in face.axes] if isinstance(face, Face) else [],
+        "instances": face.instances if isinstance(face, Face) else {},
+        "location": dict(face.location),
+        "glyphs": glyphs,
+        "characters": characters,
+    }
+
+
+def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
+    """Facts from the outlines of glyphs ``first`` up to ``last``: counts, and unusual glyphs by name.
 
     ``overlaps`` are glyphs with contours that overlap or cross themselves; parts of them are filled twice. It is null
     if skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` glyphs have contours that enclose nothing.
@@ -49,9 +62,8 @@ def source_facts(source: Source) -> dict[str, Any]:
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
     has_pathops = find_spec("pathops") is not None
-    batches = (source.glyph_names[first : first + BATCH] for first in range(0, len(source.glyph_names), BATCH))
-    glyphs = (pair for names in batches for pair in zip(names, source.outlines(names, errors="return"), strict=True))
-    for name, outline in glyphs:
+    names = source.glyph_names[first:last]
+    for name, outline in zip(names, source.outlines(names, errors="return"), strict=True):
         if isinstance(outline, GlyphsplineError):
             broken.append(name)
             continue
@@ -61,17 +73,7 @@ def source_facts(source: Source) -> dict[str, Any]:
             degenerate.append(name)
         if has_pathops and overlaps(outline):
             overlapping.append(name)
-    font = source if isinstance(source, Font) else None
     return {
-        "face_index": source.face_index,
-        "family": source.family,
-        "style": source.style,
-        **asdict(source.metrics),
-        "axes": [] if font is None else [asdict(axis) for axis in font.axes],
-        "instances": {} if font is None else font.instances,
-        "location": dict(source.location),
-        "glyphs": len(source.glyph_names),
-        "characters": len(source.cmap),
         "contours": contours,
         "segments": segments,
         "broken_glyphs": len(broken),
@@ -84,6 +86,9 @@ def source_facts(source: Source) -> dict[str, Any]:
 def overlaps(outline: Outline) -> bool:
     """Whether any part of a glyph is filled twice or inside out: its area then differs from the sum over contours."""
     import pathops
+
+    from ..curves.integrals import area  # imports the compiler, which what is said at once does not need
+    from ..outlines.overlaps import contours_of
 
     if not outline.contours:
         return False

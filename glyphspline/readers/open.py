@@ -37,23 +37,39 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     Raises:
         FontError: the path cannot be read, or it has no such face or location.
     """
-    path = standard_input() if str(path) == STDIN else Path(path)
+    if is_font(path):
+        return open_font(_place(path), face_index, location)
+    path = _place(path)
     if path.is_dir():
         is_ufo = (path / "metainfo.plist").exists()
         if not is_ufo and next(path.glob("*.svg"), None) is None:
             raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
         reader = open_ufo if is_ufo else open_svg
     else:
-        with opening(path), open(path, "rb") as file:
-            head = file.read(4096)
-        if head[:4] in FORMATS or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] != b"<":
-            return open_font(path, face_index, location)
         reader = open_svg
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
     if location:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))
     return reader(path)
+
+
+def is_font(path: str | Path) -> bool:
+    """Whether a path is to be read as a font file: it is one, or neither a folder nor XML.
+
+    Raises:
+        FontError: it cannot be read.
+    """
+    path = _place(path)
+    if path.is_dir():
+        return False
+    with opening(path), open(path, "rb") as file:
+        head = file.read(4096)
+    return head[:4] in FORMATS or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] != b"<"
+
+
+def _place(path: str | Path) -> Path:
+    return standard_input() if str(path) == STDIN else Path(path)
 
 
 @cache

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import GlyphsplineError
 
@@ -38,16 +38,24 @@ class Selection(tuple[str, ...]):
     """Glyph names, unique, in glyph index order.
 
     ``missing`` has one phrase for each item that the font does not have, in the order of the arguments: ``"U+9F99"``,
-    ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it.
+    ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it. ``asked`` has the arguments that
+    were given, as plain data.
     """
 
     missing: tuple[str, ...]
+    asked: Mapping[str, Any]
 
-    def __new__(cls, names: Iterable[str] = (), missing: Iterable[str] = ()) -> Selection:
+    def __new__(
+        cls, names: Iterable[str] = (), missing: Iterable[str] = (), asked: Mapping[str, Any] | None = None
+    ) -> Selection:
         """Make a selection of ``names``, which are in order."""
         selection = super().__new__(cls, names)
         selection.missing = tuple(missing)
+        selection.asked = dict(asked or {})
         return selection
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Selection, (tuple(self), self.missing, self.asked)
 
 
 def select(
@@ -74,6 +82,7 @@ def select(
     """
     if not all_glyphs and all(argument is None for argument in (text, unicodes, glyphs, gids)):
         raise GlyphsplineError("no glyphs asked for: give text, unicodes, glyphs, gids or all_glyphs")
+    unicodes, gids = _kept(unicodes, "U+{:04X}"), _kept(gids, "{}")
     index = {name: gid for gid, name in enumerate(glyph_names)}
     found: set[str] = set(glyph_names) if all_glyphs else set()
     missing: list[str] = []
@@ -87,12 +96,20 @@ def select(
     codes = [ord(character) for character in dict.fromkeys(text or "") if unicodedata.category(character) != "Cc"]
     for first, last in chain(zip(codes, codes, strict=True), _ranges(unicodes, UNICODES)):
         take(_within(cmap, first, last), f"U+{first:04X}" if first == last else f"U+{first:04X}-{last:04X}")
-    names = glyphs.replace(",", " ").split() if isinstance(glyphs, str) else glyphs
-    for name in () if names is None else names:
+    names = glyphs.replace(",", " ").split() if isinstance(glyphs, str) else None if glyphs is None else list(glyphs)
+    for name in names or ():
         take(glyph_names if name == "*" else [name], f"glyph {name}")
     for first, last in _ranges(gids, GIDS):
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
-    return Selection(sorted(found, key=index.__getitem__), dict.fromkeys(missing))
+    given = {"text": text, "unicodes": unicodes, "glyphs": names, "gids": gids}
+    asked = {name: value for name, value in given.items() if value is not None} | ({"all": True} if all_glyphs else {})
+    return Selection(sorted(found, key=index.__getitem__), dict.fromkeys(missing), asked)
+
+
+def _kept(request: Request | None, form: str) -> list[int | str] | None:
+    """A request as a list, which can be read twice; numbers that are in range are written as they are in strings."""
+    parts = [request] if isinstance(request, int | str) else request
+    return None if parts is None else [form.format(p) if isinstance(p, int) and p >= 0 else p for p in parts]
 
 
 def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:

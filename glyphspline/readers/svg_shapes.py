@@ -35,7 +35,7 @@ def draw_shapes(root: Any, pen: Any) -> tuple[str, ...]:
         if filled:
             draw_path(path_data(element), matrix, pen)
         else:
-            left_out["shapes without fill"] += 1
+            left_out["shapes without fill (strokes are not read)"] += 1
     return tuple(f"{count} {kind} left out" for kind, count in left_out.items())
 
 

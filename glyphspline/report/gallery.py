@@ -172,7 +172,10 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
 def _words(run: Mapping[str, Any]) -> str:
     """What the page says of the conversion; nothing if the options are not those of this version."""
     try:
-        return Options(**run["options"]).words
+        options = dict(run["options"])
+        if options["step"] is not None or options["count"] is not None:
+            options["tolerance"] = None  # run.json has that by which results are judged
+        return Options(**options).words
     except (KeyError, TypeError, GlyphsplineError):
         return ""
 

@@ -36,7 +36,7 @@ def test_shows_every_glyph_of_a_run_with_its_drawing(page: Any, gallery: Path) -
     assert len(names(page)) == 18
     page.wait_for_function("() => document.querySelectorAll('.card .result').length === 17")  # all but the space
     drawn = page.locator(".card:has(b:text-is('O')) .result").get_attribute("d")
-    svg = (gallery / "kouzan-gyosho" / "svg" / "O_.svg").read_text()
+    svg = (gallery / "kouzan-gyosho" / "svg" / "O.svg").read_text()
     assert f'd="{drawn}"' in svg
 
 

@@ -4,74 +4,42 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import uharfbuzz as hb
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.sfnt import readTTCHeader
 
-from ...errors import FontError
 from ..source import Head, OutlineOrError, Source, opening
 from .careful import CarefulReader
 from .containers import FORMATS, unpacked
-from .harfbuzz import HarfBuzz
-from .tables import Location, axes_of, instances_of, location_within, metrics_of, names_of
+from .face import Face, read_file
+from .tables import Location
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
 
-REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
-OUTLINES = ("glyf", "CFF ", "CFF2")
-PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 
-
-class Font(Source):
+class Font(Face, Source):
     """One face of a font file at one location; made by :func:`open_font`.
 
-    Attributes:
-        path: the file, as given. face_index: which face of a collection. num_faces: number of faces.
-        format: the kind of file.
-        axes: of a variable font, else empty. instances: named instances, name to location.
-        location: axis tag to user-space value, clamped to the axes' limits. Axes not in it are at their default.
-        family, style: from the name table; by default the file's name and "Regular".
-        metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
+    Attributes: those of :class:`.face.Face`, and
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
         num_glyphs: number of glyphs.
         cmap: code point to glyph name, from the best Unicode table; empty if there is none.
     """
 
     def __init__(self, path: Path, data: bytes, face_index: int, num_faces: int, location: Location) -> None:
-        self._plain = plain = unpacked(data)
-        tables = TTFont(BytesIO(plain), fontNumber=face_index, lazy=True)
-        missing = [tag for tag in REQUIRED_TABLES if tag not in tables]
-        if missing:
-            raise FontError(f"a broken font: no table {', '.join(missing)}")
-        if not any(tag in tables for tag in OUTLINES):
-            pictures = [tag.strip() for tag in PICTURES if tag in tables]
-            what = f"only pictures ({', '.join(pictures)})" if pictures else "no table glyf, CFF or CFF2"
-            raise FontError(f"has no outlines: {what}")
+        self._plain = unpacked(data)
+        super().__init__(path, FORMATS[data[:4]], self._plain, face_index, num_faces, location)
         self._data = data
-        self.path, self.face_index, self.num_faces = path, face_index, num_faces
-        self.format = FORMATS[data[:4]]
-        self.axes, self.instances = axes_of(tables), instances_of(tables)
-        within = location_within(location, self.axes, self.instances, path)
-        self.location = MappingProxyType(within)
-        self.family, self.style = names_of(tables, path)
-        self.metrics = metrics_of(tables)
-        self.glyph_names = tuple(tables.getGlyphOrder())
+        self.glyph_names = tuple(self._tables.getGlyphOrder())
         self.num_glyphs = len(self.glyph_names)
-        mapped = (tables.getBestCmap() or {}).items()
+        mapped = (self._tables.getBestCmap() or {}).items()
         self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
-        face = HarfBuzz(hb.Blob(plain), face_index, self.location)
-        if self.location:
-            extents = face.font.get_font_extents("ltr")
-            self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))
-        self._careful = CarefulReader(face, tables, plain, face_index)
+        self._careful = CarefulReader(self._hb, self._tables, self._plain, face_index)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
@@ -108,10 +76,5 @@ def open_font(path: str | Path, face_index: int = 0, location: Location = None) 
     """
     path = Path(path)
     with opening(path):
-        data = path.read_bytes()
-        if data[:4] not in FORMATS:
-            raise FontError("not a TTF, OTF, TTC, WOFF or WOFF2 file")
-        num_faces = readTTCHeader(BytesIO(data)).numFonts if data[:4] == b"ttcf" else 1
-        if not 0 <= face_index < num_faces:
-            raise FontError(f"no face {face_index}: the file has {num_faces}, counted from 0")
+        data, num_faces = read_file(path, face_index)
         return Font(path, data, face_index, num_faces, location)

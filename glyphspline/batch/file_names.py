@@ -1,0 +1,97 @@
+"""Names of the files of glyphs: safe on every system, different in more than case, the same whatever is selected."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import get_args
+
+from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
+
+from ..types import Names
+
+NAMES = get_args(Names)
+
+LONGEST_NAME = 150
+"""Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
+
+_RESERVED = "|".join(map(re.escape, sorted(reservedFileNames)))
+_PLAIN = re.compile(rf"(?ai)(?!(?:.*\.)?(?:{_RESERVED})(?:\.|$))[a-z0-9_-][a-z0-9_.-]{{0,73}}(?<!\.)")
+"""Names that are taken as they are: no part of them between dots is the name of a device of Windows."""
+
+_NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
+
+
+def file_names(glyph_names: Sequence[str], names: Names = "glyph", cmap: Mapping[int, str] | None = None) -> list[str]:
+    """A file name, without suffix, for each glyph; no two are alike without regard to case.
+
+    They depend on all glyphs of the font, in order, not on which of them are selected.
+
+    Args:
+        glyph_names: of all glyphs of the font.
+        names: "glyph", the glyph's name; "unicode", its first code point, as in ``uni9F8D``; "gid", its index; "char",
+            its first character. Glyphs without a code point keep their names.
+        cmap: code point to glyph name.
+    """
+    if names == "gid":
+        return [f"{gid:05}" for gid in range(len(glyph_names))]
+    wanted = list(glyph_names)
+    if names != "glyph":
+        first: dict[str, int] = {}
+        for code in sorted(cmap or {}):
+            first.setdefault((cmap or {})[code], code)
+        named = _uni if names == "unicode" else _char
+        wanted = [named(first[name]) if name in first else name for name in wanted]
+    return _safe(wanted)
+
+
+def _safe(names: Sequence[str]) -> list[str]:
+    """Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names."""
+    keys = list(map(_key, names))
+    counts = Counter(keys)
+    stays = [counts[key] == 1 and _is_plain(name) for name, key in zip(names, keys, strict=True)]
+    taken = {key for key, stay in zip(keys, stays, strict=True) if stay}
+    return [name if stay else _by_rule(name, taken) for name, stay in zip(names, stays, strict=True)]
+
+
+def _key(name: str) -> str:
+    """What file systems compare: some ignore case, some how accents are composed."""
+    return name.lower() if name.isascii() else unicodedata.normalize("NFKC", name).casefold()
+
+
+def _is_plain(name: str) -> bool:
+    return _PLAIN.fullmatch(name) is not None or (not name.isascii() and len(name) == 1 and _is_seen(name))
+
+
+def _is_seen(character: str) -> bool:
+    return unicodedata.category(character)[0] in "LNPS"
+
+
+def _by_rule(name: str, taken: set[str]) -> str:
+    """The file name by the UFO rule, an underscore after each capital, which is added to ``taken``."""
+    stem = base = userNameToFileName(_tame(name), taken)
+    count = 1
+    while _key(stem) in taken:
+        count += 1
+        stem = f"{base}_{count}"
+    taken.add(_key(stem))
+    return stem
+
+
+def _tame(name: str) -> str:
+    """Make a valid name where the UFO rules do not: the name is too long in bytes, empty, or has lone surrogates."""
+    clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
+    return clipped.decode(errors="ignore").rstrip(". ") or "_"
+
+
+def _uni(code: int) -> str:
+    """The name of a code point as in glyph names: ``uni9F8D``, ``u2000B``."""
+    return f"uni{code:04X}" if code <= 0xFFFF else f"u{code:X}"
+
+
+def _char(code: int) -> str:
+    """The character, or the name of its code point if no file can be called so or nobody can see it."""
+    character = chr(code)
+    return character if _is_seen(character) and character not in '."*/:<>?[\\]|' else _uni(code)
