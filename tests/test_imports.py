@@ -16,13 +16,14 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"compiled", "errors", "types", "_version"}
+BASE = {"cache", "compiled", "errors", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 WRITERS = FITTING | {"readers", "writers"}
 PLAN = {
     "_version": set(),
-    "compiled": set(),
+    "cache": {"errors"},
+    "compiled": {"cache"},
     "errors": set(),
     "types": set(),
     "curves": BASE,

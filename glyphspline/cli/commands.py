@@ -331,9 +331,11 @@ def progress(quiet: bool) -> Iterator[Any]:
 @contextmanager
 def errors() -> Iterator[None]:
     """Print an expected error as one line on standard error and exit with status 2."""
+    from ..cache import settle
     from ..errors import GlyphsplineError
 
     try:
+        settle()
         yield
     except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
         stop(str(error))
