@@ -16,6 +16,9 @@ from .errors import GlyphsplineError
 
 PLACE = "NUMBA_CACHE_DIR"
 
+TELLS = "GLYPHSPLINE_TELLS"
+"""Of the environment: how processes tell what they compile, as a "line" or as "json"; empty: not at all."""
+
 
 def settle() -> str | None:
     """Let numba keep compiled code in a temporary folder if it cannot where it would; returns the folder, or None.

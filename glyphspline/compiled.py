@@ -15,6 +15,7 @@ from numba import config, njit, types
 from numba.extending import intrinsic
 
 from . import cache
+from .compiling import watched
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -42,7 +43,10 @@ def compiled(function: Callable[..., Any] | None = None, /, *, internal: bool = 
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     if internal:
         options["no_cpython_wrapper"] = True
-    decorate = njit(**options)
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        return watched(njit(**options)(function))
+
     return decorate if function is None else decorate(function)
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import site
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -133,3 +135,48 @@ def test_a_processor_without_fused_multiplication_computes_the_same(tmp_path: Pa
     assert list(tmp_path.rglob("*.nbc"))
     here = run("-c", code)
     np.testing.assert_allclose(json.loads(plain.stdout), json.loads(here.stdout), atol=1e-8)
+
+
+CONVERT = ["-m", "glyphspline", "convert", str(PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"), "--text", "O"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a signal")
+@pytest.mark.parametrize("jobs", ["0", "2"])
+def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
+    place = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    started = subprocess.Popen(
+        [sys.executable, *CONVERT, "--jobs", jobs, "--out", str(tmp_path / "out")],
+        env=os.environ | place, cwd=PACKAGE.parent, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert started.stderr
+    assert started.stderr.readline().startswith("compiling once: ")
+    time.sleep(6)
+    began = time.monotonic()
+    started.send_signal(signal.SIGINT)
+    said = started.communicate(timeout=20)[1]  # until the last process has closed it
+    assert time.monotonic() - began < 2
+    assert (started.returncode, said) == (130, "interrupted; the same command goes on from here\n")
+    assert run("-c", SMALL, **place).returncode == 0
+
+
+def test_a_warm_command_says_nothing_of_compiling(tmp_path: Path) -> None:
+    found = run(*CONVERT, "--out", str(tmp_path / "first"))
+    assert found.returncode == 0
+    found = run(*CONVERT, "--out", str(tmp_path / "second"))
+    assert "compiling" not in found.stderr
+
+
+def test_everything_is_compiled_by_the_modules_for_it() -> None:
+    """No function is left for a later command to compile."""
+    code = (
+        "import importlib, pkgutil, glyphspline\n"
+        "from glyphspline.batch.warm import EVERYTHING, __path__, module_names\n"
+        "assert {module.name for module in pkgutil.iter_modules(__path__)} == set(EVERYTHING)\n"
+        "for name in module_names(EVERYTHING): importlib.import_module(name)\n"
+        "for module in pkgutil.walk_packages(glyphspline.__path__, 'glyphspline.'):\n"
+        "    if '__main__' not in module.name: importlib.import_module(module.name)\n"
+        "from glyphspline.compiling import functions\n"
+        "print(*[name for name, ready in functions().items() if not ready])"
+    )
+    found = run("-c", code)
+    assert (found.returncode, found.stdout.split()) == (0, []), found.stderr

@@ -16,14 +16,15 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"cache", "compiled", "errors", "types", "_version"}
+BASE = {"cache", "compiled", "compiling", "errors", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 WRITERS = FITTING | {"readers", "writers"}
 PLAN = {
     "_version": set(),
     "cache": {"errors"},
-    "compiled": {"cache"},
+    "compiled": {"cache", "compiling"},
+    "compiling": {"cache"},
     "errors": set(),
     "types": set(),
     "curves": BASE,

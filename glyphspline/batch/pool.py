@@ -72,6 +72,15 @@ def start_forkserver(preload: Sequence[str]) -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def kill_all() -> None:
+    """Kill the workers of all pools, and the process from which they are forked, which may be compiling."""
+    for process in multiprocessing.active_children():
+        process.kill()
+    server = getattr(getattr(forkserver, "_forkserver", None), "_forkserver_pid", None)
+    if server is not None:
+        os.kill(server, signal.SIGKILL)
+
+
 def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
     """The main loop of a worker process: receive calls and send results until the pipe is closed.
 
