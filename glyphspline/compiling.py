@@ -68,6 +68,8 @@ class _Watch(event.Listener):  # type: ignore[misc, unused-ignore]
         used = {function for function in self.functions if folder(function) in folders}
         left = sum(map(effort, used - done))
         elapsed = self.seconds + time.monotonic() - self.since
+        if not used:  # a function of numba's own
+            return None
         return Progress(len(used & done), len(used), elapsed * left / self.done if elapsed > 2 and self.done else None)
 
     def tell(self) -> None:

@@ -16,7 +16,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"cache", "compiled", "compiling", "errors", "types", "_version"}
+BASE = {"cache", "compiled", "compiling", "errors", "extras", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 WRITERS = FITTING | {"readers", "writers"}
@@ -26,6 +26,7 @@ PLAN = {
     "compiled": {"cache", "compiling"},
     "compiling": {"cache"},
     "errors": set(),
+    "extras": {"errors"},
     "types": set(),
     "curves": BASE,
     "interpolation": CURVES,

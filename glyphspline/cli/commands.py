@@ -39,6 +39,11 @@ app = typer.Typer(
 )
 
 
+@app.callback()
+def common(version: opt.Version = False) -> None:
+    """Say the version, which ends the command, before anything else."""
+
+
 @app.command()
 def convert(
     font: opt.FontFile,
@@ -173,10 +178,11 @@ def view(
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
     with errors():
-        try:
-            from ..viewer import serve
-        except ImportError as error:
-            stop(f"the viewer needs Starlette and uvicorn ({error.name}): pip install 'glyphspline[view]'")
+        from ..extras import need
+
+        need("view")
+        from ..viewer import serve
+
         serve(font, face_index, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 

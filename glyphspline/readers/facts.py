@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from ..curves.integrals import area
 from ..errors import GlyphsplineError
+from ..extras import has
 from ..outlines.outline import Outline
 from ..outlines.overlaps import contours_of
 from .open import open_source
@@ -48,7 +48,7 @@ def source_facts(source: Source) -> dict[str, Any]:
     """
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
-    has_pathops = find_spec("pathops") is not None
+    has_pathops = has("overlaps")
     batches = (source.glyph_names[first : first + BATCH] for first in range(0, len(source.glyph_names), BATCH))
     glyphs = (pair for names in batches for pair in zip(names, source.outlines(names, errors="return"), strict=True))
     for name, outline in glyphs:
