@@ -2,13 +2,14 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: venv demo test test-browser lint check-reference bench paper clean
+.PHONY: venv demo test test-browser test-package lint check-reference bench paper clean
 
 venv: .venv/.ready
 
 .venv/.ready: pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	$(BIN)/glyphspline warm
 	touch $@
 
 demo: venv
@@ -33,6 +34,10 @@ check-reference: venv
 bench: venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python -m scripts.benchmark
+
+# The wheel and the sdist in clean environments: two of this Python. ALL=1: every Python that is found, each extra.
+test-package: venv
+	$(BIN)/python scripts/test_package.py $(if $(ALL),--all)
 
 # Playwright drives Debian's Chromium; nothing else is downloaded.
 test-browser: venv
