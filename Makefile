@@ -2,13 +2,14 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: venv demo test test-browser docs lint check-reference bench paper clean
+.PHONY: venv demo test test-browser test-package docs lint check-reference bench paper clean
 
 venv: .venv/.ready
 
 .venv/.ready: pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	$(BIN)/glyphspline warm
 	touch $@
 
 demo: venv
@@ -38,6 +39,10 @@ bench: venv
 docs: venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+
+# The wheel and the sdist in clean environments: two of this Python. ALL=1: every Python that is found, each extra.
+test-package: venv
+	$(BIN)/python scripts/test_package.py $(if $(ALL),--all)
 
 # Playwright drives Debian's Chromium; nothing else is downloaded.
 test-browser: venv

@@ -1,7 +1,7 @@
 """Compiled functions: the one decorator, and the instructions of LLVM that Python has no words for.
 
-Numba keeps the machine code beside the source files, or in the user's cache folder where these cannot be written. It
-compares the date of a function's own file, not of the files of the functions it calls: after an edit, run
+Numba keeps the machine code beside the source files, or in the user's cache folder where these cannot be written, or
+where :mod:`.cache` says. It compares a function's own file, not the files of the functions it calls: after an edit, run
 ``make clean``.
 """
 
@@ -11,10 +11,16 @@ from collections.abc import Callable
 from typing import Any, TypeVar, overload
 
 from llvmlite import ir
-from numba import njit, types
+from numba import config, njit, types
 from numba.extending import intrinsic
 
+from . import cache
+from .compiling import watched
+
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+if _place := cache.settle():
+    config.CACHE_DIR = _place  # type: ignore[attr-defined, unused-ignore]  # numba may know the environment of before
 
 
 @overload
@@ -37,7 +43,10 @@ def compiled(function: Callable[..., Any] | None = None, /, *, internal: bool = 
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     if internal:
         options["no_cpython_wrapper"] = True
-    decorate = njit(**options)
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        return watched(njit(**options)(function))
+
     return decorate if function is None else decorate(function)
 
 

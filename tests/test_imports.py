@@ -16,14 +16,17 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"compiled", "errors", "types", "_version"}
+BASE = {"cache", "compiled", "compiling", "errors", "extras", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 WRITERS = FITTING | {"readers", "writers"}
 PLAN = {
     "_version": set(),
-    "compiled": set(),
+    "cache": {"errors"},
+    "compiled": {"cache", "compiling"},
+    "compiling": {"cache"},
     "errors": set(),
+    "extras": {"errors"},
     "types": set(),
     "curves": BASE,
     "interpolation": CURVES,

@@ -14,6 +14,7 @@ from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline import compiling
 from glyphspline.cli import app as shell
 from glyphspline.fitting.options import PRESETS, Continuity, Effort
 from glyphspline.viewer import make_app
@@ -224,3 +225,9 @@ def test_nothing_outside_the_page_is_served(client: TestClient) -> None:
     assert plain.status_code == 403, "what a form of another page could send"
     long = client.post("/api/glyph", content=b" " * 300_000, headers={"content-type": "application/json"})
     assert long.status_code == 413
+
+
+def test_says_what_is_compiled_while_it_is(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert client.get("/api/compiling").json() == {"words": ""}
+    monkeypatch.setattr(compiling, "progress", lambda: compiling.Progress(34, 140, 20.0))
+    assert client.get("/api/compiling").json() == {"words": "compiling once: 34 of 140, about 20 s"}

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import replace
 from hashlib import sha256
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError
+from ..extras import need
 from .files import write_whole
 from .job import Job, Task
 from .pool import WorkerLostError
@@ -37,10 +37,7 @@ class ClusterExecutor(Executor):
     """
 
     def __init__(self, address: str) -> None:
-        try:
-            distributed = import_module("distributed")
-        except ImportError as error:
-            raise GlyphsplineError("--scheduler needs the extra: pip install 'glyphspline[cluster]'") from error
+        distributed = need("cluster")
         try:
             self._client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:

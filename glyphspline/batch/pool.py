@@ -72,6 +72,21 @@ def start_forkserver(preload: Sequence[str]) -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def kill_all() -> None:
+    """Kill the workers of all pools, and the process from which they are forked, which may be compiling."""
+    for process in multiprocessing.active_children():
+        process.kill()
+    kill_server()
+
+
+def kill_server() -> None:
+    """Kill the process from which workers are forked; the next pool starts another."""
+    server = getattr(getattr(forkserver, "_forkserver", None), "_forkserver_pid", None)
+    if server is not None:
+        with suppress(OSError):
+            os.kill(server, signal.SIGKILL)
+
+
 def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
     """The main loop of a worker process: receive calls and send results until the pipe is closed.
 
@@ -143,7 +158,7 @@ class WorkerPool(Executor):
             start_forkserver(preload)
         self._queue: deque[Call] = deque()
         self._wake, self._woken = self._context.Pipe()
-        self._closing = False
+        self._closing = self._begun = False
         self._workers: list[_Worker] = []
         self._thread = threading.Thread(target=self._manage, daemon=True)
         self._thread.start()
@@ -163,6 +178,8 @@ class WorkerPool(Executor):
             self._closing = True
             self._wake.send_bytes(b"")
         if wait:
+            if not self._begun:  # what workers import may be compiled for minutes yet, which nobody waits for now
+                kill_server()
             self._thread.join()
 
     def _manage(self) -> None:
@@ -218,7 +235,7 @@ class WorkerPool(Executor):
             self._replace(worker, WorkerLostError("the worker process died"))
             return
         if not worker.ready:
-            worker.ready = True
+            worker.ready = self._begun = True
             return
         future, _ = worker.has.popleft()
         good, value = answer

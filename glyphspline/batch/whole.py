@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ..errors import OutputError
+from ..extras import need
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
@@ -103,6 +104,6 @@ WRITERS: dict[str, Callable[[Source, Iterator[GlyphResult], Path, RunSpec], list
 def check_possible(spec: RunSpec) -> None:
     """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
     if "parquet" in spec.whole:
-        from ..writers.parquet import arrow
-
-        arrow()
+        need("parquet")
+    if spec.options.remove_overlaps:
+        need("overlaps")

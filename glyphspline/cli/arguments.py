@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .._version import __version__
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..types import Names
@@ -77,6 +78,15 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
             raise typer.Exit(2) from None
     return path
 
+
+def say_version(wanted: bool) -> None:
+    """Print the version and exit, if that is wanted."""
+    if wanted:
+        typer.echo(f"glyphspline {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[bool, typer.Option("--version", callback=say_version, is_eager=True, help="Say the version.")]
 
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
 FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]

@@ -1,4 +1,4 @@
-"""The commands ``glyphspline convert | atlas | info | report | view | demo``; each imports its heavy modules itself."""
+"""The commands of ``glyphspline``; each imports its heavy modules itself."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
 from ..fitting.options import Options
 from . import arguments as opt
+from . import interruption
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -41,21 +42,8 @@ app = typer.Typer(
 )
 
 
-def said_version(asked: bool) -> None:
-    """Print the version and end, if it is asked for."""
-    if asked:
-        from .._version import __version__
-
-        typer.echo(f"glyphspline {__version__}")
-        raise typer.Exit
-
-
 @app.callback()
-def common(
-    version: Annotated[
-        bool, typer.Option("--version", callback=said_version, is_eager=True, help="Show the version and exit.")
-    ] = False,
-) -> None:
+def common(version: opt.Version = False) -> None:
     """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
     listen()
 
@@ -105,7 +93,7 @@ def convert(
     Of several fonts, or a folder, glob or list of them, every glyph is converted unless some are asked for.
     """
     given = dict(locals())
-    with errors():
+    with errors(quiet, json_log):
         listen(quiet)
         spec = opt.spec_of(given)
         from ..batch import find_fonts
@@ -260,7 +248,7 @@ def atlas(
 ) -> None:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours."""
     given = dict(locals())
-    with errors():
+    with errors(quiet):
         from ..batch import make_atlas
         from ..readers import open_font
 
@@ -286,10 +274,11 @@ def view(
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
     with errors():
-        try:
-            from ..viewer import serve
-        except ImportError as error:
-            stop(f"the viewer needs Starlette and uvicorn ({error.name}): pip install 'glyphspline[view]'")
+        from ..extras import need
+
+        need("view")
+        from ..viewer import serve
+
         serve(font, face_index, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
@@ -303,7 +292,7 @@ def demo(
 ) -> None:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
     failed = 0
-    with errors():
+    with errors(quiet):
         from ..batch import RunSpec
         from ..readers import open_source
 
@@ -324,6 +313,18 @@ def demo(
             typer.echo(f"  {folder / 'index.html'}")
         typer.echo("Drawings are in svg/ beside it, curvature maps in curvature/.")
     raise typer.Exit(1 if failed else 0)
+
+
+@app.command()
+def warm(jobs: opt.Jobs = None, quiet: opt.Quiet = False) -> None:
+    """Compile everything now, so that no other command has to; done once after each installation."""
+    with errors(quiet=True):  # the bar tells
+        from ..batch.precompile import precompile
+
+        with counted(quiet) as observer:
+            total = precompile(jobs, observer)
+    if not quiet:
+        say(f"{total} functions are compiled")
 
 
 def demo_fonts() -> list[tuple[Path, str]]:
@@ -429,35 +430,59 @@ def progress(quiet: bool) -> Iterator[Any]:
         TextColumn("{task.fields[rate]:.0f}/s"),
         TimeRemainingColumn(),
         TextColumn("{task.fields[failed]} failed"),
-        TextColumn("{task.description}"),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(
-            "starting; the first run of all compiles for a minute or two", total=None, rate=0.0, failed=0
-        )
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    task = bar.add_task("", total=None, rate=0.0, failed=0)
 
-        def observe(done: int, total: int, failed: int) -> None:
-            speed = bar.tasks[0].speed or 0.0
-            said = "" if done else None
-            bar.update(task, completed=done, total=total, failed=failed, rate=speed, description=said)
+    def observe(done: int, total: int, failed: int) -> None:
+        bar.start()  # not before: until then the line belongs to what is compiled
+        speed = bar.tasks[0].speed or 0.0
+        bar.update(task, completed=done, total=total, failed=failed, rate=speed)
 
+    try:
         yield observe
+    finally:
+        bar.stop()
 
 
 @contextmanager
-def errors() -> Iterator[None]:
-    """Print an expected error as one line on standard error and exit with status 2."""
+def counted(quiet: bool) -> Iterator[Any]:
+    """A bar of functions that are ready, on standard error, if that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("compiling"), BarColumn(), MofNCompleteColumn(), TextColumn("functions"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda ready, total: bar.update(task, completed=ready, total=total or None)
+
+
+@contextmanager
+def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
+    """Print an expected error as one line on standard error and exit with status 2.
+
+    Args:
+        quiet, json_log: of the command: how this process and those it starts tell what they compile.
+    """
+    from ..cache import TELLS, settle
     from ..errors import GlyphsplineError
 
+    os.environ[TELLS] = "" if quiet else "json" if json_log else "line"
     try:
+        settle()
         yield
     except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
         stop(str(error))
     except MemoryError:
         stop("not enough memory")
     except KeyboardInterrupt:
-        say("interrupted; the same command goes on from here")
-        raise typer.Exit(130) from None
+        say(interruption.WORDS)
+        raise typer.Exit(interruption.STATUS) from None
+    finally:
+        del os.environ[TELLS]
 
 
 def say(line: str) -> None:
@@ -510,6 +535,7 @@ def limit_memory() -> None:
 def main() -> None:
     """The command ``glyphspline``."""
     limit_memory()
+    interruption.watch()
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="replace")
     try:

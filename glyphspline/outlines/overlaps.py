@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.crossings import chords
 from ..curves.integrals import area
-from ..errors import GlyphsplineError
+from ..extras import need
 from ..types import FloatArray, IntArray
 from .contour_arrays import offsets_of
 from .outline import Contour, Outline
@@ -29,10 +29,7 @@ def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
     Raises:
         GlyphsplineError: skia-pathops is not installed.
     """
-    try:
-        import pathops
-    except ImportError as cause:
-        raise GlyphsplineError("removing overlaps needs skia-pathops: pip install 'glyphspline[overlaps]'") from cause
+    pathops = need("overlaps")
     if not outline.contours:
         return outline, None
     areas = [area(contour.cubics()) for contour in outline.contours]

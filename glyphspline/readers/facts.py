@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError
+from ..extras import has
 from ..outlines.outline import Outline
 from .open import STDIN, is_font, open_source, standard_input
 from .opentype.face import Face, open_faces
@@ -61,7 +61,7 @@ def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
     """
     contours = segments = 0
     broken, degenerate, overlapping = [], [], []
-    has_pathops = find_spec("pathops") is not None
+    has_pathops = has("overlaps")
     names = source.glyph_names[first:last]
     for name, outline in zip(names, source.outlines(names, errors="return"), strict=True):
         if isinstance(outline, GlyphsplineError):

@@ -16,6 +16,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
+from .. import compiling
 from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS
 from ..report.gallery import palette
@@ -53,6 +54,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
         Route("/static/{name}", static),
         Route("/api/font", _answer(lambda request: font_facts(work))),
         Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
+        Route("/api/compiling", _answer(lambda request: {"words": str(compiling.progress() or "")})),
         *(Route(f"/api/{name}", _computed(work, make), methods=["POST"]) for name, make in ANSWERS.items()),
     ]
     return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])

@@ -15,19 +15,30 @@
   const ITERATED = new Set(["iterations", "residual", "converged", "rate_bound"]);
   const number = (v) => (v === null || v === undefined ? "–" : v === true ? "yes" : v === false ? "no" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
 
+  /** What is drawn may still change while an answer is awaited, and says so; the server may be compiling meanwhile. */
+  let shown = null, awaited = 0, asking = null, said = "";
+  const askCompiling = async () => {
+    const { words } = await (await fetch("/api/compiling")).json();
+    if (awaited && words) at("about").textContent = said = words;
+  };
+  const awaiting = (more) => {
+    awaited += more;
+    document.querySelector("main").setAttribute("aria-busy", String(awaited > 0));
+    if (awaited) asking ??= setInterval(() => askCompiling().catch(() => {}), 1000);
+    else {
+      clearInterval(asking);
+      asking = null;
+      if (shown && said && at("about").textContent === said) tell();
+    }
+  };
+
+  awaiting(1);
   const font = await (await fetch("/api/font")).json();
   GS.usePalette(font.palette);
   const em = font.metrics.units_per_em;
   const state = { glyph: font.first, location: {}, variant: 2, margin: 0.02, sampling: "step", amount: 0, corners: "smooth", continuity: "c2", effort: "fast", moved: [], measure: false };
   const layers = new Set(["source", "result", "vertices"]);
-  let shown = null, compared = null, steps = null, playing = null;
-
-  /** What is drawn may still change while an answer is awaited, and says so. */
-  let awaited = 0;
-  const awaiting = (more) => {
-    awaited += more;
-    document.querySelector("main").setAttribute("aria-busy", String(awaited > 0));
-  };
+  let compared = null, steps = null, playing = null;
 
   /** One request of a kind at a time; of those that came in between only the last is sent. */
   const line = (path, then) => {
@@ -306,4 +317,5 @@
   read();
   find();
   ask();
+  awaiting(-1);
 })();

@@ -33,7 +33,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from ..errors import GlyphsplineError
+from ..extras import need
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..readers import Source
 
@@ -129,8 +129,4 @@ def arrow() -> Any:
     Raises:
         GlyphsplineError: it is not installed.
     """
-    try:
-        import pyarrow
-    except ImportError as error:
-        raise GlyphsplineError('Parquet needs pyarrow: pip install "glyphspline[parquet]"') from error
-    return pyarrow
+    return need("parquet")

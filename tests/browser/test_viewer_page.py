@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import expect
 
 RESULT = "#picture .result"
 
@@ -145,3 +146,15 @@ def test_on_a_phone_nothing_is_wider_than_the_screen(shown: Any) -> None:
     shown.set_viewport_size({"width": 375, "height": 740})
     assert shown.evaluate("document.documentElement.scrollWidth") <= 375
     assert shown.locator(".stage").bounding_box()["y"] < 300
+
+
+def test_says_that_the_server_compiles_until_the_answer_comes(page: Any, viewer: str) -> None:
+    held: list[Any] = []
+    page.route("**/api/compiling", lambda route: route.fulfill(json={"words": "compiling once: 1 of 2"}))
+    page.route("**/api/glyph", lambda route: held.append(route))
+    page.goto(viewer)
+    expect(page.locator("#about")).to_have_text("compiling once: 1 of 2")
+    page.unroute("**/api/glyph")
+    for route in held:
+        route.continue_()
+    expect(page.locator("#about")).to_contain_text("contours")

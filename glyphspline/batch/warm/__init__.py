@@ -1,6 +1,6 @@
 """Loads compiled code once, in the process from which workers are forked.
 
-Importing a module of this package converts three contours in one mode, which compiles functions that are not cached.
+Importing a module of this package converts a few contours in one mode, which compiles functions that are not cached.
 This happens once, before the workers' time limits begin.
 """
 
@@ -29,16 +29,40 @@ DISC = Contour(
 )
 
 
+KNOT = Contour(
+    np.array(
+        [[262, 298], [814, 92], [600, 729], [188, 55], [275, 657], [562, 150], [433, 669], [423, 633], [967, 683]],
+        dtype=np.float64,
+    ),
+    np.full(3, 3),
+)
+"""Crosses itself, and is fitted anew more than once."""
+
+SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT))
+
+EVERYTHING = ("interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "rest")
+"""All modules of this package. Together they compile every function there is. The first ones share little, so that
+processes that begin at the same time seldom compile the same function."""
+
+
 def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
     """Names of the modules of this package that a run with these options needs; None: nothing is converted."""
     if options is None:
         return []
-    drawings = ["drawings"] if {"curvature", "gallery"} & set(formats) else []
-    return [f"{__name__}.{name}" for name in ("fixed" if options.is_fixed else options.corners, *drawings)]
+    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    rest = ["rest"] if options.remove_overlaps else []
+    return module_names([*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest])
+
+
+def module_names(names: Sequence[str]) -> list[str]:
+    """The full names of modules of this package."""
+    return [f"{__name__}.{name}" for name in names]
 
 
 def converted(options: Options) -> GlyphResult:
-    """Convert a leaf with two corners, a square and a disc, after importing all modules of a worker.
+    """Convert shapes with and without corners, after importing all modules of a worker.
 
     The disc needs a spline of several spans in the sharp mode, whose fit takes longest to compile.
     """
@@ -47,6 +71,6 @@ def converted(options: Options) -> GlyphResult:
     from .. import worker  # noqa: F401
 
     load_compiled()
-    result = convert(Outline("leaf", contours=(LEAF, SQUARE, DISC)), options)
+    result = convert(SHAPES, options)
     to_svg(result)
     return result

@@ -1,0 +1,57 @@
+"""The first Ctrl-C ends a command within two seconds, whatever it is doing.
+
+Python acts on a signal between two of its own steps, and one step of the compiler may take half a minute.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import socket
+import sys
+import tempfile
+import threading
+import time
+from contextlib import suppress
+
+STATUS = 130
+"""Exit status of an interrupted command."""
+
+WORDS = "interrupted; the same command goes on from here"
+
+GRACE = 1.0
+"""Seconds in which a command may end in its own way, with what it has done so far written down."""
+
+
+def watch() -> None:
+    """End this process soon after SIGINT, from a thread that nothing holds up. For the main thread to call."""
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+    threading.Thread(target=_wait, args=(ours, theirs), daemon=True).start()
+
+
+def _wait(ours: socket.socket, theirs: socket.socket) -> None:
+    while ours.recv(1) != bytes([signal.SIGINT]):
+        pass
+    time.sleep(GRACE)
+    end()
+
+
+def end() -> None:
+    """Kill the worker processes, remove temporary folders, make the terminal usable, say so and exit."""
+    with suppress(Exception):
+        if "glyphspline.batch.pool" in sys.modules:
+            from ..batch.pool import kill_all
+
+            kill_all()
+        for thing in gc.get_objects():
+            if isinstance(thing, tempfile.TemporaryDirectory):
+                thing.cleanup()
+    with suppress(Exception):
+        if sys.stderr.isatty():
+            sys.stderr.write("\r\x1b[K\x1b[?25h")  # an empty line, and the cursor, which a progress bar hides
+        sys.stderr.write(f"{WORDS}\n")
+        sys.stderr.flush()
+    os._exit(STATUS)
