@@ -35,7 +35,7 @@ GIDS = Numbers(
 
 
 class Selection(tuple[str, ...]):
-    """Glyph names, unique, in glyph index order.
+    """Glyph names, unique: those of a text in its order, then the others in glyph index order.
 
     ``missing`` has one phrase for each item that the font does not have, in the order of the arguments: ``"U+9F99"``,
     ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it.
@@ -59,7 +59,7 @@ def select(
     gids: Request | None,
     all_glyphs: bool,
 ) -> Selection:
-    """The union of the glyphs that each argument selects.
+    """The union of the glyphs that each argument selects: those of the text in its order, then by glyph index.
 
     Args:
         glyph_names: all names in glyph index order. cmap: code point to name.
@@ -92,7 +92,9 @@ def select(
         take(glyph_names if name == "*" else [name], f"glyph {name}")
     for first, last in _ranges(gids, GIDS):
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
-    return Selection(sorted(found, key=index.__getitem__), dict.fromkeys(missing))
+    ahead = dict.fromkeys(cmap[code] for code in codes if cmap.get(code) in index)
+    rest = sorted(found.difference(ahead), key=index.__getitem__)
+    return Selection([*ahead, *rest], dict.fromkeys(missing))
 
 
 def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:

@@ -101,6 +101,12 @@ def to_curvature_svg(
         scale: the curvature, in 1/unit, of a full tooth. By default :func:`curvature_scale` of the glyph.
         vertices: mark the polygon's vertices.
         control_polygon: draw the control polygon of each interpolation.
+
+    Example:
+        >>> from glyphspline import convert, open_font, to_curvature_svg
+        >>> glyph = convert(open_font("fonts_test/kouzan-gyosho.ttf").outline("O"))
+        >>> 'class="comb"' in to_curvature_svg(glyph)
+        True
     """
     scale = curvature_scale([glyph]) if scale is None else scale
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]

@@ -29,6 +29,12 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
 
     Raises:
         OptionError: ``view_box`` is none of these.
+
+    Example:
+        >>> from glyphspline import convert, open_font, to_svg
+        >>> glyph = convert(open_font("fonts_test/kouzan-gyosho.ttf").outline("O"))
+        >>> to_svg(glyph, view_box="ink").startswith('<svg xmlns="http://www.w3.org/2000/svg" viewBox="')
+        True
     """
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
     return svg_document(glyph, path, view_box).decode()
