@@ -22,7 +22,7 @@ from .files import file_names, make_folder, remove_partials
 from .job import Job, Task, failed
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
-from .spec import RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from .spec import MAPS, RUN_FILE, RunSpec, describe, differences, read_run, write_run
 from .summary import Summary, facts_of
 from .whole import check_possible, missing, write_fonts
 
@@ -145,7 +145,7 @@ def with_scale(job: Job, source: Source, tasks: list[Task], pool: Executor) -> J
     old = read_run(job.out)
     if old is not None:
         return replace(job, curvature_scale=old["curvature_scale"])
-    if {"curvature", "png", "pdf"} & set(job.spec.formats):
+    if MAPS & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
         found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, slices(chosen, SCALE_CHUNK))
                  if isinstance(combs, list)]  # fmt: skip

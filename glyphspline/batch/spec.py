@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OutputError, is_positive, require, require_choice
+from ..errors import GlyphsplineError, OutputError, is_positive, require
 from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
-from ..writers.svg.document import VIEW_BOXES, ViewBox
+from ..writers.svg.appearance import CURRENT, Appearance, ViewBox
 from .files import write_whole
 
 if TYPE_CHECKING:
@@ -25,11 +25,14 @@ RUN_FILE = "run.json"
 RESULTS = "results"
 
 SUFFIXES = {
-    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", GALLERY: SUFFIX,
-    RESULTS: ".json",
+    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", "curvature-png": ".png",
+    "curvature-pdf": ".pdf", GALLERY: SUFFIX, RESULTS: ".json",
 }  # fmt: skip
 """Formats with one file a glyph, each in a folder of its name. "source" is part of the gallery; formats with one file a
 font are made from "results"."""
+
+MAPS = {"curvature", "curvature-png", "curvature-pdf"}
+"""Formats of curvature maps, which share a scale."""
 
 WHOLE = ("ufo", "otf", "ttf", "parquet")
 """Formats with one file a font."""
@@ -61,14 +64,18 @@ class RunSpec:
     """How the glyphs of a run are converted, and what is written.
 
     Attributes:
-        options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
+        options: of the conversion. formats: of ``FORMATS``.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
+        view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
     """
 
     options: Options = field(default_factory=Options)
     formats: tuple[str, ...] = ("svg", "curvature", GALLERY)
     view_box: ViewBox = "em"
     limits: Limits = field(default_factory=Limits)
+    size: str | None = None
+    fill: str = CURRENT
+    stroke: str = "none"
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
@@ -76,10 +83,15 @@ class RunSpec:
         unknown = [str(name) for name in self.formats if name not in FORMATS]
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
-        require_choice("view_box", self.view_box, VIEW_BOXES)
+        _ = self.look  # raises where it is none
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
         object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
+
+    @property
+    def look(self) -> Appearance:
+        """How drawings look."""
+        return Appearance(self.view_box, self.size, self.fill, self.stroke)
 
     @property
     def folders(self) -> tuple[str, ...]:
@@ -118,7 +130,7 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
         },
         "options": asdict(spec.options),
         "formats": list(spec.formats),
-        "view_box": spec.view_box,
+        **asdict(spec.look),
         "curvature_scale": curvature_scale,
     }
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -239,8 +239,14 @@ def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     return map_document(glyph.result, glyph.path, job.curvature_scale)
 
 
-def _raster(job: Job, glyph: Glyph, kind: str) -> bytes:
-    from ..writers.figures import raster  # imports matplotlib
+def _drawing(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
+    from ..writers.figures.drawing import drawing_image  # imports matplotlib
+
+    return drawing_image(glyph.result, kind, job.spec.look, glyph.path.box)
+
+
+def _map(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
+    from ..writers.figures import raster
 
     return (raster.to_png if kind == "png" else raster.to_pdf)(glyph.result, scale=job.curvature_scale)
 
@@ -254,10 +260,12 @@ def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 WRITERS: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
     "source": _source,
-    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.view_box),
+    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.look),
     "curvature": _curvature,
-    "png": lambda job, glyph, files: _raster(job, glyph, "png"),
-    "pdf": lambda job, glyph, files: _raster(job, glyph, "pdf"),
+    "png": lambda job, glyph, files: _drawing(job, glyph, "png"),
+    "pdf": lambda job, glyph, files: _drawing(job, glyph, "pdf"),
+    "curvature-png": lambda job, glyph, files: _map(job, glyph, "png"),
+    "curvature-pdf": lambda job, glyph, files: _map(job, glyph, "pdf"),
     GALLERY: _gallery,
     RESULTS: lambda job, glyph, files: to_text(glyph.result),
 }

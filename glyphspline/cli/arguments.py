@@ -11,7 +11,7 @@ import typer
 
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
-from ..writers.svg.document import ViewBox
+from ..writers.svg.appearance import ViewBox
 
 if TYPE_CHECKING:
     from ..batch import RunSpec
@@ -65,11 +65,21 @@ Tolerance = Annotated[
 Step = Annotated[float | None, typer.Option("--step", help="Instead: distance between vertices, in font units.")]
 Count = Annotated[int | None, typer.Option("--count", help="Instead: this number of vertices a contour.")]
 HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
-Region = Annotated[ViewBox, typer.Option("--view-box", help="Region an SVG drawing shows.")]
+Region = Annotated[ViewBox, typer.Option("--view-box", help="Region a drawing shows.")]
+Height = Annotated[
+    str | None, typer.Option("--size", help="Height of a drawing with its unit, as 20mm; its width in proportion.")
+]
+Fill = Annotated[str, typer.Option("--fill", help="Colour of the ink: a CSS name, #rrggbb, none or currentColor.")]
+Stroke = Annotated[str, typer.Option("--stroke", help="Colour of a thin line along the outline, likewise.")]
 Precision = Annotated[int, typer.Option("--precision", help="Decimals written, 0 to 9.")]
 RemoveOverlaps = Annotated[bool, typer.Option("--remove-overlaps", help="Unite overlapping contours.")]
 Measure = Annotated[bool, typer.Option("--measure", help="Deviation, length, curvature with --step and --count too.")]
-Formats = Annotated[str, typer.Option("--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.")]
+Formats = Annotated[
+    str,
+    typer.Option(
+        "--format", help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet."
+    ),
+]
 
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=0, help="Worker processes. Without it, one a core.")]
 Resume = Annotated[bool, typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.")]
@@ -85,6 +95,10 @@ Profiles = Annotated[
 Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 takes any that is free.")]
 Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")]
 Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
+
+
+DRAWN = ("view_box", "size", "fill", "stroke")
+"""Options of a run's drawings."""
 
 
 def options_of(given: Mapping[str, Any]) -> Options:
@@ -111,7 +125,8 @@ def spec_of(given: Mapping[str, Any]) -> RunSpec:
     from ..batch import RunSpec
 
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    return RunSpec(options_of(given), formats, given["view_box"])
+    drawn = {name: given[name] for name in DRAWN if name in given}
+    return RunSpec(options_of(given), formats, **drawn)
 
 
 def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:
