@@ -108,6 +108,12 @@ def test_from_the_shell(tmp_path: Path) -> None:
     assert root[-1].attrib["stroke"] == "red"
     assert media_box(files["pdf"])[3] == pytest.approx(20 / 25.4 * 72, abs=0.01)
     assert media_box(files["curvature-pdf"])[3] == 432, "the map has its own size"
+    assert "curvature of the" not in files["svg"].decode()
+    comb = ["--format", "curvature", "--comb", "source", "--corner-teeth", "--restart"]
+    run = CliRunner().invoke(app, [*call, *comb])
+    assert run.exit_code == 0, run.output
+    assert "κ of the source" in (tmp_path / "curvature" / "O_.svg").read_text(encoding="utf-8")
+    assert '"comb": "source"' in (tmp_path / "run.json").read_text(encoding="utf-8")
     refused = CliRunner().invoke(app, [*call, "--fill", "blu", "--restart"])
     assert refused.exit_code == 2
     assert "fill is a colour" in refused.output

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OutputError, is_positive, require
+from ..errors import GlyphsplineError, OutputError, is_positive, require, require_choice
 from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
 from ..writers.svg.appearance import CURRENT, Appearance, ViewBox
+from ..writers.svg.curvature_map import WHOSE, Whose
 from .files import write_whole
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ class RunSpec:
         options: of the conversion. formats: of ``FORMATS``.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
+        comb: whose curvature the maps show. corner_teeth: also where a smooth result turns about a corner.
     """
 
     options: Options = field(default_factory=Options)
@@ -76,6 +78,8 @@ class RunSpec:
     size: str | None = None
     fill: str = CURRENT
     stroke: str = "none"
+    comb: Whose = "result"
+    corner_teeth: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
@@ -83,6 +87,8 @@ class RunSpec:
         unknown = [str(name) for name in self.formats if name not in FORMATS]
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
+        require_choice("comb", self.comb, WHOSE)
+        require_choice("corner_teeth", self.corner_teeth)
         _ = self.look  # raises where it is none
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
@@ -131,6 +137,8 @@ def describe(source: Source, spec: RunSpec, curvature_scale: float | None) -> di
         "options": asdict(spec.options),
         "formats": list(spec.formats),
         **asdict(spec.look),
+        "comb": spec.comb,
+        "corner_teeth": spec.corner_teeth,
         "curvature_scale": curvature_scale,
     }
 

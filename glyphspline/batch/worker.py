@@ -22,7 +22,7 @@ from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
-from ..writers.svg.curvature_map import combs, map_document
+from ..writers.svg.curvature_map import combs, curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.source_drawing import SourceData, source_data, source_document
@@ -71,7 +71,7 @@ def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
             (result,) = converted(job, [glyph])
         except Exception:  # reported when the glyph is converted for its files
             continue
-        found += combs(result) if isinstance(result, GlyphResult) else []
+        found += combs(result, whose=job.spec.comb) if isinstance(result, GlyphResult) else []
     return found
 
 
@@ -236,7 +236,9 @@ def _source(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert job.curvature_scale is not None
-    return map_document(glyph.result, glyph.path, job.curvature_scale)
+    result, whose = glyph.result, job.spec.comb
+    path = glyph.path if whose == "result" else curves_data(curves_of(result, whose), result.options.precision)[0]
+    return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.corner_teeth)
 
 
 def _drawing(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
@@ -248,7 +250,8 @@ def _drawing(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
 def _map(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
     from ..writers.figures import raster
 
-    return (raster.to_png if kind == "png" else raster.to_pdf)(glyph.result, scale=job.curvature_scale)
+    draw = raster.to_png if kind == "png" else raster.to_pdf
+    return draw(glyph.result, comb=job.spec.comb, scale=job.curvature_scale, in_corners=job.spec.corner_teeth)
 
 
 def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:

@@ -12,6 +12,7 @@ import typer
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..writers.svg.appearance import ViewBox
+from ..writers.svg.curvature_map import Whose
 
 if TYPE_CHECKING:
     from ..batch import RunSpec
@@ -66,6 +67,12 @@ Step = Annotated[float | None, typer.Option("--step", help="Instead: distance be
 Count = Annotated[int | None, typer.Option("--count", help="Instead: this number of vertices a contour.")]
 HowHard = Annotated[Effort, typer.Option("--effort", help="best takes longer to find fewer vertices.")]
 Region = Annotated[ViewBox, typer.Option("--view-box", help="Region a drawing shows.")]
+Comb = Annotated[
+    Whose, typer.Option("--comb", help="Whose curvature is shown: the result's, or the source outline's own, exact.")
+]
+CornerTeeth = Annotated[
+    bool, typer.Option("--corner-teeth", help="Teeth of a smooth result's comb also in the turn of a corner.")
+]
 Height = Annotated[
     str | None, typer.Option("--size", help="Height of a drawing with its unit, as 20mm; its width in proportion.")
 ]
@@ -97,7 +104,7 @@ Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the 
 Json = Annotated[bool, typer.Option("--json", help="As JSON.")]
 
 
-DRAWN = ("view_box", "size", "fill", "stroke")
+DRAWN = ("view_box", "size", "fill", "stroke", "comb", "corner_teeth")
 """Options of a run's drawings."""
 
 

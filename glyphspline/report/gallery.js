@@ -78,7 +78,7 @@
     showLayers();
     grid.again();
     detail.draw();
-    const mapped = layers.has("comb") || layers.has("colour");
+    const mapped = ["comb", "source-comb", "colour"].some((name) => layers.has(name));
     at("legend").replaceChildren(...(mapped && runs.length === 1 ? [GS.legend(runs[0].metrics.units_per_em, runs[0].scale)] : []));
   };
   for (const box of boxes) {

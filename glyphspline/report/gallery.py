@@ -34,7 +34,8 @@ SCRIPTS = (
 
 LAYERS = {
     "source": ("Source", "s"), "result": ("Result", "r"), "polygon": ("Polygon", "p"), "vertices": ("Vertices", "v"),
-    "control": ("Control polygon", "k"), "comb": ("Curvature comb", "c"), "colour": ("Colour", "l"),
+    "control": ("Control polygon", "k"), "source-comb": ("Source's comb", "e"), "comb": ("Result's comb", "c"),
+    "corners": ("Teeth in corners", "n"), "colour": ("Colour", "l"),
 }  # fmt: skip
 """The layers that can be hidden: name and key."""
 
@@ -130,7 +131,7 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
 
 
 def palette() -> list[str]:
-    """The colours of curvature, from the strongest right turn to the strongest left turn."""
+    """The colours of curvature, from the most concave ink to the most convex."""
     return [class_colour(index) for index in range(-SIDES, SIDES + 1)]
 
 

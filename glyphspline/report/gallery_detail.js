@@ -31,7 +31,7 @@
       const { units_per_em: em, ascender, descender } = run.metrics, advance = rows[position].advance ?? em;
       const guides = [[-em, 0, 3 * em, 0], [0, -ascender, 0, -descender], [advance, -ascender, advance, -descender]];
       picture.prepend(GS.svg("path", { class: "guides", d: guides.map(([a, b, c, d]) => `M${a} ${b}L${c} ${d}`).join("") }));
-      find("legend").replaceChildren(layersOn().has("comb") || layersOn().has("colour") ? GS.legend(em, run.scale) : "");
+      find("legend").replaceChildren(["comb", "source-comb", "colour"].some((name) => layersOn().has(name)) ? GS.legend(em, run.scale) : "");
       fading();
     };
 

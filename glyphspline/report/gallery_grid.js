@@ -16,11 +16,15 @@
   GS.layers = (run, drawing, on) => {
     const em = run.metrics.units_per_em, group = GS.svg("g");
     if (drawing.source) group.append(GS.svg("path", { class: "source", d: drawing.source }));
+    const mapped = on.has("comb") || on.has("colour") || on.has("source-comb"), source = mapped ? GS.contours(drawing.source) : [];
+    if (on.has("source-comb")) group.append(GS.comb(source, em, run.scale, { name: "source-comb" }));
     if (drawing.result) {
       group.append(GS.svg("path", { class: "result", d: drawing.result }));
       if (on.has("comb") || on.has("colour")) {
         const contours = GS.contours(drawing.result);
-        if (on.has("comb")) group.append(GS.comb(contours, em, run.scale));
+        // Only a smooth result turns about a corner: elsewhere a corner is a point between two curvatures.
+        const corners = on.has("corners") || run.options.corners !== "smooth" ? [] : GS.corners(source);
+        if (on.has("comb")) group.append(GS.comb(contours, em, run.scale, { corners }));
         if (on.has("colour")) group.append(GS.coloured(contours, em, run.scale));
       }
     }

@@ -66,13 +66,17 @@
     ask();
   });
 
+  const mapped = () => ["comb", "source-comb", "colour"].some((name) => layers.has(name));
+  const combs = () => ({ smooth: state.corners === "smooth", gain: 2 ** +at("gain").value });
+
   const draw = () => {
     if (!shown) return;
     const index = +at("step").value, step = steps && index < steps.length ? steps[index] : null;
     const closed = shown.polygons.filter((_, i) => shown.movable[i]);
     const result = step ? { ...step, polygons: shown.polygons, intervals: "", tied: closed.flat() } : shown;
-    at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers));
-    at("legend").replaceChildren(...(layers.has("comb") || layers.has("colour") ? [GS.legend(em, font.scale)] : []));
+    at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers, combs()));
+    at("legend").replaceChildren(...(mapped() ? [GS.legend(em, font.scale)] : []));
+    at("gain").disabled = !(layers.has("comb") || layers.has("source-comb"));
     at("step-out").textContent = step ? `${step.step}, error ${number(step.error)}` : "result";
     if (shown.measures.some((m) => m.iterations !== null)) GS.chart(at("chart"), shown.residuals, 0.005, step ? step.step : null);
     else at("chart").textContent = "–";
@@ -84,7 +88,7 @@
     const small = new Set([...layers].filter((name) => name !== "feet" && name !== "vertices"));
     at("compared").replaceChildren(...compared.map((result) => {
       const picture = GS.svg("svg", { class: "drawing", viewBox: at("picture").getAttribute("viewBox"), role: "img", "aria-label": `variant ${result.variant}` },
-        GS.viewerDrawing(font, shown.source, result, small));
+        GS.viewerDrawing(font, shown.source, result, small, combs()));
       const known = (key) => result.measures.map((m) => m[key]).filter((v) => v !== null);
       const sum = (key) => (known(key).length ? known(key).reduce((total, v) => total + v, 0) : null);
       const most = (key) => (known(key).length ? Math.max(...known(key)) : null);
@@ -267,6 +271,7 @@
   at("step").addEventListener("pointerdown", () => withSteps(() => {}));
   at("step").addEventListener("focus", () => withSteps(() => {}));
   at("step").addEventListener("input", draw);
+  at("gain").addEventListener("input", () => { at("gain-out").textContent = `${number(combs().gain)}×`; draw(); drawCompared(); });
   at("play").addEventListener("click", () => withSteps(() => {
     clearInterval(playing);
     for (const name of ["control", "feet"]) if (!layers.has(name)) document.querySelector(`[data-layer=${name}]`).click();
