@@ -14,6 +14,7 @@ from .curves.bezier import as_cubic, cubic_approximation
 from .curves.bspline import Spline
 from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
+from .fitting.quantities import QUANTITIES, shown
 from .fitting.results import GlyphResult, Measures, as_glyph
 from .outlines.outline import Contour, Outline
 from .types import FloatArray
@@ -48,14 +49,19 @@ def glyph_svg(glyph: GlyphResult) -> str:
 
 def glyph_html(glyph: GlyphResult) -> str:
     """The result with its comb, above a table of its contours' measures, its options and its notes."""
-    head = "".join(f"<th>{name.replace('_', ' ')}</th>" for name in SHOWN)
-    rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures)}</tr>" for c, each in enumerate(glyph.contours))
+    em = glyph.outline.metrics.units_per_em
+    head = "".join(_head(*QUANTITIES[name]) for name in SHOWN)
+    rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures, em)}</tr>" for c, each in enumerate(glyph.contours))
     notes = "".join(f"<p>{escape(note)}</p>" for note in (glyph.options.words, *glyph.notes))
     return f"{glyph_svg(glyph)}<table><tr><th>contour</th>{head}</tr>{rows}</table>{notes}"
 
 
-def _cells(measures: Measures) -> str:
-    values = [getattr(measures, name) for name in SHOWN]
+def _head(label: str, unit: str, about: str) -> str:
+    return f'<th title="{escape(about)}">{label}{f", {unit}" if unit else ""}</th>'
+
+
+def _cells(measures: Measures, em: float) -> str:
+    values = [shown(name, getattr(measures, name), em) for name in SHOWN]
     return "".join(f"<td>{f'{v:.3g}' if isinstance(v, float) else '–' if v is None else v}</td>" for v in values)
 
 

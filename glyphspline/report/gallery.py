@@ -19,6 +19,7 @@ from typing import Any
 
 from ..errors import GlyphsplineError
 from ..fitting.options import Options
+from ..fitting.quantities import QUANTITIES
 from ..writers.svg.colours import SIDES, class_colour
 from ..writers.svg.markup import text
 from .data import COLUMNS, FOLDER, as_json, row_of, script
@@ -120,14 +121,18 @@ def _end_of(path: Path, size: int) -> bytes:
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
-    measures = [[key, label] for key, (label, _) in MEASURES.items()]
-    setup = {"runs": list(runs), "measures": measures, "palette": palette()}
+    setup = {"runs": list(runs), "measures": measures(), "palette": palette()}
     script = "".join(package_text(name) for name in SCRIPTS)
     page = Template(package_text("gallery.html")).substitute(
         heading=text(heading), style=package_text("theme.css") + package_text("gallery.css"), layers=layer_switches(),
         setup=as_json(setup), script=script, digest=b64encode(sha256(("\n" + script).encode()).digest()).decode(),
     )  # fmt: skip
     _replace(out_dir / "index.html", page)
+
+
+def measures() -> list[list[str]]:
+    """Name, label, unit and meaning of each measure."""
+    return [[name, *QUANTITIES[name]] for name in MEASURES]
 
 
 def palette() -> list[str]:

@@ -18,6 +18,42 @@ const GS = {};
     document.documentElement.style.setProperty("--curvature", `linear-gradient(90deg, ${ends.join(", ")})`);
   };
 
+  /** Measures as [name, label, unit, meaning]: curvature is stored in 1/unit and shown in 1/em. */
+  GS.useMeasures = (measures) => {
+    GS.measures = new Map(measures.map(([name, label, unit, about]) => [name, { label, unit, about }]));
+  };
+  GS.shown = (name, value, em) => (typeof value === "number" && GS.measures.get(name)?.unit === "1/em" ? value * em : value);
+
+  GS.number = (value) => {
+    if (value === null || value === undefined) return "–";
+    if (value === true) return "yes";
+    if (value === false) return "no";
+    if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+    return String(+value.toPrecision(3)).replace("-", "\u2212");
+  };
+
+  /** Measures that are listed at once; the others are switched on. */
+  const FIRST = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound", "max_curvature",
+    "curvature_extrema", "source_curvature_extrema", "bending_energy", "converged", "within_tolerance"];
+
+  /** Rows of a table of contours' measures, each with its unit and meaning. `every`: also those not listed at once;
+   *  `always`: names of those that keep their row where no contour has them. */
+  GS.measureRows = (contours, em, { every = false, always = new Set() } = {}) => {
+    const names = [...FIRST, ...(every ? [...GS.measures.keys()].filter((name) => !FIRST.includes(name)) : [])]
+      .filter((name) => always.has(name) || contours.some((contour) => contour[name] !== null && contour[name] !== undefined));
+    const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"),
+      ...contours.map((_, i) => GS.element("th", { scope: "col" }, String(i))));
+    return [head, ...names.map((name) => {
+      const { label, unit, about } = GS.measures.get(name);
+      const cell = (contour) => {
+        const bad = (name === "converged" || name === "within_tolerance") && contour[name] === false;
+        return GS.element("td", bad ? { class: "bad" } : {}, GS.number(GS.shown(name, contour[name], em)));
+      };
+      return GS.element("tr", { "data-measure": name, title: about }, GS.element("th", { scope: "row" }, label,
+        ...(unit ? [" ", GS.element("small", { class: "unit" }, unit)] : [])), ...contours.map(cell));
+    })];
+  };
+
   GS.svg = (name, attributes = {}, ...children) => {
     const node = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
