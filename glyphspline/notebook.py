@@ -14,6 +14,7 @@ from .curves.bezier import as_cubic, cubic_approximation
 from .curves.bspline import Spline
 from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
+from .fitting.quantities import QUANTITIES, shown
 from .fitting.results import GlyphResult, Measures, as_glyph
 from .outlines.outline import Contour, Outline
 from .types import FloatArray
@@ -48,14 +49,19 @@ def glyph_svg(glyph: GlyphResult) -> str:
 
 def glyph_html(glyph: GlyphResult) -> str:
     """The result with its comb, above a table of its contours' measures, its options and its notes."""
-    head = "".join(f"<th>{name.replace('_', ' ')}</th>" for name in SHOWN)
-    rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures)}</tr>" for c, each in enumerate(glyph.contours))
+    em = glyph.outline.metrics.units_per_em
+    head = "".join(_head(*QUANTITIES[name]) for name in SHOWN)
+    rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures, em)}</tr>" for c, each in enumerate(glyph.contours))
     notes = "".join(f"<p>{escape(note)}</p>" for note in (glyph.options.words, *glyph.notes))
     return f"{glyph_svg(glyph)}<table><tr><th>contour</th>{head}</tr>{rows}</table>{notes}"
 
 
-def _cells(measures: Measures) -> str:
-    values = [getattr(measures, name) for name in SHOWN]
+def _head(label: str, unit: str, about: str) -> str:
+    return f'<th title="{escape(about)}">{label}{f", {unit}" if unit else ""}</th>'
+
+
+def _cells(measures: Measures, em: float) -> str:
+    values = [shown(name, getattr(measures, name), em) for name in SHOWN]
     return "".join(f"<td>{f'{v:.3g}' if isinstance(v, float) else '–' if v is None else v}</td>" for v in values)
 
 
@@ -149,11 +155,16 @@ def plot(
         polygons = [contour.polygon for contour in glyph.contours]
         sources = [contour.cubics() for contour in glyph.outline.contours]
         em = glyph.outline.metrics.units_per_em
+    sides = np.ones(1) if isinstance(thing, Spline) else None  # a curve alone has no ink: it turns left or right
     patches = []
     if source:
         patches += outline_patch(sources, facecolor="none", edgecolor="tab:orange", linewidth=0.8)
     if comb:
-        patches += _comb_patches(curves, em, scale, closed=closed)
+        if sides is None:
+            from .outlines.ink import ink_sides
+
+            sides = ink_sides(as_glyph(thing).arrays.curves)  # type: ignore[arg-type]
+        patches += _comb_patches(curves, sides, em, scale, closed=closed)
     patches += outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style)
     for patch in patches:
         axes.add_patch(patch)
@@ -175,13 +186,16 @@ def _cubics(spline: Spline) -> FloatArray:
     return cubic_approximation(spline.to_bezier(), 1e-5 * extent)
 
 
-def _comb_patches(curves: list[FloatArray], em: float, scale: float | None, *, closed: bool) -> list[Any]:
+def _comb_patches(
+    curves: list[FloatArray], sides: FloatArray, em: float, scale: float | None, *, closed: bool
+) -> list[Any]:
     from .writers.figures.patches import comb_patches
     from .writers.svg.curvature_map import SPACING, teeth_of
 
-    found = [curvature_comb(cubics, SPACING * em) for cubics in curves if len(cubics)]
+    drawn = [(curvature_comb(cubics, SPACING * em), s) for cubics, s in zip(curves, sides, strict=True) if len(cubics)]
+    found = [item for item, _ in drawn]
     unit = robust_scale(found) if scale is None else scale
-    return comb_patches([teeth_of(item, em, unit) for item in found], closed=closed, width=0.6)
+    return comb_patches([teeth_of(item, em, unit, side) for item, side in drawn], closed=closed, width=0.6)
 
 
 def _closed(points: FloatArray) -> FloatArray:

@@ -18,6 +18,11 @@ Names: TypeAlias = Literal["glyph", "unicode", "gid", "char"]
 T = TypeVar("T", covariant=True)
 
 
+def counted(number: int, noun: str) -> str:
+    """A number and its noun, in the plural unless there is one."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 class Views(Sequence[T], Generic[T]):
     """A sequence whose items are made from arrays, all at once, when one is first read.
 

@@ -6,19 +6,22 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
 import glyphspline as gs
+from glyphspline.outlines.ink import ink_sides
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.raster import to_pdf, to_png
 from glyphspline.writers.svg.colours import SIDES, class_colour, colour_classes
 from glyphspline.writers.svg.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
 
-from .drawings import L_SHAPE, circle, polygon_contour, result
+from .drawings import L_SHAPE, METRICS, circle, polygon_contour, result
 
+FONTS = Path(__file__).parent.parent / "fonts_test"
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -53,11 +56,68 @@ def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
 @pytest.mark.parametrize("turn", [1, -1])
 def test_teeth_of_a_circle_are_as_long_as_its_curvature_and_point_outwards(turn: int) -> None:
     written = strokes(to_curvature_svg(disc(200, turn), scale=SIDES / 3 / 200))
-    assert list(written) == [class_colour(3 * turn)]
+    assert list(written) == [class_colour(3)], "a disc is convex whichever way it runs"
     (pairs,) = written.values()
     radii = np.hypot(*(pairs - 300).transpose(2, 0, 1))
     assert radii[:, 0] == pytest.approx(200, abs=0.1)
     assert radii[:, 1] == pytest.approx(200 + TOOTH * 1000 * 3 / SIDES, abs=0.2)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_ink_is_where_the_contour_winds_and_its_counters_do_not(turn: int) -> None:
+    def ring(radius: float, x: float, way: int) -> gs.Contour:
+        return gs.Contour.from_segments(list(circle(radius, 8, centre=(x, 0), turn=way * turn)))
+
+    outer, counter, island, apart, across = (
+        ring(200, 0, 1),
+        ring(100, 0, -1),
+        ring(20, 0, 1),
+        ring(50, 900, 1),
+        ring(90, 190, 1),
+    )
+    drawn = gs.Outline("a", contours=(outer, counter, island, apart, across))
+    assert ink_sides(drawn.arrays).tolist() == [turn] * 5
+    mixed = gs.Outline("b", contours=(outer, counter, apart.reversed()))
+    assert ink_sides(mixed.arrays).tolist() == [turn, turn, -turn], "fonts with both directions"
+    assert ink_sides(gs.Outline("c").arrays).tolist() == []
+
+
+def test_convex_and_concave_are_the_same_in_truetype_and_postscript() -> None:
+    shares = []
+    for kind in ("ttf", "otf"):
+        font = gs.open_font(FONTS / f"kouzan-gyosho.{kind}")
+        glyph = gs.convert(font.outline(font.select(text="O")[0]), gs.Options(count=60))
+        for whose in ("source", "result"):
+            relative = np.concatenate([part.relative for part in teeth(glyph, 0.01, whose)])
+            shares.append((relative > 0.1).sum() / (np.abs(relative) > 0.1).sum())
+    assert shares == pytest.approx([shares[0]] * 4, abs=0.15)
+
+
+def test_the_sources_comb_is_exact_and_stands_on_the_source() -> None:
+    source = gs.Contour.from_segments(list(circle(200, 32, centre=(300, 300))))
+    glyph = gs.convert(gs.Outline("o", 1, (), 600, (source,), METRICS), gs.Options(count=5))
+    ((part,),) = (teeth(glyph, 1 / 200, "source"),)
+    assert part.relative == pytest.approx(1, rel=1e-3)
+    assert np.hypot(*(part.feet - 300).T) == pytest.approx(200, rel=1e-4)
+    assert np.ptp(teeth(glyph, 1 / 200)[0].relative) > 0.005, "five vertices make no circle"
+    svg = to_curvature_svg(glyph, comb="source", scale=1 / 200)
+    classes = [path.get("class") for path in ElementTree.fromstring(svg).iter(f"{SVG}path")]
+    assert "source" in classes
+    assert "outline" not in classes
+    assert "κ of the source in 1/em" in svg
+    with pytest.raises(gs.OptionError, match="comb is"):
+        to_curvature_svg(glyph, comb="both")  # type: ignore[arg-type]
+
+
+def test_the_turn_about_a_corner_has_no_teeth_unless_asked_for() -> None:
+    glyph = gs.convert(gs.Outline("L", 1, (), 600, (polygon_contour(L_SHAPE),), METRICS))
+    assert not any(part.cut.any() for part in teeth(glyph, 0.004))
+    assert any(part.cut.any() for part in teeth(glyph, 0.004, in_corners=True))
+    plain, every = (to_curvature_svg(glyph, scale=0.004, in_corners=asked) for asked in (False, True))
+    assert 'class="cut"' not in plain
+    assert 'class="cut"' in every
+    small = gs.convert(gs.Outline("o", 1, (), 600, (gs.Contour.from_segments(list(circle(9, 4))),), METRICS))
+    assert all(part.cut.all() for part in teeth(small, 0.004)), "a tight bend is no corner"
 
 
 def test_long_teeth_are_cut_and_marked() -> None:

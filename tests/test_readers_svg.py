@@ -54,7 +54,7 @@ def test_a_folder_of_drawings_is_a_source_in_the_order_of_their_numbers(tmp_path
         (tmp_path / f"{name}.svg").write_text(gs.to_svg(glyph), encoding="utf-8")
     source: Source = open_source(tmp_path)
     assert source.glyph_names == ("b", "a")
-    assert source.select(text="ab") == ("b", "a")
+    assert source.select(text="ab") == ("a", "b")
     assert source.outline("a").gid == 1
     assert source.sha256 == open_source(tmp_path).sha256
 

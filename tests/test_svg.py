@@ -21,7 +21,8 @@ import glyphspline as gs
 from glyphspline.fitting.results import end_to_end
 from glyphspline.outlines.outline import Contours
 from glyphspline.types import FloatArray
-from glyphspline.writers.svg.document import VIEW_BOXES, ViewBox, to_svg
+from glyphspline.writers.svg.appearance import VIEW_BOXES, ViewBox
+from glyphspline.writers.svg.document import to_svg
 from glyphspline.writers.svg.markup import number
 from glyphspline.writers.svg.path_data import curves_data, polyline_data
 from glyphspline.writers.svg.source_drawing import to_source_svg

@@ -16,8 +16,11 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline import compiling
 from glyphspline.cli import app as shell
+from glyphspline.fitting.closed_curves import History, recorded
 from glyphspline.fitting.options import PRESETS, Continuity, Effort
-from glyphspline.viewer import make_app
+from glyphspline.types import FloatArray
+from glyphspline.viewer import conversion, make_app
+from glyphspline.viewer.app import first_glyph
 from glyphspline.viewer.conversion import shown_steps
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
@@ -138,6 +141,44 @@ def test_steps_go_from_the_polygon_to_the_result(client: TestClient) -> None:
     )
 
 
+@pytest.mark.parametrize("variant", [1, 2, 3, 4])
+def test_a_run_is_made_once_for_all_of_its_steps(variant: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[gs.Options] = []
+
+    def counted(polygon: FloatArray, options: gs.Options) -> History:
+        made.append(options)
+        return recorded(polygon, options)
+
+    monkeypatch.setattr(conversion, "recorded", counted)
+    glyph = gs.convert(gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O"), gs.Options(variant=variant, count=24))
+    found = list(conversion.steps(glyph))
+    assert len(made) == len(glyph.contours) == 2
+    assert [m for m, _ in found] == shown_steps(conversion.updates_of(glyph))
+    for m, curves in found:
+        stopped = gs.convert(glyph.outline, gs.Options(variant=variant, count=24, max_iterations=m))
+        for curve, contour in zip(curves, stopped.contours, strict=True):
+            own = contour.interpolations[0]
+            np.testing.assert_allclose(curve.spline.control_points, own.spline.control_points, atol=1e-6)
+            np.testing.assert_allclose(curve.parameters, own.parameters, atol=1e-4)
+            assert curve.max_error == pytest.approx(own.max_error, abs=1e-6)
+
+
+def test_opens_on_defaults_and_never_on_notdef(client: TestClient, tmp_path: Path) -> None:
+    font = client.get("/api/font").json()
+    assert font["defaults"] == {
+        "variant": 2, "margin": 0.02, "corners": "smooth", "continuity": "c2", "effort": "fast",
+        "sampling": "tolerance", "amount": 1.024,
+    }  # fmt: skip
+    units = {name: unit for name, _, unit, about in font["measures"] if about}
+    assert list(units) == [name for name, *_ in font["measures"]]
+    assert (units["max_curvature"], units["bending_energy"], units["deviation"]) == ("1/em", "1/em", "units")
+    for path in sorted(FONTS.glob("*.[to]t[fc]")):
+        work = conversion.Work(path)
+        first = first_glyph(work)
+        assert first != ".notdef"
+        assert work.has_ink(first)
+
+
 def test_long_iterations_are_thinned_out() -> None:
     assert shown_steps(10) == list(range(11))
     assert len(shown_steps(1000)) <= 61
@@ -166,7 +207,7 @@ def test_glyphs_are_found_by_character_code_index_and_name(client: TestClient) -
     for words in ("龍", "U+9F8D", "uni9F8D", "17"):
         names = [glyph["name"] for glyph in client.get("/api/glyphs", params={"words": words}).json()["glyphs"]]
         assert names[0] == "uni9F8D", words
-    assert client.get("/api/glyphs", params={"words": "no such"}).json() == {"glyphs": [], "more": False}
+    assert client.get("/api/glyphs", params={"words": "no such glyph"}).json() == {"glyphs": [], "more": False}
 
 
 @pytest.mark.parametrize(

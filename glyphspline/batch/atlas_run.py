@@ -11,7 +11,7 @@ from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
 from ..writers.figures.atlas import Glyph, write_atlas
-from ..writers.svg.curvature_map import curvature_scale
+from ..writers.svg.curvature_map import Whose, curvature_scale
 from .files import make_folder
 from .font_run import SCALE_SAMPLE
 
@@ -26,6 +26,8 @@ def make_atlas(
     options: Options,
     *,
     profiles: Sequence[str] | None = None,
+    comb: Whose = "result",
+    in_corners: bool = False,
     observer: Callable[[int, int], None] | None = None,
 ) -> tuple[int, int]:
     """Write the atlas of some glyphs.
@@ -34,6 +36,7 @@ def make_atlas(
         source: the opened font. names: its glyphs, in order. path: the PDF.
         options: of the conversion.
         profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
+        comb: whose curvature the pages of combs show. in_corners: see :func:`to_curvature_svg`.
         observer: called with the number of glyphs done and of all.
 
     Returns:
@@ -42,7 +45,7 @@ def make_atlas(
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
     kept = {name: _converted(source, name, options) for name in names[:: -(-len(names) // SCALE_SAMPLE) or 1]}
-    scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
+    scale = curvature_scale((glyph for glyph in kept.values() if isinstance(glyph, GlyphResult)), comb)
     failures = 0
 
     def glyphs() -> Iterator[Glyph]:
@@ -57,7 +60,7 @@ def make_atlas(
 
     pages = write_atlas(
         path, glyphs(), scale or 1 / source.metrics.units_per_em, heading=f"{source.family} {source.style}",
-        profiled=lambda glyph: glyph.outline.name in chosen,
+        whose=comb, in_corners=in_corners, profiled=lambda glyph: glyph.outline.name in chosen,
     )  # fmt: skip
     return pages, failures
 

@@ -26,7 +26,7 @@ from .job import Job, Task, failed
 from .lock import locked
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
 from .schedule import chunks_of, slices, spread, workers
-from .spec import REQUEST, RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from .spec import MAPS, REQUEST, RUN_FILE, RunSpec, describe, differences, read_run, write_run
 from .summary import Summary, facts_of_entry
 from .whole import check_possible, missing, write_fonts
 
@@ -182,7 +182,7 @@ def with_scale(job: Job, source: Source, glyphs: Sequence[str], tasks: list[Task
         if any(old.get(name) != now[name] for name in REQUEST):
             write_run(job.out, now)
         return replace(job, curvature_scale=old["curvature_scale"])
-    if {"curvature", "png", "pdf"} & set(job.spec.formats):
+    if MAPS & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
         found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, slices(chosen, SCALE_CHUNK))
                  if isinstance(combs, list)]  # fmt: skip

@@ -16,7 +16,8 @@ from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
 from ..types import Names
-from ..writers.svg.document import VIEW_BOXES, ViewBox
+from ..writers.svg.appearance import CURRENT, Appearance, ViewBox
+from ..writers.svg.curvature_map import WHOSE, Whose
 from .file_names import NAMES
 from .files import write_whole
 
@@ -29,11 +30,14 @@ RUN_FILE = "run.json"
 RESULTS = "results"
 
 SUFFIXES = {
-    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", GALLERY: SUFFIX,
-    RESULTS: ".json",
+    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", "curvature-png": ".png",
+    "curvature-pdf": ".pdf", GALLERY: SUFFIX, RESULTS: ".json",
 }  # fmt: skip
 """Formats with one file a glyph, each in a folder of its name. "source" is part of the gallery; formats with one file a
 font are made from "results"."""
+
+MAPS = {"curvature", "curvature-png", "curvature-pdf"}
+"""Formats of curvature maps, which share a scale."""
 
 WHOLE = ("ufo", "otf", "ttf", "parquet")
 """Formats with one file a font."""
@@ -65,9 +69,10 @@ class RunSpec:
     """How the glyphs of a run are converted, and what is written.
 
     Attributes:
-        options: of the conversion. formats: of ``FORMATS``. view_box: of the SVG drawings.
-        names: what the files of glyphs are called after.
+        options: of the conversion. formats: of ``FORMATS``. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
+        view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
+        comb: whose curvature the maps show. corner_teeth: also where a smooth result turns about a corner.
     """
 
     options: Options = field(default_factory=Options)
@@ -75,6 +80,11 @@ class RunSpec:
     view_box: ViewBox = "em"
     names: Names = "glyph"
     limits: Limits = field(default_factory=Limits)
+    size: str | None = None
+    fill: str = CURRENT
+    stroke: str = "none"
+    comb: Whose = "result"
+    corner_teeth: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
@@ -82,11 +92,18 @@ class RunSpec:
         unknown = [str(name) for name in self.formats if name not in FORMATS]
         if unknown or not self.formats:
             raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
-        require_choice("view_box", self.view_box, VIEW_BOXES)
         require_choice("names", self.names, NAMES)
+        require_choice("comb", self.comb, WHOSE)
+        require_choice("corner_teeth", self.corner_teeth)
+        _ = self.look  # raises where it is none
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
         object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
+
+    @property
+    def look(self) -> Appearance:
+        """How drawings look."""
+        return Appearance(self.view_box, self.size, self.fill, self.stroke)
 
     @property
     def folders(self) -> tuple[str, ...]:
@@ -143,7 +160,9 @@ def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_sca
         "missing": {"count": len(missing), "first": list(missing[:FIRST_MISSING])},
         "options": asdict(spec.options) | effective,
         "formats": list(spec.formats),
-        "view_box": spec.view_box,
+        **asdict(spec.look),
+        "comb": spec.comb,
+        "corner_teeth": spec.corner_teeth,
         "names": spec.names,
         "curvature_scale": curvature_scale,
     }

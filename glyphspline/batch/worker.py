@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
-from ..writers.svg.curvature_map import combs, map_document
+from ..writers.svg.curvature_map import combs, curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.source_drawing import SourceData, source_data, source_document
@@ -75,7 +75,7 @@ def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
             (result,) = converted(job, [glyph])
         except Exception:  # reported when the glyph is converted for its files
             continue
-        found += combs(result) if isinstance(result, GlyphResult) else []
+        found += combs(result, whose=job.spec.comb) if isinstance(result, GlyphResult) else []
     return found
 
 
@@ -245,13 +245,22 @@ def _source(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert job.curvature_scale is not None
-    return map_document(glyph.result, glyph.path, job.curvature_scale)
+    result, whose = glyph.result, job.spec.comb
+    path = glyph.path if whose == "result" else curves_data(curves_of(result, whose), result.options.precision)[0]
+    return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.corner_teeth)
 
 
-def _raster(job: Job, glyph: Glyph, kind: str) -> bytes:
-    from ..writers.figures import raster  # imports matplotlib
+def _drawing(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
+    from ..writers.figures.drawing import drawing_image  # imports matplotlib
 
-    return (raster.to_png if kind == "png" else raster.to_pdf)(glyph.result, scale=job.curvature_scale)
+    return drawing_image(glyph.result, kind, job.spec.look, glyph.path.box)
+
+
+def _map(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
+    from ..writers.figures import raster
+
+    draw = raster.to_png if kind == "png" else raster.to_pdf
+    return draw(glyph.result, comb=job.spec.comb, scale=job.curvature_scale, in_corners=job.spec.corner_teeth)
 
 
 def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
@@ -263,10 +272,12 @@ def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 WRITERS: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
     "source": _source,
-    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.view_box),
+    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.look),
     "curvature": _curvature,
-    "png": lambda job, glyph, files: _raster(job, glyph, "png"),
-    "pdf": lambda job, glyph, files: _raster(job, glyph, "pdf"),
+    "png": lambda job, glyph, files: _drawing(job, glyph, "png"),
+    "pdf": lambda job, glyph, files: _drawing(job, glyph, "pdf"),
+    "curvature-png": lambda job, glyph, files: _map(job, glyph, "png"),
+    "curvature-pdf": lambda job, glyph, files: _map(job, glyph, "pdf"),
     GALLERY: _gallery,
     RESULTS: lambda job, glyph, files: to_text(glyph.result),
 }

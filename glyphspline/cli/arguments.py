@@ -13,7 +13,8 @@ from .._version import __version__
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..types import Names
-from ..writers.svg.document import ViewBox
+from ..writers.svg.appearance import ViewBox
+from ..writers.svg.curvature_map import Whose
 
 if TYPE_CHECKING:
     from ..batch import RunSpec
@@ -23,6 +24,7 @@ GLYPHS = "Which glyphs"
 CLOSENESS = "How close to the source"
 CORNERS = "Corners"
 FILES = "What is written"
+LOOK = "How drawings look"
 RUN = "The run"
 METHOD = "The method, in the paper's terms"
 
@@ -198,7 +200,9 @@ Out = Annotated[
 Formats = Annotated[
     str,
     typer.Option(
-        "--format", help="Of svg, curvature, gallery, png, pdf, ufo, otf, ttf, parquet.", rich_help_panel=FILES
+        "--format",
+        help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet.",
+        rich_help_panel=FILES,
     ),
 ]
 FileNames = Annotated[
@@ -214,7 +218,35 @@ Each = Annotated[
     typer.Option("--each", help="A folder in DIR for each font, as of several, for one font too.",
                  rich_help_panel=FILES),
 ]  # fmt: skip
-Region = Annotated[ViewBox, typer.Option("--view-box", help="Region an SVG drawing shows.", rich_help_panel=FILES)]
+
+Region = Annotated[ViewBox, typer.Option("--view-box", help="Region a drawing shows.", rich_help_panel=LOOK)]
+Height = Annotated[
+    str | None,
+    typer.Option(
+        "--size", help="Height of a drawing with its unit, as 20mm; its width in proportion.", rich_help_panel=LOOK
+    ),
+]
+Fill = Annotated[
+    str,
+    typer.Option("--fill", help="Colour of the ink: a CSS name, #rrggbb, none or currentColor.", rich_help_panel=LOOK),
+]
+Stroke = Annotated[
+    str, typer.Option("--stroke", help="Colour of a thin line along the outline, likewise.", rich_help_panel=LOOK)
+]
+Comb = Annotated[
+    Whose,
+    typer.Option(
+        "--comb", help="Whose curvature is shown: the result's, or the source outline's own, exact.",
+        rich_help_panel=LOOK,
+    ),
+]  # fmt: skip
+CornerTeeth = Annotated[
+    bool,
+    typer.Option(
+        "--corner-teeth", help="Teeth of a smooth result's comb also in the turn of a corner.", rich_help_panel=LOOK
+    ),
+]
+
 Precision = Annotated[
     int,
     typer.Option("--precision", parser=whole, metavar="N", help="Decimals written, 0 to 9.", rich_help_panel=FILES),
@@ -294,6 +326,10 @@ Deep = Annotated[
 ]
 
 
+DRAWN = ("view_box", "size", "fill", "stroke", "comb", "corner_teeth")
+"""Options of a run's drawings."""
+
+
 def options_of(given: Mapping[str, Any]) -> Options:
     """The options of a conversion, from a command's arguments by name."""
     from ..errors import OptionError
@@ -325,7 +361,8 @@ def spec_of(given: Mapping[str, Any]) -> RunSpec:
     from ..batch import RunSpec
 
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    return RunSpec(options_of(given), formats, given["view_box"], given["names"])
+    drawn = {name: given[name] for name in (*DRAWN, "names") if name in given}
+    return RunSpec(options_of(given), formats, **drawn)
 
 
 def selection_of(source: Source, given: Mapping[str, Any]) -> Selection:

@@ -74,6 +74,11 @@ def convert(
     names: opt.FileNames = "glyph",
     each: opt.Each = False,
     view_box: opt.Region = "em",
+    size: opt.Height = None,
+    fill: opt.Fill = "currentColor",
+    stroke: opt.Stroke = "none",
+    comb: opt.Comb = "result",
+    corner_teeth: opt.CornerTeeth = False,
     precision: opt.Precision = 2,
     remove_overlaps: opt.RemoveOverlaps = False,
     measure: opt.Measure = False,
@@ -244,6 +249,8 @@ def atlas(
     step: opt.Step = None,
     count: opt.Count = None,
     effort: opt.HowHard = "fast",
+    comb: opt.Comb = "result",
+    corner_teeth: opt.CornerTeeth = False,
     quiet: opt.Quiet = False,
 ) -> None:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours."""
@@ -259,7 +266,10 @@ def atlas(
         chosen = None if profiles is None else source.select(text=profiles)
         with progress(quiet) as observer:
             each = (lambda done, total: observer(done, total, 0)) if observer else None
-            pages, failed = make_atlas(source, names, out, opt.options_of(given), profiles=chosen, observer=each)
+            pages, failed = make_atlas(
+                source, names, out, opt.options_of(given), profiles=chosen, comb=comb, in_corners=corner_teeth,
+                observer=each,
+            )  # fmt: skip
         if not quiet:
             say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
     raise typer.Exit(1 if failed else 0)

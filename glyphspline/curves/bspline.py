@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..types import FloatArray, IntArray
+from ..types import FloatArray, IntArray, counted
 from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
 
 DEGREES = range(2, 7)
@@ -25,6 +25,18 @@ class Spline:
         knots: (n + 1,) from 0 to the period if closed; the m break points if open, where the ends have multiplicity
             degree + 1.
         degree: 2 to 6. closed: periodic; otherwise clamped at both ends.
+
+    Example:
+        >>> from glyphspline import Spline
+        >>> round_square = Spline([[0, 0], [1, 0], [1, 1], [0, 1]], [0, 1, 2, 3, 4])
+        >>> round_square
+        <Spline: closed, degree 3, 4 control points, t from 0 to 4>
+        >>> round_square([0.5, 4.5]).round(3).tolist()  # the period is 4
+        [[0.5, 0.042], [0.5, 0.042]]
+        >>> bool(round_square.curvature(0.5) > 0)  # it turns left
+        True
+        >>> round_square.to_bezier().shape
+        (4, 4, 2)
     """
 
     control_points: FloatArray
@@ -49,6 +61,11 @@ class Spline:
         spline = cls.__new__(cls)
         spline.__dict__.update(control_points=control_points, knots=knots, degree=degree, closed=closed)
         return spline
+
+    def __repr__(self) -> str:
+        kind = "closed" if self.closed else "open"
+        points, (first, last) = counted(len(self.control_points), "control point"), self.knots[[0, -1]].tolist()
+        return f"<Spline: {kind}, degree {self.degree}, {points}, t from {first:g} to {last:.6g}>"
 
     @property
     def period(self) -> float:
@@ -82,7 +99,14 @@ class Spline:
         return span, (t - u[span]) / h, h
 
     def __call__(self, t: ArrayLike, derivative: int = 0) -> FloatArray:
-        """The curve or one of its derivatives at t: shape ``t.shape + (2,)``."""
+        """The curve or one of its derivatives at t: shape ``t.shape + (2,)``.
+
+        The domain is from ``knots[0]`` to ``knots[-1]``. Beyond it a closed curve repeats itself with its
+        :attr:`period`; an open one stays at the point of the nearer end, with the derivatives there.
+
+        Args:
+            t: parameters, of any shape. derivative: 0 for points, 1 for the first derivative by t, and so on.
+        """
         t = np.asarray(t, dtype=np.float64)
         if derivative > self.degree:
             return np.zeros((*t.shape, 2))
@@ -91,7 +115,10 @@ class Spline:
         return values.reshape(*t.shape, 2)
 
     def curvature(self, t: ArrayLike) -> FloatArray:
-        """Signed curvature at t, positive where the curve turns left; infinite where the speed is zero."""
+        """Signed curvature at t, in 1/unit: positive where the curve turns left, infinite where the speed is zero.
+
+        The domain, and what lies beyond it, are as for calling the spline.
+        """
         return signed_curvature(self(t, derivative=1), self(t, derivative=2))
 
     def basis(self, t: ArrayLike) -> FloatArray:

@@ -6,10 +6,14 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import spline_beziers
+from ..interpolation.any_degree import interpolate_any_degree
 from ..interpolation.batched import BatchedInterpolation, explain, interpolate_batch
 from ..interpolation.method import Fallback, Method, method_of
 from ..types import BoolArray, FloatArray, IntArray
 from .options import Options
+
+History = tuple[tuple[FloatArray, FloatArray], ...]
+"""Control points (n, 2) and parameters (n,) pass by pass."""
 
 CERTAIN_RATIO = 6.0
 """Basis functions rise above 1/2 as long as adjacent knot intervals are within 6.15 of each other."""
@@ -39,6 +43,16 @@ def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Bat
     for k in np.flatnonzero(found.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
     return found
+
+
+def recorded(points: FloatArray, options: Options) -> History:
+    """Control points and footpoints' parameters of a closed polygon (n, 2) before each of its updates, and at the end.
+
+    The run is that of :func:`interpolated`, by the passes that keep what they do.
+    """
+    even = graded_polygons(points, np.array([0, len(points)]), min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
+    method = method_for(options, "knot" if even[0] else None)
+    return interpolate_any_degree(points, method, keep_history=True).history or ()
 
 
 @compiled

@@ -41,6 +41,14 @@ def convert_many(
     Raises:
         GlyphsplineError: a contour that cannot be interpolated, or options that contradict each other; it names glyph
             and contour.
+
+    Example:
+        >>> from glyphspline import Options, convert_many, open_font
+        >>> font = open_font("fonts_test/kouzan-gyosho.ttf")
+        >>> for glyph in convert_many(font.outlines(font.select(text="gO")), Options(count=24)):
+        ...     print(glyph)
+        <GlyphResult 'g': 4 contours, 96 vertices, 96 segments>
+        <GlyphResult 'O': 2 contours, 48 vertices, 48 segments>
     """
     glyphs = list(outlines)
     try:
@@ -52,7 +60,23 @@ def convert_many(
 
 
 def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
-    """Interpolate every contour of a glyph on its own: :func:`convert_many` of a batch of one."""
+    """Interpolate every contour of a glyph on its own: :func:`convert_many` of a batch of one.
+
+    Args:
+        outline: of the glyph. options: how it is converted.
+
+    Raises:
+        GlyphsplineError: as for :func:`convert_many`.
+
+    Example:
+        >>> from glyphspline import Options, convert, open_font
+        >>> outline = open_font("fonts_test/kouzan-gyosho.ttf").outline("O")
+        >>> outline
+        <Outline 'O' gid 6 U+004F: 2 contours, 47 segments, advance 515, 1024 units per em>
+        >>> glyph = convert(outline, Options(tolerance=2.0))
+        >>> all(contour.measures.within_tolerance for contour in glyph.contours)
+        True
+    """
     return _convert_batch([outline], options)[0]
 
 

@@ -45,6 +45,16 @@ class Options:
 
     Raises:
         OptionError: a value out of its range or of the wrong kind, or options that contradict each other.
+
+    Example:
+        >>> from glyphspline import Options
+        >>> Options(corners="sharp", tolerance=2.0).words
+        'variant 2, margin 0.02, corners sharp, continuity c2, tolerance 2, effort fast'
+        >>> Options(step=20.0).is_fixed
+        True
+        >>> Options(step=20.0, count=9)
+        Traceback (most recent call last):
+        glyphspline.errors.OptionError: give one of tolerance, step and count, not step and count
     """
 
     variant: int = Method.variant

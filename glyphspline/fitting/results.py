@@ -20,7 +20,7 @@ from ..outlines.contour_arrays import (
     polylines,
 )
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
-from ..types import FloatArray, IntArray, Views
+from ..types import FloatArray, IntArray, Views, counted
 from .options import Options
 
 
@@ -67,6 +67,11 @@ class Measures:
     source_curvature_extrema: int | None = None
     new_crossings: int | None = None
 
+    def __repr__(self) -> str:
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        said = [f"{name}={f'{v:.4g}' if isinstance(v, float) else v}" for name, v in known.items() if v is not None]
+        return f"Measures({', '.join(said)})"
+
 
 MEASURES = tuple(field.name for field in fields(Measures))
 """The measures, in the order in which they are written."""
@@ -92,6 +97,9 @@ class ContourResult:
     curve: Contour
     measures: Measures
 
+    def __repr__(self) -> str:
+        return f"<ContourResult: {_told([self.measures])}>"
+
 
 @dataclass(frozen=True, eq=False)
 class ConvertedContours:
@@ -115,6 +123,9 @@ class ConvertedContours:
 
     def __len__(self) -> int:
         return self.source.num_contours
+
+    def __repr__(self) -> str:
+        return f"<ConvertedContours: {counted(len(self), 'contour')}>"
 
     def part(self, first: int, last: int) -> ConvertedContours:
         """The contours from ``first`` up to ``last``, as views."""
@@ -228,11 +239,27 @@ class GlyphResult:
         if not isinstance(self.contours, ContourResults):
             object.__setattr__(self, "contours", ContourResults(self.contours))
 
+    def __repr__(self) -> str:
+        name, contours = self.outline.name, counted(len(self.contours), "contour")
+        return f"<GlyphResult {name!r}: {contours}, {_told([contour.measures for contour in self.contours])}>"
+
     @property
     def arrays(self) -> ConvertedContours:
         """The contours' results end to end."""
         assert isinstance(self.contours, ContourResults)
         return self.contours.arrays
+
+
+def _told(measures: Sequence[Measures]) -> str:
+    """The key measures of some contours together, for a line."""
+    said = [f"{sum(m.vertices for m in measures)} vertices", f"{sum(m.segments for m in measures)} segments"]
+    for name, words in (("deviation_bound", "certified within"), ("deviation", "deviation")):
+        known = [value for m in measures if (value := getattr(m, name)) is not None]
+        if known:
+            said.append(f"{words} {max(known):.3g} units")
+            break
+    bad = sum(m.converged is False for m in measures)
+    return ", ".join([*said, *([f"{bad} not converged"] if bad else [])])
 
 
 def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:

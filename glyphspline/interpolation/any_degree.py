@@ -23,9 +23,18 @@ from .result import Interpolation
 
 
 def interpolate_any_degree(
-    points: ArrayLike, method: Method, knots: ArrayLike | None = None, end_tangents: Tangents | None = None
+    points: ArrayLike,
+    method: Method,
+    knots: ArrayLike | None = None,
+    end_tangents: Tangents | None = None,
+    *,
+    keep_history: bool = False,
 ) -> Interpolation:
-    """Interpolate one polygon; ``knots`` are its parameters if the method has no rule."""
+    """Interpolate one polygon; ``knots`` are its parameters if the method has no rule.
+
+    ``keep_history`` keeps the passes without the norms and spectral radii of ``method.diagnostics``.
+    """
+    keep_history |= method.diagnostics
     degree, closed = method.degree, method.closed
     p, merged = clean_polygon(points, closed)
     rule: Any = method.knots
@@ -41,7 +50,7 @@ def interpolate_any_degree(
     settled = SETTLED * float(np.diff(centres).mean()) if method.finish == "solve" else 0.0
     at_once = method.variant == 4
     limit = max(tolerance, settled) * problem.unit
-    run = iterate(problem.one_pass, problem.P, limit, method.max_iterations, at_once, method.diagnostics)
+    run = iterate(problem.one_pass, problem.P, limit, method.max_iterations, at_once, keep_history)
     controls, t, residuals = run.controls, run.footpoints, np.array(run.residuals) / problem.unit
     if method.finish == "solve" and len(free):
         controls, left = problem.solve(controls, t)
@@ -52,6 +61,7 @@ def interpolate_any_degree(
     observed: dict[str, Any] = {}
     if method.diagnostics:
         observed = diagnose(problem.matrix, run.history, at_once)
+    if keep_history:
         observed["history"] = tuple((problem.points_of(P), t / problem.knot_unit) for P, t in run.history)
     spline, converged = Spline(problem.points_of(controls), u, degree, closed), bool(residuals[-1] < tolerance)
     return Interpolation(

@@ -67,6 +67,16 @@ def interpolate(
     Raises:
         PolygonError: the polygon or its knots cannot be interpolated; the message says why.
         OptionError: an option out of its range. Both are ValueErrors.
+
+    Example:
+        >>> from glyphspline import interpolate
+        >>> found = interpolate([[0, 0], [4, 0], [5, 3], [2, 5], [-1, 3]], margin=0.02)
+        >>> found.converged, found.max_error < 1e-5
+        (True, True)
+        >>> found.spline
+        <Spline: closed, degree 3, 5 control points, t from 0 to 17.5357>
+        >>> found.spline(found.parameters).round(3).tolist()[1]  # it passes through the vertices
+        [4.0, 0.0]
     """
     own = not isinstance(knots, str)
     method = method_of(
@@ -131,6 +141,14 @@ def interpolate_many(
     Raises:
         PolygonError: as for :func:`interpolate`; its ``contour`` is the index in the list.
         OptionError: as for :func:`interpolate`.
+
+    Example:
+        >>> from glyphspline import interpolate_many
+        >>> triangle, square = [[0, 0], [4, 0], [2, 3]], [[0, 0], [1, 0], [1, 1], [0, 1]]
+        >>> [len(found.parameters) for found in interpolate_many([triangle, square])]
+        [3, 4]
+        >>> interpolate_many([triangle, [[0, 0]]], errors="return")[1].contour
+        1
     """
     everything = list(polygons)
     own = None if isinstance(knots, str) else knots

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..curves.bspline import Spline
-from ..types import FloatArray, IntArray
+from ..types import FloatArray, IntArray, counted
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -40,6 +40,12 @@ class Interpolation:
     history: tuple[tuple[FloatArray, FloatArray], ...] | None = None
     rate_observed: float | None = None
     spectral_radii: FloatArray | None = None
+
+    def __repr__(self) -> str:
+        kind, vertices = "closed" if self.spline.closed else "open", f"{len(self.parameters)} vertices"
+        converged = "converged" if self.converged else "not converged"
+        steps = counted(self.iterations, "iteration")
+        return f"<Interpolation: {kind}, {vertices}, {converged}, {steps}, residual {self.max_error:.2g}>"
 
     @property
     def max_error(self) -> float:

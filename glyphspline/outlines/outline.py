@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..curves.bezier import evaluate
-from ..types import FloatArray, IntArray, Views
+from ..types import FloatArray, IntArray, Views, counted
 from .contour_arrays import NO_CONTOURS, ContourArrays, offsets_of
 
 
@@ -59,6 +59,10 @@ class Contour:
 
     def __len__(self) -> int:
         return len(self.degrees)
+
+    def __repr__(self) -> str:
+        kinds = zip(("line", "quadratic", "cubic"), np.bincount(self.degrees, minlength=4)[1:].tolist(), strict=True)
+        return f"<Contour: {', '.join([counted(count, kind) for kind, count in kinds if count]) or 'empty'}>"
 
     def segments(self) -> Iterator[FloatArray]:
         """The segments in order, each (degree + 1, 2)."""
@@ -165,6 +169,12 @@ class Outline:
         """The contours end to end."""
         assert isinstance(self.contours, Contours)
         return self.contours.arrays
+
+    def __repr__(self) -> str:
+        codes = "".join([f" U+{code:04X}" for code in self.unicodes])
+        parts = [counted(len(self.contours), "contour"), counted(len(self.arrays.degrees), "segment")]
+        size = f"advance {self.advance:g}, {self.metrics.units_per_em:g} units per em"
+        return f"<Outline {self.name!r} gid {self.gid}{codes}: {', '.join(parts)}, {size}>"
 
     def draw(self, pen: Any) -> None:
         """Draw with any fontTools segment pen."""

@@ -47,6 +47,12 @@ def sample(
     Raises:
         OptionError: neither or both of ``count`` and ``step``, or a value out of range.
         GlyphsplineError: too many vertices.
+
+    Example:
+        >>> from glyphspline import open_font, sample
+        >>> contour = open_font("fonts_test/kouzan-gyosho.ttf").outline("O").contours[0]
+        >>> sample(contour, count=24).shape
+        (24, 2)
     """
     from .places import sampled  # imported here, so that the package opens without a compiler
 

@@ -35,7 +35,7 @@ GIDS = Numbers(
 
 
 class Selection(tuple[str, ...]):
-    """Glyph names, unique, in glyph index order.
+    """Glyph names, unique: those of a text in its order, then the others in glyph index order.
 
     ``missing`` has one phrase for each item that the font does not have, in the order of the arguments: ``"U+9F99"``,
     ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it. ``asked`` has the arguments that
@@ -67,7 +67,7 @@ def select(
     gids: Request | None,
     all_glyphs: bool,
 ) -> Selection:
-    """The union of the glyphs that each argument selects.
+    """The union of the glyphs that each argument selects: those of the text in its order, then by glyph index.
 
     Args:
         glyph_names: all names in glyph index order. cmap: code point to name.
@@ -103,7 +103,9 @@ def select(
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
     given = {"text": text, "unicodes": unicodes, "glyphs": names, "gids": gids}
     asked = {name: value for name, value in given.items() if value is not None} | ({"all": True} if all_glyphs else {})
-    return Selection(sorted(found, key=index.__getitem__), dict.fromkeys(missing), asked)
+    ahead = dict.fromkeys(cmap[code] for code in codes if cmap.get(code) in index)
+    rest = sorted(found.difference(ahead), key=index.__getitem__)
+    return Selection([*ahead, *rest], dict.fromkeys(missing), asked)
 
 
 def _kept(request: Request | None, form: str) -> list[int | str] | None:

@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple, TypeAlias, overload
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
+from ..types import counted
 from .selection import Request, Selection, select
 
 OutlineOrError: TypeAlias = Outline | GlyphsplineError
@@ -51,6 +52,13 @@ class Source(ABC):
     metrics: FontMetrics
     glyph_names: tuple[str, ...]
     cmap: Mapping[int, str]
+
+    def __repr__(self) -> str:
+        name, face = f"{self.family} {self.style}", f", face {self.face_index}" if self.face_index else ""
+        place = "".join([f", {tag}={value:g}" for tag, value in self.location.items()])
+        counts = f"{counted(len(self.glyph_names), 'glyph')}, {counted(len(self.cmap), 'character')}"
+        em = f"{self.metrics.units_per_em:g} units per em"
+        return f"<{type(self).__name__} {name!r} from {self.path.name!r}{face}{place}: {counts}, {em}>"
 
     @property
     @abstractmethod
@@ -129,7 +137,9 @@ class Source(ABC):
         gids: Request | None = None,
         all_glyphs: bool = False,
     ) -> Selection:
-        """Select glyph names, unique, in glyph index order; see :func:`.selection.select`.
+        """Select glyph names, unique: those of ``text`` in its order, then the others in glyph index order.
+
+        See :func:`.selection.select`, and :meth:`outlines`, which reads them.
 
         Returns:
             A tuple of names. Its ``missing`` lists what the source does not have.

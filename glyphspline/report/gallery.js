@@ -4,6 +4,7 @@
 (async () => {
   const setup = JSON.parse(document.getElementById("setup").textContent);
   GS.usePalette(setup.palette);
+  GS.useMeasures(setup.measures);
   const at = (id) => document.getElementById(id);
   const layers = new Set(["source", "result"]);
   const layersOn = () => layers;
@@ -30,18 +31,32 @@
     return;
   }
   const rows = GS.rows(runs);
-  const labels = Object.fromEntries(setup.measures);
   const present = new Set(setup.measures.map(([key]) => key)
     .filter((key) => rows.some((row) => typeof GS.value(row, key) === "number")));
-  for (const [key, label] of setup.measures) if (present.has(key)) at("sort").append(new Option(label, key));
+  for (const [key, label, unit, about] of setup.measures) {
+    if (present.has(key)) at("sort").append(Object.assign(new Option(unit ? `${label}, ${unit}` : label, key), { title: about }));
+  }
   for (const run of runs) at("run").append(new Option(`${run.family} ${run.style}`, run.folder));
   at("run").closest("label").hidden = runs.length < 2;
   document.title = runs.length === 1 ? `${runs[0].family} ${runs[0].style}` : `${runs.length} fonts`;
   at("heading").textContent = document.title;
 
-  const detail = GS.detail(at("detail"), layersOn, labels);
+  /* The address has the glyph that is shown large, so that it can be sent to somebody. */
+  const address = (row) => `#${[row.run.folder, row.gid].filter((part) => part !== "").map(encodeURIComponent).join("/")}`;
+  const plain = () => location.href.split("#")[0];
+  const detail = GS.detail(at("detail"), layersOn, (row) => history.replaceState(null, "", row ? address(row) : plain()));
   const open = (position) => detail.open(chosen, position, (last) => grid.focus(last));
-  const grid = GS.grid(at("grid"), at("list"), layersOn, open);
+  const follow = () => {
+    const row = location.hash.length > 1 ? rows.find((one) => address(one) === location.hash) : null;
+    if (!row) return;
+    if (!chosen.includes(row)) {
+      at("words").value = at("run").value = at("least").value = at("most").value = "";
+      at("show").value = "all";
+      update();
+    }
+    open(chosen.indexOf(row));
+  };
+  const grid = GS.grid(at("grid"), at("list"), layersOn, open, runs.length > 1);
   let chosen = [];
 
   const limit = (id) => (at(id).value.trim() === "" || Number.isNaN(+at(id).value) ? null : +at(id).value);
@@ -68,17 +83,25 @@
     const fact = sort === "gid" ? "deviation" : sort;
     grid.set(chosen, (row) => (row.status !== "ok" ? row.status
       : GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
-        : `${labels[fact]} ${GS.number(GS.value(row, fact))}`));
+        : [GS.number(GS.value(row, fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" ")));
+    at("none").hidden = chosen.length > 0;
+    at("csv").disabled = chosen.length === 0;
     at("count").textContent = chosen.length === rows.length ? `${rows.length} glyphs` : `${chosen.length} of ${rows.length} glyphs`;
     at("options").textContent = (runs.length === 1 ? runs[0] : runs.find((run) => run.folder === at("run").value))?.words ?? "";
     histogram(sort);
+    at("sort").title = GS.measures.get(sort)?.about ?? "";
   };
+  at("csv").addEventListener("click", () => {
+    const url = URL.createObjectURL(new Blob([GS.csv(chosen)], { type: "text/csv" }));
+    GS.element("a", { href: url, download: "glyphs.csv" }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  });
 
   const redraw = () => {
     showLayers();
     grid.again();
     detail.draw();
-    const mapped = layers.has("comb") || layers.has("colour");
+    const mapped = ["comb", "source-comb", "colour"].some((name) => layers.has(name));
     at("legend").replaceChildren(...(mapped && runs.length === 1 ? [GS.legend(runs[0].metrics.units_per_em, runs[0].scale)] : []));
   };
   for (const box of boxes) {
@@ -108,5 +131,7 @@
   });
   showLayers();
   update();
+  follow();
+  addEventListener("hashchange", follow);
   document.body.dataset.ready = "yes";
 })();

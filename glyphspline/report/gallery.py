@@ -19,6 +19,7 @@ from typing import Any
 
 from ..errors import GlyphsplineError
 from ..fitting.options import Options
+from ..fitting.quantities import QUANTITIES
 from ..writers.svg.colours import SIDES, class_colour
 from ..writers.svg.markup import text
 from .data import COLUMNS, FOLDER, as_json, row_of, script
@@ -34,7 +35,8 @@ SCRIPTS = (
 
 LAYERS = {
     "source": ("Source", "s"), "result": ("Result", "r"), "polygon": ("Polygon", "p"), "vertices": ("Vertices", "v"),
-    "control": ("Control polygon", "k"), "comb": ("Curvature comb", "c"), "colour": ("Colour", "l"),
+    "control": ("Control polygon", "k"), "source-comb": ("Source's comb", "e"), "comb": ("Result's comb", "c"),
+    "corners": ("Teeth in corners", "n"), "colour": ("Colour", "l"),
 }  # fmt: skip
 """The layers that can be hidden: name and key."""
 
@@ -119,8 +121,7 @@ def _end_of(path: Path, size: int) -> bytes:
 
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
-    measures = [[key, label] for key, (label, _) in MEASURES.items()]
-    setup = {"runs": list(runs), "measures": measures, "palette": palette()}
+    setup = {"runs": list(runs), "measures": measures(), "palette": palette()}
     script = "".join(package_text(name) for name in SCRIPTS)
     page = Template(package_text("gallery.html")).substitute(
         heading=text(heading), style=package_text("theme.css") + package_text("gallery.css"), layers=layer_switches(),
@@ -129,8 +130,13 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     _replace(out_dir / "index.html", page)
 
 
+def measures() -> list[list[str]]:
+    """Name, label, unit and meaning of each measure."""
+    return [[name, *QUANTITIES[name]] for name in MEASURES]
+
+
 def palette() -> list[str]:
-    """The colours of curvature, from the strongest right turn to the strongest left turn."""
+    """The colours of curvature, from the most concave ink to the most convex."""
     return [class_colour(index) for index in range(-SIDES, SIDES + 1)]
 
 

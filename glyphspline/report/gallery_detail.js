@@ -2,19 +2,15 @@
 /* One glyph, large: layers, cross-fade of source and result, zoom and pan, its measures contour by contour. */
 
 (() => {
-  const COLUMNS = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound",
-    "overshoot", "max_curvature", "curvature_extrema", "source_curvature_extrema", "bending_energy", "converged",
-    "within_tolerance"];
-
-  /** `dialog` as in gallery.html; `layersOn()` gives the set of layers; `labels` names the measures. */
-  GS.detail = (dialog, layersOn, labels) => {
+  /** `dialog` as in gallery.html; `layersOn()` gives the set of layers; `shows(row)` hears of the glyph, null of none. */
+  GS.detail = (dialog, layersOn, shows) => {
     const find = (name) => dialog.querySelector(`[data-part="${name}"]`);
     const picture = find("picture"), fade = find("fade");
     const zoom = GS.zoomable(picture, (scale, unit) => {
       find("scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
       ruler(unit);
     });
-    let rows = [], position = 0, drawing = null, closed = () => {};
+    let rows = [], position = 0, drawing = null, every = false, closed = () => {};
 
     /** A ruler of a round number of font units, so that a zoom means something. */
     const ruler = (unit) => {
@@ -31,7 +27,7 @@
       const { units_per_em: em, ascender, descender } = run.metrics, advance = rows[position].advance ?? em;
       const guides = [[-em, 0, 3 * em, 0], [0, -ascender, 0, -descender], [advance, -ascender, advance, -descender]];
       picture.prepend(GS.svg("path", { class: "guides", d: guides.map(([a, b, c, d]) => `M${a} ${b}L${c} ${d}`).join("") }));
-      find("legend").replaceChildren(layersOn().has("comb") || layersOn().has("colour") ? GS.legend(em, run.scale) : "");
+      find("legend").replaceChildren(["comb", "source-comb", "colour"].some((name) => layersOn().has(name)) ? GS.legend(em, run.scale) : "");
       fading();
     };
 
@@ -43,32 +39,24 @@
     };
 
     const facts = (row) => {
-      const table = GS.element("table", {});
-      const used = COLUMNS.filter((key) => drawing.contours.some((contour) => contour[key] !== null && contour[key] !== undefined));
-      const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"));
-      drawing.contours.forEach((_, i) => head.append(GS.element("th", { scope: "col" }, String(i))));
-      table.append(GS.element("caption", { class: "unseen" }, `Measures of ${row.name}`), GS.element("thead", {}, head));
-      const body = GS.element("tbody", {});
-      for (const key of used) {
-        const line = GS.element("tr", {}, GS.element("th", { scope: "row" }, labels[key] ?? key));
-        for (const contour of drawing.contours) {
-          const bad = (key === "converged" || key === "within_tolerance") && contour[key] === false;
-          line.append(GS.element("td", bad ? { class: "bad" } : {}, GS.number(contour[key])));
-        }
-        body.append(line);
-      }
-      table.append(body);
+      const [head, ...lines] = GS.measureRows(drawing.contours, row.run.metrics.units_per_em, { every });
+      const table = GS.element("table", {}, GS.element("caption", { class: "unseen" }, `Measures of ${row.name}`),
+        GS.element("thead", {}, head), GS.element("tbody", {}, ...lines));
+      const more = GS.element("input", { type: "checkbox", checked: every });
+      more.addEventListener("change", () => { every = more.checked; facts(row); find("facts").querySelector("input")?.focus(); });
       const links = Object.entries(drawing.files).map(([kind, path]) =>
         GS.element("a", { href: GS.fileLink(row.run, path), target: "_blank", rel: "noopener" }, kind));
       find("facts").replaceChildren(
         ...(row.error ? [GS.element("p", { class: "bad" }, row.error)] : []),
-        ...(drawing.contours.length ? [GS.element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Measures" }, table)] : []),
+        ...(drawing.contours.length ? [GS.element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Measures" }, table),
+          GS.element("label", { class: "check" }, more, " all measures")] : []),
         GS.element("p", { class: "links" }, ...links));
     };
 
     const show = async (to) => {
       position = Math.max(0, Math.min(rows.length - 1, to));
       const row = rows[position];
+      shows(row);
       find("title").textContent = row.text && row.text.trim() ? `${row.text}  ${row.name}` : row.name;
       find("about").textContent = [row.run.family, row.run.style, `gid ${row.gid}`, row.unicodes, row.status]
         .filter(Boolean).join(" · ");
@@ -90,7 +78,7 @@
     find("fit").addEventListener("click", () => zoom.fit());
     find("close").addEventListener("click", () => dialog.close());
     fade.addEventListener("input", fading);
-    dialog.addEventListener("close", () => closed(position));
+    dialog.addEventListener("close", () => { shows(null); closed(position); });
     dialog.addEventListener("keydown", (event) => {
       if (event.target.matches("input, select")) return;
       if (event.key === "[" || event.key === "PageUp") show(position - 1);
@@ -103,7 +91,7 @@
       open(chosen, at, then) {
         rows = chosen;
         closed = then;
-        dialog.showModal();
+        if (!dialog.open) dialog.showModal();
         show(at);
       },
     };

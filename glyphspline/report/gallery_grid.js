@@ -16,11 +16,15 @@
   GS.layers = (run, drawing, on) => {
     const em = run.metrics.units_per_em, group = GS.svg("g");
     if (drawing.source) group.append(GS.svg("path", { class: "source", d: drawing.source }));
+    const mapped = on.has("comb") || on.has("colour") || on.has("source-comb"), source = mapped ? GS.contours(drawing.source) : [];
+    if (on.has("source-comb")) group.append(GS.comb(source, em, run.scale, { name: "source-comb" }));
     if (drawing.result) {
       group.append(GS.svg("path", { class: "result", d: drawing.result }));
       if (on.has("comb") || on.has("colour")) {
         const contours = GS.contours(drawing.result);
-        if (on.has("comb")) group.append(GS.comb(contours, em, run.scale));
+        // Only a smooth result turns about a corner: elsewhere a corner is a point between two curvatures.
+        const corners = on.has("corners") || run.options.corners !== "smooth" ? [] : GS.corners(source);
+        if (on.has("comb")) group.append(GS.comb(contours, em, run.scale, { corners }));
         if (on.has("colour")) group.append(GS.coloured(contours, em, run.scale));
       }
     }
@@ -32,16 +36,18 @@
     return group;
   };
 
-  /** `box` scrolls, `list` is inside it; `open(position)` is called for a chosen card. */
-  GS.grid = (box, list, layersOn, open) => {
+  /** `box` scrolls, `list` is inside it; `open(position)` is called for a chosen card; `several`: cards say their font. */
+  GS.grid = (box, list, layersOn, open, several) => {
     let rows = [], columns = 1, width = 170, height = 200, current = 0, label = () => "";
     const cards = new Map();
+    const fontOf = (row) => `${row.run.family} ${row.run.style}`.trim();
 
     const card = (position) => {
       const row = rows[position];
       const picture = GS.svg("svg", { viewBox: GS.box(row.run, row.advance).join(" "), "aria-hidden": "true" });
       const button = GS.element("button", { class: `card ${row.status}`, type: "button", tabindex: position === current ? "0" : "-1" },
         picture, GS.element("span", { class: "name" }, row.text && row.text.trim() ? `${row.text} ` : "", GS.element("b", {}, row.name)),
+        ...(several ? [GS.element("span", { class: "font", title: fontOf(row) }, fontOf(row))] : []),
         GS.element("span", { class: "fact" }, label(row)));
       const item = GS.element("div", { role: "listitem", class: "cell", "aria-posinset": String(position + 1),
         "aria-setsize": String(rows.length) }, button);
@@ -80,7 +86,7 @@
       const room = list.clientWidth, wanted = room < 520 ? 150 : 176, before = width;
       columns = Math.max(1, Math.floor(room / wanted));
       width = room / columns;
-      height = width + 46;
+      height = width + (several ? 64 : 46);
       list.style.height = `${Math.ceil(rows.length / columns) * height}px`;
       return width !== before;
     };

@@ -8,12 +8,50 @@ const GS = {};
   const TURN = Math.PI / 12; // a tooth at least every 15 degrees of turn, as in the curvature maps
   const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
   const MOST_TEETH = 400; // a piece
+  const NEAR = 1 / 40, CORNER = Math.PI / 15; // in em and radians: where a smooth result turns about a corner of 12 degrees
+  const CHORDS = 4; // a segment, for which a point counts as inside or outside
 
-  /** The colours of curvature, from the strongest right turn to the strongest left turn. */
+  /** The colours of curvature, from the most concave ink to the most convex. */
   GS.usePalette = (palette) => {
     GS.palette = palette;
     const ends = [palette[0], palette[(palette.length - 1) / 2], palette[palette.length - 1]];
     document.documentElement.style.setProperty("--curvature", `linear-gradient(90deg, ${ends.join(", ")})`);
+  };
+
+  /** Measures as [name, label, unit, meaning]: curvature is stored in 1/unit and shown in 1/em. */
+  GS.useMeasures = (measures) => {
+    GS.measures = new Map(measures.map(([name, label, unit, about]) => [name, { label, unit, about }]));
+  };
+  GS.shown = (name, value, em) => (typeof value === "number" && GS.measures.get(name)?.unit === "1/em" ? value * em : value);
+
+  GS.number = (value) => {
+    if (value === null || value === undefined) return "–";
+    if (value === true) return "yes";
+    if (value === false) return "no";
+    if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+    return String(+value.toPrecision(3)).replace("-", "\u2212");
+  };
+
+  /** Measures that are listed at once; the others are switched on. */
+  const FIRST = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound", "max_curvature",
+    "curvature_extrema", "source_curvature_extrema", "bending_energy", "converged", "within_tolerance"];
+
+  /** Rows of a table of contours' measures, each with its unit and meaning. `every`: also those not listed at once;
+   *  `always`: names of those that keep their row where no contour has them. */
+  GS.measureRows = (contours, em, { every = false, always = new Set() } = {}) => {
+    const names = [...FIRST, ...(every ? [...GS.measures.keys()].filter((name) => !FIRST.includes(name)) : [])]
+      .filter((name) => always.has(name) || contours.some((contour) => contour[name] !== null && contour[name] !== undefined));
+    const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"),
+      ...contours.map((_, i) => GS.element("th", { scope: "col" }, String(i))));
+    return [head, ...names.map((name) => {
+      const { label, unit, about } = GS.measures.get(name);
+      const cell = (contour) => {
+        const bad = (name === "converged" || name === "within_tolerance") && contour[name] === false;
+        return GS.element("td", bad ? { class: "bad" } : {}, GS.number(GS.shown(name, contour[name], em)));
+      };
+      return GS.element("tr", { "data-measure": name, title: about }, GS.element("th", { scope: "row" }, label,
+        ...(unit ? [" ", GS.element("small", { class: "unit" }, unit)] : [])), ...contours.map(cell));
+    })];
   };
 
   GS.svg = (name, attributes = {}, ...children) => {
@@ -118,6 +156,39 @@ const GS = {};
     return found;
   });
 
+  /** Sides of contours as in outlines/ink.py: 1 where the ink is to the left (as seen with y up), -1 to the right. */
+  GS.sides = (contours) => {
+    const rings = contours.map((pieces) => pieces.flatMap((piece) => {
+      const p = cubic(piece);
+      return Array.from({ length: CHORDS }, (_, k) => { const [x, y] = GS.frame(p, k / CHORDS).point; return [x, -y]; });
+    }));
+    const area = (ring) => ring.reduce((sum, [x, y], i) => {
+      const [px, py] = ring.at(i - 1), [ox, oy] = ring[0];
+      return sum + (px - ox) * (y - oy) - (py - oy) * (x - ox);
+    }, 0);
+    const winding = (ring, [x, y]) => ring.reduce((sum, [bx, by], i) => {
+      const [ax, ay] = ring.at(i - 1);
+      if ((ay <= y) === (by <= y)) return sum;
+      const left = (ax - x) * (by - y) - (ay - y) * (bx - x);
+      return sum + (by > ay && left > 0 ? 1 : by < ay && left < 0 ? -1 : 0);
+    }, 0);
+    return rings.map((ring, c) => {
+      const side = area(ring) < 0 ? -1 : 1;
+      const around = rings.reduce((sum, other, k) => sum + (k === c || ring.length < 2 ? 0 : winding(other, ring[1])), 0);
+      return around * side < 0 ? -side : side;
+    });
+  };
+
+  /** The points where contours have corners. */
+  GS.corners = (contours) => contours.flatMap((pieces) => {
+    const legs = pieces.map((p) => {
+      const away = (from, others) => others.map(([x, y]) => [x - from[0], y - from[1]]).find(([x, y]) => x || y) || [0, 0];
+      const [x, y] = away(p[p.length - 1], p.slice(0, -1).reverse());
+      return { leaving: away(p[0], p.slice(1)), arriving: [-x, -y] };
+    });
+    return pieces.filter((_, i) => angle(legs.at(i - 1).arriving, legs[i].leaving) >= CORNER).map((piece) => piece[0]);
+  });
+
   const short = (value) => +value.toFixed(2);
   const move = (a, b) => `M${short(a[0])} ${short(a[1])}L${short(b[0])} ${short(b[1])}`;
   const sides = () => (GS.palette.length - 1) / 2;
@@ -127,21 +198,31 @@ const GS = {};
     return Math.max(-n, Math.min(n, Math.round(relative * n))) + n;
   };
 
-  /** The comb as a group: teeth by colour class, the line through their tips, a dot where a tooth was cut. */
-  GS.comb = (contours, em, scale) => {
-    const teeth = GS.palette.map(() => []), ends = [], cut = [];
-    for (const frames of GS.frames(contours, em)) {
+  /** The comb as a group: teeth by colour class, the line through their tips, a dot where a tooth was cut.
+   *  `corners`: points in whose neighbourhood teeth that would be cut are left out; `gain` lengthens all teeth. */
+  GS.comb = (contours, em, scale, { name = "comb", corners = [], gain = 1 } = {}) => {
+    const teeth = GS.palette.map(() => []), ends = [], cut = [], sides = GS.sides(contours);
+    const beside = ([x, y]) => corners.some(([cx, cy]) => Math.hypot(cx - x, cy - y) <= NEAR * em);
+    GS.frames(contours, em).forEach((frames, c) => {
+      let down = false, line = "";
       const tips = frames.map(({ point, normal, curvature }) => {
-        const strength = scale > 0 ? curvature / scale : 0;
-        const reach = TOOTH * em * Math.max(-LONGEST, Math.min(LONGEST, strength));
+        const whole = scale > 0 ? curvature / scale : 0, strength = Math.abs(whole) > LONGEST && beside(point) ? 0 : whole;
+        const reach = gain * TOOTH * em * Math.max(-LONGEST, Math.min(LONGEST, strength)), flat = Math.abs(reach) <= 1e-4 * em;
         const tip = [point[0] - reach * normal[0], point[1] - reach * normal[1]];
-        if (Math.abs(reach) > 1e-4 * em) teeth[GS.colourClass(strength)].push(move(point, tip));
+        if (!flat) teeth[GS.colourClass(sides[c] * strength)].push(move(point, tip));
         if (Math.abs(strength) > LONGEST) cut.push(move(tip, tip));
-        return tip;
+        return { tip, flat };
       });
-      if (tips.length) ends.push("M" + tips.map((tip) => `${short(tip[0])} ${short(tip[1])}`).join("L") + "Z");
-    }
-    const group = GS.svg("g", { class: "comb" });
+      // Between two places without a tooth the line would lie on the outline.
+      tips.forEach(({ tip, flat }, i) => {
+        const before = tips.at(i - 1), drawn = !(flat && before.flat);
+        if (drawn && !down) line += `M${short(before.tip[0])} ${short(before.tip[1])}`;
+        if (drawn) line += `L${short(tip[0])} ${short(tip[1])}`;
+        down = drawn;
+      });
+      if (line) ends.push(line);
+    });
+    const group = GS.svg("g", { class: name });
     teeth.forEach((data, i) => data.length && group.append(GS.svg("path", { d: data.join(""), stroke: GS.palette[i] })));
     group.append(GS.svg("path", { class: "tips", d: ends.join("") }));
     if (cut.length) group.append(GS.svg("path", { class: "cut", d: cut.join("") }));
@@ -150,13 +231,13 @@ const GS = {};
 
   /** The curve itself in the colours of its curvature. */
   GS.coloured = (contours, em, scale) => {
-    const parts = GS.palette.map(() => []);
-    for (const frames of GS.frames(contours, em)) {
+    const parts = GS.palette.map(() => []), sides = GS.sides(contours);
+    GS.frames(contours, em).forEach((frames, c) => {
       for (let i = 1; i < frames.length; i++) {
-        const mean = (frames[i].curvature + frames[i - 1].curvature) / 2;
+        const mean = (sides[c] * (frames[i].curvature + frames[i - 1].curvature)) / 2;
         parts[GS.colourClass(scale > 0 ? mean / scale : 0)].push(move(frames[i - 1].point, frames[i].point));
       }
-    }
+    });
     const group = GS.svg("g", { class: "coloured" });
     parts.forEach((data, i) => data.length && group.append(GS.svg("path", { d: data.join(""), stroke: GS.palette[i] })));
     return group;
@@ -172,7 +253,9 @@ const GS = {};
     GS.palette.forEach((fill, i) => bar.append(GS.svg("rect", { x: 14 * i, width: 14.5, height: 10, fill })));
     const text = (value) => value.toPrecision(3).replace(/\.?0+$/, "").replace("-", "\u2212");
     return GS.element("div", { class: "legend", role: "img", "aria-label":
-      `Curvature from ${text(-reach)} to ${text(reach)} in 1/em, left turns positive` },
-    bar, GS.element("span", {}, text(-reach)), GS.element("span", {}, "κ in 1/em"), GS.element("span", {}, text(reach)));
+      `Curvature from ${text(-reach)}, concave, to ${text(reach)}, convex, in 1/em`,
+    title: "Curvature: 1/radius, with the em as the unit. Blue to violet: the ink is convex; yellow to red: it is concave. "
+      + `A tooth of full length is ${text(reach)}/em.` },
+    bar, GS.element("span", {}, `${text(-reach)} concave`), GS.element("span", {}, "κ in 1/em"), GS.element("span", {}, `convex ${text(reach)}`));
   };
 })();

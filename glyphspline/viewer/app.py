@@ -18,8 +18,8 @@ from starlette.routing import Route
 
 from .. import compiling
 from ..errors import GlyphsplineError
-from ..fitting.options import PRESETS
-from ..report.gallery import palette
+from ..fitting.options import PRESETS, Options
+from ..report.gallery import measures, palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
 from .guard import Guard
@@ -36,6 +36,10 @@ PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.re
 
 FIRST = "龍龙好gSa"
 """The first of these in the font is shown first: the paper's characters, or some with curves."""
+
+
+TRIED = 200
+"""Glyphs looked at for one with contours."""
 
 
 def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starlette:
@@ -83,11 +87,33 @@ def font_facts(work: Work) -> dict[str, Any]:
         "glyphs": len(font.glyph_names),
         "metrics": asdict(font.metrics),
         "axes": [asdict(axis) for axis in font.axes],
-        "first": next((font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap), font.glyph_names[0]),
+        "first": first_glyph(work),
+        "defaults": defaults(work.em),
+        "measures": measures(),
         "scale": work.scale(),
         "presets": PRESETS,
         "palette": palette(),
     }
+
+
+def defaults(em: float) -> dict[str, Any]:
+    """What the page opens on: the command line's own defaults."""
+    options = Options()
+    names = ("variant", "margin", "corners", "continuity", "effort")
+    return {name: getattr(options, name) for name in names} | {
+        "sampling": "tolerance",
+        "amount": options.tolerance_for(em),
+    }
+
+
+def first_glyph(work: Work) -> str:
+    """The glyph shown first: one of ``FIRST``, or else one with contours; ``.notdef`` only where there is no other."""
+    font = work.font
+    mapped = [font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap]
+    others = [name for name in dict.fromkeys([*font.cmap.values(), *font.glyph_names]) if name != ".notdef"]
+    candidates = [*mapped, *others[:TRIED]]
+    drawn = (name for name in candidates if work.has_ink(name))
+    return next(drawn, (candidates or font.glyph_names)[0])
 
 
 def glyph_answer(work: Work, state: State) -> dict[str, Any]:

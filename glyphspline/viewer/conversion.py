@@ -13,6 +13,7 @@ import numpy as np
 
 from ..curves.curvature import Comb, robust_scale
 from ..errors import GlyphsplineError
+from ..fitting.closed_curves import History, recorded
 from ..fitting.convert import convert
 from ..fitting.fixed_sampling import through_polygons
 from ..fitting.options import Options
@@ -47,6 +48,13 @@ class Work:
         """The glyph's outline at a location."""
         with self.lock:
             return self.at(location).outline(glyph)
+
+    def has_ink(self, glyph: str) -> bool:
+        """Whether a glyph can be read and has contours."""
+        try:
+            return len(self.outline(glyph, ()).contours) > 0
+        except GlyphsplineError:
+            return False
 
     def _convert(self, glyph: str, location: tuple[tuple[str, float], ...], options: Options) -> GlyphResult:
         return convert(self.outline(glyph, location), options)
@@ -120,12 +128,26 @@ def through(contour: ContourResult, polygon: FloatArray, options: Options) -> Co
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
-    """Numbers of updates, and after each number the closed curves of the glyph."""
+    """Numbers of updates, and after each number the closed curves of the glyph: each run is made once."""
     closed = [contour for contour in result.contours if is_smooth(contour)]
-    most = max((contour.interpolations[0].iterations for contour in closed), default=0)
-    for m in shown_steps(most):
-        options = replace(result.options, max_iterations=m)
-        yield m, [through(contour, contour.polygon, options).interpolations[0] for contour in closed]
+    arcs = [contour.interpolations[0] for contour in closed]
+    runs = [recorded(contour.polygon, result.options) for contour in closed]
+    for m in shown_steps(updates_of(result)):
+        yield m, [_after(m, arc, run) for arc, run in zip(arcs, runs, strict=True)]
+
+
+def updates_of(result: GlyphResult) -> int:
+    """The largest number of updates of a closed curve of the glyph."""
+    return max((c.interpolations[0].iterations for c in result.contours if is_smooth(c)), default=0)
+
+
+def _after(updates: int, arc: Interpolation, run: History) -> Interpolation:
+    """A closed curve after a number of updates: its own end if it needed no more."""
+    if updates >= min(arc.iterations, len(run)):
+        return arc
+    controls, parameters = run[updates]
+    spline = replace(arc.spline, control_points=controls)
+    return replace(arc, spline=spline, parameters=parameters, residuals=arc.residuals[: updates + 1])
 
 
 def shown_steps(most: int) -> list[int]:

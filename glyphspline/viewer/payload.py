@@ -13,7 +13,7 @@ from ..outlines.outline import Contour, Outline
 from ..types import FloatArray
 from ..writers.svg.markup import code_points
 from ..writers.svg.path_data import path_data, polyline_data
-from .conversion import is_smooth
+from .conversion import is_smooth, shown_steps, updates_of
 
 DIGITS = 2
 
@@ -41,6 +41,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
         "polygons": [points(contour.polygon) for contour in result.contours],
         "movable": [is_smooth(contour) for contour in result.contours],
         "notes": list(result.notes),
+        "steps": len(shown_steps(updates_of(result))),
         "residuals": [[finite(error) for error in arc.residuals.tolist()] for arc in arcs],
         "intervals": "".join(interval_data(arc) for arc in arcs),
         "measures": [{k: finite(v) for k, v in asdict(contour.measures).items()} for contour in result.contours],

@@ -38,5 +38,6 @@ def _matches(font: Font, words: str) -> Iterator[str]:
         yield names[int(index[1])]
     if words in names:
         yield words
-    yield from (cmap[ord(character)] for character in words if not character.isspace() and ord(character) in cmap)
+    if len(words) == 1 or not words.isascii():  # several letters of ASCII are a name, as in the gallery
+        yield from (cmap[ord(character)] for character in words if not character.isspace() and ord(character) in cmap)
     yield from (name for name in names if words.lower() in name.lower())

@@ -8,12 +8,9 @@
     2: "the interval of Lemma 2: converges, and certified to with c > 0", 3: "only the knot u_i: no search, overshoots",
     4: "as 2, each control point renewed at once (Algorithm 3)",
   };
-  const MEASURES = { vertices: "vertices", segments: "segments", iterations: "iterations", residual: "residual", converged: "converged", rate_bound: "rate bound",
-    deviation: "deviation", deviation_bound: "certified", overshoot: "overshoot", max_curvature: "largest κ",
-    curvature_extrema: "extrema of κ", source_curvature_extrema: "extrema of κ, source", bending_energy: "energy" };
   /** Measures of the iteration, which keep their rows where nothing is iterated. */
   const ITERATED = new Set(["iterations", "residual", "converged", "rate_bound"]);
-  const number = (v) => (v === null || v === undefined ? "–" : v === true ? "yes" : v === false ? "no" : Number.isInteger(v) ? String(v) : String(+v.toPrecision(3)));
+  const number = GS.number;
 
   /** What is drawn may still change while an answer is awaited, and says so; the server may be compiling meanwhile. */
   let shown = null, awaited = 0, asking = null, said = "";
@@ -35,10 +32,15 @@
   awaiting(1);
   const font = await (await fetch("/api/font")).json();
   GS.usePalette(font.palette);
+  GS.useMeasures(font.measures);
   const em = font.metrics.units_per_em;
-  const state = { glyph: font.first, location: {}, variant: 2, margin: 0.02, sampling: "step", amount: 0, corners: "smooth", continuity: "c2", effort: "fast", moved: [], measure: false };
+  const state = { glyph: font.first, location: {}, ...font.defaults, moved: [], measure: false };
+  /* The page opens on the command line's defaults. */
+  for (const name of ["variant", "sampling", "corners", "continuity", "effort"]) document.querySelector(`[name=${name}][value="${state[name]}"]`).checked = true;
+  at("margin").value = String(state.margin);
   const layers = new Set(["source", "result", "vertices"]);
   let compared = null, steps = null, playing = null;
+  let asked = 0; // how often the curve has been asked for: what was sent before the last time is out of date
 
   /** One request of a kind at a time; of those that came in between only the last is sent. */
   const line = (path, then) => {
@@ -46,13 +48,14 @@
     const send = async (body) => {
       if (busy) { next = body; return; }
       busy = true;
+      const sent = asked;
       awaiting(1);
       try {
         const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body });
         const found = await answer.json();
-        if (!next || found.error) then(found);
+        if (!next || found.error) then(found, sent);
       } catch (error) {
-        then({ error: `the viewer does not answer: ${error.message}` });
+        then({ error: `the viewer does not answer: ${error.message}` }, sent);
       }
       busy = false;
       if (next) { const body = next; next = null; send(body); }
@@ -77,13 +80,17 @@
     ask();
   });
 
+  const mapped = () => ["comb", "source-comb", "colour"].some((name) => layers.has(name));
+  const combs = () => ({ smooth: state.corners === "smooth", gain: 2 ** +at("gain").value });
+
   const draw = () => {
     if (!shown) return;
     const index = +at("step").value, step = steps && index < steps.length ? steps[index] : null;
     const closed = shown.polygons.filter((_, i) => shown.movable[i]);
     const result = step ? { ...step, polygons: shown.polygons, intervals: "", tied: closed.flat() } : shown;
-    at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers));
-    at("legend").replaceChildren(...(layers.has("comb") || layers.has("colour") ? [GS.legend(em, font.scale)] : []));
+    at("picture").replaceChildren(GS.viewerDrawing(font, shown.source, result, layers, combs()));
+    at("legend").replaceChildren(...(mapped() ? [GS.legend(em, font.scale)] : []));
+    at("gain").disabled = !(layers.has("comb") || layers.has("source-comb"));
     at("step-out").textContent = step ? `${step.step}, error ${number(step.error)}` : "result";
     if (shown.measures.some((m) => m.iterations !== null)) GS.chart(at("chart"), shown.residuals, 0.005, step ? step.step : null);
     else at("chart").textContent = "–";
@@ -95,12 +102,12 @@
     const small = new Set([...layers].filter((name) => name !== "feet" && name !== "vertices"));
     at("compared").replaceChildren(...compared.map((result) => {
       const picture = GS.svg("svg", { class: "drawing", viewBox: at("picture").getAttribute("viewBox"), role: "img", "aria-label": `variant ${result.variant}` },
-        GS.viewerDrawing(font, shown.source, result, small));
-      const known = (key) => result.measures.map((m) => m[key]).filter((v) => v !== null);
+        GS.viewerDrawing(font, shown.source, result, small, combs()));
+      const known = (key) => result.measures.map((m) => GS.shown(key, m[key], em)).filter((v) => v !== null);
       const sum = (key) => (known(key).length ? known(key).reduce((total, v) => total + v, 0) : null);
       const most = (key) => (known(key).length ? Math.max(...known(key)) : null);
       return GS.element("figure", { class: result.variant === state.variant ? "chosen" : "" }, picture, GS.element("figcaption", {},
-        GS.element("b", {}, `variant ${result.variant}`), ` · ${number(most("iterations"))} iterations · energy ${number(sum("bending_energy"))} · largest κ ${number(most("max_curvature") === null ? null : most("max_curvature") * em)}/em`));
+        GS.element("b", {}, `variant ${result.variant}`), ` · ${number(most("iterations"))} iterations · energy ${number(sum("bending_energy"))}/em · largest κ ${number(most("max_curvature"))}/em`));
     }));
   };
 
@@ -110,10 +117,7 @@
     at("about").textContent = [`gid ${shown.gid}`, shown.unicodes, `${shown.measures.length} contours`, `${total} vertices`,
       ...(bad ? [`${bad} not converged`] : []), ...(state.sampling === "tolerance" ? shown.notes : [])].filter(Boolean).join(" · ");
     at("about").classList.toggle("bad", bad > 0);
-    const head = GS.element("tr", {}, GS.element("th", { scope: "col" }, "contour"), ...shown.measures.map((_, i) => GS.element("th", { scope: "col" }, String(i))));
-    const rows = Object.entries(MEASURES).filter(([key]) => ITERATED.has(key) || shown.measures.some((m) => m[key] !== null)).map(([key, word]) =>
-      GS.element("tr", {}, GS.element("th", { scope: "row" }, word), ...shown.measures.map((m) => GS.element("td", {}, number(m[key])))));
-    at("measures").replaceChildren(head, ...rows);
+    at("measures").replaceChildren(...GS.measureRows(shown.measures, em, { every: at("every").checked, always: ITERATED }));
     const whole = shown.movable.every(Boolean); // arcs between corners take a few updates each and are not stepped through
     at("play").disabled = at("step").disabled = !whole;
     at("step-out").title = whole ? "" : "the iteration of smooth curves only";
@@ -121,20 +125,21 @@
     at("moved-note").hidden = !state.moved.length;
   };
 
-  const askSteps = line("/api/steps", (found) => {
-    if (found.error) return;
-    steps = found.steps;
-    at("step").max = String(steps.length);
-    if (+at("step").value === 0 && !playing) at("step").value = String(steps.length);
-    draw();
-    wanted?.();
-    wanted = null;
-  });
+  /* The slider knows the number of steps from the curve's own answer; their drawings are asked for when it is used. */
   let wanted = null;
+  const askSteps = line("/api/steps", (found, sent) => {
+    const act = wanted;
+    wanted = null;
+    if (found.error || sent !== asked) return;
+    steps = found.steps;
+    act?.();
+    draw();
+  });
   const withSteps = (act) => {
     if (steps) return act();
+    const already = wanted;
     wanted = act;
-    askSteps();
+    if (!already) askSteps();
   };
   const askCompared = line("/api/compare", (found) => {
     compared = found.error || !at("compare").checked ? null : found.results;
@@ -146,6 +151,8 @@
       at("about").classList.add("bad");
       return;
     }
+    at("step").max = String(found.steps);
+    if (!steps && !wanted) at("step").value = at("step").max;
     const other = !shown || shown.glyph !== found.glyph, onlyMeasured = state.measure && shown?.result === found.result;
     shown = found;
     if (onlyMeasured) return tell();
@@ -155,9 +162,9 @@
     if (at("compare").checked) askCompared();
   });
   const ask = () => {
-    steps = null;
-    at("step").max = "1";
-    at("step").value = "1";
+    steps = wanted = null;
+    asked++;
+    at("step").value = at("step").max;
     clearInterval(playing);
     playing = null;
     state.measure = false;
@@ -175,11 +182,14 @@
 
   /* Controls. The amount's slider is logarithmic: each kind of sampling has its own ends. */
   const ENDS = { step: [em / 100, em / 4], count: [4, 400], tolerance: [em / 5000, em / 50] };
+  const shareOf = (sampling, value) => (100 * Math.log(value / ENDS[sampling][0])) / Math.log(ENDS[sampling][1] / ENDS[sampling][0]);
+  const START = { step: 45, count: 50, tolerance: shareOf("tolerance", font.defaults.amount) };
+  at("amount").value = String(START[state.sampling]);
   const UNITS = { step: ["chord", " units"], count: ["vertices a contour", ""], tolerance: ["distance allowed", " units"] };
   const amount = () => {
     const [low, high] = ENDS[state.sampling], share = +at("amount").value / 100;
     const value = low * (high / low) ** share;
-    state.amount = state.sampling === "count" ? Math.round(value) : +value.toPrecision(3);
+    state.amount = state.sampling === "count" ? Math.round(value) : +value.toPrecision(4);
     at("amount-word").textContent = UNITS[state.sampling][0];
     at("amount-out").textContent = `${state.amount}${UNITS[state.sampling][1]}`;
   };
@@ -228,7 +238,6 @@
       ask();
     });
   }
-  const START = { step: 45, count: 50, tolerance: 35 };
   for (const input of document.querySelectorAll("[name=sampling]")) input.addEventListener("change", () => { at("amount").value = START[input.value]; });
   for (const input of document.querySelectorAll("[name=sampling], [name=corners], [name=continuity], [name=effort], #amount")) input.addEventListener("input", () => { state.moved = []; });
   for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], [name=continuity], [name=effort], #margin, #amount")) {
@@ -257,6 +266,8 @@
     const words = at("words").value;
     const found = await (await fetch(`/api/glyphs?words=${encodeURIComponent(words)}`)).json();
     if (words !== at("words").value) return;
+    at("no-glyph").hidden = found.glyphs.length > 0;
+    at("glyphs").hidden = !found.glyphs.length;
     at("glyphs").replaceChildren(...found.glyphs.map(({ name, text }) => {
       const option = GS.element("div", { role: "option", class: text.trim() ? "" : "named", title: name, "aria-label": name, "aria-selected": String(name === state.glyph), "data-name": name }, text.trim() || name);
       option.addEventListener("click", () => choose(name));
@@ -277,7 +288,8 @@
 
   at("step").addEventListener("pointerdown", () => withSteps(() => {}));
   at("step").addEventListener("focus", () => withSteps(() => {}));
-  at("step").addEventListener("input", draw);
+  at("step").addEventListener("input", () => withSteps(draw));
+  at("gain").addEventListener("input", () => { at("gain-out").textContent = `${number(combs().gain)}×`; draw(); drawCompared(); });
   at("play").addEventListener("click", () => withSteps(() => {
     clearInterval(playing);
     for (const name of ["control", "feet"]) if (!layers.has(name)) document.querySelector(`[data-layer=${name}]`).click();
@@ -290,6 +302,7 @@
     }, 280);
   }));
   at("compare").addEventListener("change", () => (at("compare").checked ? askCompared() : ((compared = null), drawCompared())));
+  at("every").addEventListener("change", () => shown && tell());
   at("restore").addEventListener("click", () => { state.moved = []; ask(); });
   at("copy").addEventListener("click", async () => {
     await navigator.clipboard.writeText(at("command").textContent);

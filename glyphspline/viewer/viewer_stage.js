@@ -6,17 +6,19 @@
 
   GS.viewerLayers = {
     source: "Source", result: "Result", vertices: "Vertices", polygon: "Polygon", control: "Control polygon", feet: "Footpoints",
-    intervals: "Intervals", comb: "Curvature comb", colour: "Colour",
+    intervals: "Intervals", "source-comb": "Source's comb", comb: "Result's comb", corners: "Teeth in corners", colour: "Colour",
   };
 
-  /** The layers of `source` (path data) and `result` (as the server gives it) that are on. */
-  GS.viewerDrawing = (font, source, result, on) => {
+  /** The layers of `source` (path data) and `result` (as the server gives it) that are on.
+   *  `comb`: {smooth, gain}, whether the result turns about corners, and a factor of the teeth's length. */
+  GS.viewerDrawing = (font, source, result, on, { smooth, gain }) => {
     const em = font.metrics.units_per_em, group = GS.svg("g"), contours = GS.contours(result.result);
     const add = (name, make) => on.has(name) && group.append(...make());
     add("source", () => [GS.svg("path", { class: "source", d: source })]);
     add("result", () => [GS.svg("path", { class: "result", d: result.result })]);
     add("intervals", () => [GS.svg("path", { class: "intervals", d: result.intervals || "" })]);
-    add("comb", () => [GS.comb(contours, em, font.scale)]);
+    add("source-comb", () => [GS.comb(GS.contours(source), em, font.scale, { name: "source-comb", gain })]);
+    add("comb", () => [GS.comb(contours, em, font.scale, { gain, corners: smooth && !on.has("corners") ? GS.corners(GS.contours(source)) : [] })]);
     add("colour", () => [GS.coloured(contours, em, font.scale)]);
     add("control", () => [GS.svg("path", { class: "control", d: result.control }), GS.dots(result.controls, "controls-dots")]);
     const closed = (points) => "M" + points.map((p) => p.join(" ")).join("L") + "Z";

@@ -34,7 +34,7 @@ def glyph_polygons(run: Run) -> dict[str, list[FloatArray]]:
         found[kind] = []
         for file, chosen in files:
             font = open_font(file)
-            names = font.select(text=chosen) if chosen else font.glyph_names
+            names = sorted(font.select(text=chosen), key=font.glyph_names.index) if chosen else list(font.glyph_names)
             for outline in map(font.outline, names[: run.size(1000, 2)]):
                 em = outline.metrics.units_per_em
                 found[kind] += [gs.sample(c, step=0.03 * em) * (1000 / em) for c in outline.contours]

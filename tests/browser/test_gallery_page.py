@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,7 @@ def test_several_fonts_side_by_side(page: Any, gallery: Path) -> None:
     page.select_option("#run", "variable")
     assert page.locator("#options").inner_text().endswith("step 90")
     assert page.locator("#count").inner_text() == "8 of 26 glyphs"
+    assert page.locator(".card .font").first.inner_text().strip() != ""
     page.locator(".card:not(.empty)").first.click()
     assert "Regular" in page.locator("[data-part=about]").inner_text()
 
@@ -72,7 +74,9 @@ def test_search_sort_and_limits(page: Any, gallery: Path) -> None:
     assert page.locator("#count").inner_text().startswith("0 of")
 
 
-@pytest.mark.parametrize("layer", ["source", "result", "polygon", "vertices", "control", "comb", "coloured"])
+@pytest.mark.parametrize(
+    "layer", ["source", "result", "polygon", "vertices", "control", "source-comb", "comb", "coloured"]
+)
 def test_each_layer_is_switched(page: Any, gallery: Path, layer: str) -> None:
     opened(page, gallery / "kouzan-gyosho")
     box = page.locator(f"header [data-layer={layer.replace('coloured', 'colour')}]")
@@ -175,7 +179,7 @@ def test_twenty_thousand_glyphs_are_a_few_cards_at_a_time(page: Any, tmp_path: P
         assert page.locator(".cell").count() < 120
     assert names(page)[-1] == "g19999"
     page.select_option("#sort", "deviation")
-    expect(page.locator(".cell[aria-posinset='1'] .fact")).to_have_text("deviation 996")
+    expect(page.locator(".cell[aria-posinset='1'] .fact")).to_have_text("996 units deviation")
 
 
 def test_prints_cards_in_columns(page: Any, gallery: Path) -> None:
@@ -198,3 +202,97 @@ def test_on_a_phone_nothing_is_wider_than_the_screen(page: Any, gallery: Path) -
     page.wait_for_selector("[data-part=picture] .result")
     assert page.locator(".stage").bounding_box()["height"] > 200
     assert page.locator("#detail").evaluate("d => d.scrollWidth <= d.clientWidth")
+
+
+def test_every_measure_has_its_unit_and_meaning(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    lines = [json.loads(line) for line in (gallery / "kouzan-gyosho" / "manifest.jsonl").read_text().splitlines()]
+    (contours,) = (line["contours"] for line in lines if line["glyph"] == "O")
+    page.locator(".card:has(b:text-is('O'))").click()
+    row = page.locator("[data-measure=max_curvature]")
+    assert row.locator("th").inner_text() == "largest curvature 1/em"
+    assert "1/radius" in row.get_attribute("title")
+    shown = [float(cell.replace("\N{MINUS SIGN}", "-")) for cell in row.locator("td").all_inner_texts()]
+    assert shown == pytest.approx([1024 * contour["max_curvature"] for contour in contours], rel=5e-3)
+    assert page.locator("[data-measure=deviation] th").inner_text() == "deviation units"
+    overshoot = page.locator("[data-measure=overshoot]")
+    expect(overshoot).to_have_count(0)
+    page.locator("[data-part=facts] input").check()
+    expect(overshoot).to_have_count(1)
+    assert page.locator("#sort option[value=bending_energy]").text_content() == "bending energy, 1/em"
+
+
+def test_nothing_found_is_said_and_exact_matches_come_first(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    assert page.locator("#none").is_hidden()
+    page.fill("#words", "no such")
+    expect(page.locator("#none")).to_be_visible()
+    assert page.locator("#csv").is_disabled()
+    page.fill("#words", "a")
+    expect(page.locator(".cell[aria-posinset='1'] b")).to_have_text("a")
+    assert names(page)[1] == "A"
+    assert "ampersand" in names(page)[2:]
+
+
+def test_a_link_opens_a_glyph(page: Any, gallery: Path) -> None:
+    opened(page, gallery)
+    page.locator(".card:has(b:text-is('uni9F8D'))").click()
+    address = page.url
+    assert address.endswith("#kouzan-gyosho/17")
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => location.hash === ''")
+    page.goto("about:blank")
+    page.goto(address)
+    expect(page.locator("#detail-title")).to_have_text("龍  uni9F8D")
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => location.hash === ''")
+    page.fill("#words", "g")
+    page.wait_for_function("() => document.getElementById('count').textContent.includes(' of ')")
+    page.evaluate("location.hash = '#kouzan-gyosho/17'")
+    expect(page.locator("#detail-title")).to_have_text("龍  uni9F8D")
+    assert page.locator("#words").input_value() == ""
+    page.keyboard.press("Escape")
+    page.evaluate("location.hash = '#nothing/9'")
+    assert page.locator("#detail").is_hidden()
+
+
+def test_the_table_is_saved_as_csv(page: Any, tmp_path: Path) -> None:
+    hostile = '=1+"1",\n'
+    entries: Any = [
+        {"glyph": name, "gid": gid, "unicodes": [], "advance": 500, "status": "ok", "files": {}, "error": None,
+         "contours": [{"vertices": 10, "max_curvature": 0.25, "deviation": 1.5}]}
+        for gid, name in enumerate(["a", hostile])
+    ]  # fmt: skip
+    metrics = {"units_per_em": 2000.0, "ascender": 1, "descender": 0}
+    write_report(tmp_path, entries, {"font": {"family": "Tests", "style": "Bold", "metrics": metrics}})
+    opened(page, tmp_path)
+    with page.expect_download() as waiting:
+        page.locator("#csv").click()
+    waiting.value.save_as(tmp_path / "saved.csv")
+    with open(tmp_path / "saved.csv", encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    first = dict(zip(head, rows[0], strict=True))
+    assert (first["font"], first["glyph"], first["gid"]) == ("Tests Bold", "a", "0")
+    assert (first["deviation (units)"], first["largest curvature (1/em)"]) == ("1.5", "500")
+    assert rows[1][1] == f"'{hostile}", "text, not a formula"
+
+
+def test_convex_and_concave_are_the_inks(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    sides = "([a, b]) => [a, b].map((data) => GS.sides(GS.contours(data)))"
+    outer, counter = "M0 0l100 0 0 100 -100 0Z", "M20 20l0 60 60 0 0-60Z"  # y down: the outer contour runs clockwise
+    reverse = "M0 0l0 100 100 0 0-100Z"
+    assert page.evaluate(sides, [outer + counter, reverse]) == [[-1, -1], [1]]
+    corners = "(data) => GS.corners(GS.contours(data))"
+    assert sorted(page.evaluate(corners, outer)) == [[0, 0], [0, 100], [100, 0], [100, 100]]
+    page.keyboard.press("c")
+    cut = page.locator(".card:has(b:text-is('uni9F8D')) .comb .cut")
+    dots = "d => d.split('M').length"
+    page.wait_for_selector(".card:has(b:text-is('uni9F8D')) .comb", state="attached")
+    few = cut.evaluate_all(f"all => all.map((e) => e.getAttribute('d')).map({dots})")
+    page.keyboard.press("n")
+    page.wait_for_function(
+        "few => { const e = [...document.querySelectorAll('.card')].find((c) => c.querySelector('b').textContent ==="
+        " 'uni9F8D')?.querySelector('.comb .cut'); return e && e.getAttribute('d').split('M').length > few; }",
+        arg=max(few, default=0),
+    )

@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
+import glyphspline as gs
+
+FONT = Path(__file__).parents[2] / "fonts_test" / "kouzan-gyosho.ttf"
 RESULT = "#picture .result"
 
 
@@ -72,8 +75,8 @@ def test_presets_and_continuity(shown: Any) -> None:
     assert shown.locator("[name=preset]:checked").count() == 0
     assert shown.locator(choice("variant", "'2'")).is_disabled()
     assert shown.locator("#compared").is_hidden()
-    for row in ("iterations", "residual", "converged", "rate bound"):
-        cells = shown.locator(f"#measures tr:has(th:text-is('{row}')) td").all_inner_texts()
+    for row in ("iterations", "residual", "converged", "rate_bound"):
+        cells = shown.locator(f"#measures tr[data-measure={row}] td").all_inner_texts()
         assert cells
         assert set(cells) == {"–"}, "nothing is iterated"
     assert shown.locator("#chart").inner_text() == "–"
@@ -158,3 +161,62 @@ def test_says_that_the_server_compiles_until_the_answer_comes(page: Any, viewer:
     for route in held:
         route.continue_()
     expect(page.locator("#about")).to_contain_text("contours")
+
+
+def test_opens_on_the_command_lines_defaults(shown: Any) -> None:
+    chosen = {name: shown.locator(f"[name={name}]:checked").get_attribute("value") for name in
+              ("variant", "sampling", "corners", "effort")}  # fmt: skip
+    assert chosen == {"variant": "2", "sampling": "tolerance", "corners": "smooth", "effort": "fast"}
+    assert shown.locator("#amount-out").inner_text() == "1.024 units"
+    assert shown.locator("#margin-out").inner_text() == "0.020"
+    glyph = gs.convert(gs.open_font(FONT).outline("uni9F8D"))
+    assert f'd="{path(shown)}"' in gs.to_svg(glyph)
+
+
+def test_a_glyph_that_is_not_there_is_said_to_be_none(shown: Any) -> None:
+    note = shown.locator("#no-glyph")
+    assert note.is_hidden()
+    shown.locator("#words").fill("no such glyph")
+    expect(note).to_be_visible()
+    assert "uni9F8D" in shown.locator("#title").inner_text(), "what is shown stays"
+    shown.locator("#words").fill("")
+    expect(note).to_be_hidden()
+
+
+def test_the_first_key_press_on_the_iteration_counts(shown: Any) -> None:
+    final = int(shown.locator("#step").get_attribute("max"))
+    assert shown.locator("#step").input_value() == str(final)
+    with shown.expect_response("**/api/steps") as waiting:
+        shown.locator("#step").focus()
+        shown.keyboard.press("ArrowLeft")
+    steps = waiting.value.json()["steps"]
+    assert len(steps) == final
+    expect(shown.locator("#step-out")).to_contain_text(f"{steps[-1]['step']}, error")
+    shown.keyboard.press("Home")
+    expect(shown.locator("#step-out")).to_contain_text("0, error")
+    assert path(shown) == steps[0]["result"]
+    shown.keyboard.press("End")
+    expect(shown.locator("#step-out")).to_have_text("result")
+
+
+def test_combs_of_source_and_result_and_their_gain(shown: Any) -> None:
+    for layer in ("source-comb", "comb"):
+        shown.locator(f"[data-layer={layer}]").check(force=True)
+        shown.locator(f"#picture .{layer} .tips").wait_for(state="attached")
+    tips = shown.locator("#picture .source-comb .tips")
+    plain = tips.get_attribute("d")
+    size = "() => document.querySelector('#picture .source-comb').getBBox().height"
+    before = shown.evaluate(size)
+    shown.locator("#gain").fill("3")
+    assert shown.locator("#gain-out").inner_text() == "8×"
+    assert tips.get_attribute("d") != plain
+    assert shown.evaluate(size) > before
+    assert "convex" in shown.locator("#legend").inner_text()
+
+
+def test_measures_have_units_and_overshoot_is_asked_for(shown: Any) -> None:
+    row = shown.locator("#measures tr[data-measure=max_curvature]")
+    assert row.locator("th").inner_text() == "largest curvature 1/em"
+    assert shown.locator("#measures tr[data-measure=overshoot]").count() == 0
+    shown.locator("#every").check()
+    shown.locator("#measures tr[data-measure=overshoot]").wait_for()

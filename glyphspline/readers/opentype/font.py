@@ -73,6 +73,16 @@ def open_font(path: str | Path, face_index: int = 0, location: Location = None) 
 
     Raises:
         FontError: the file cannot be read, is no font or broken, or has no such face, axis or instance.
+
+    Example:
+        >>> from glyphspline import open_font
+        >>> font = open_font("fonts_test/kouzan-gyosho.ttf")
+        >>> font
+        <Font 'Kouzan Gyosho Subset Regular' from 'kouzan-gyosho.ttf': 18 glyphs, 17 characters, 1024 units per em>
+        >>> font.select(text="龍好A")  # in the order of the text
+        ('uni9F8D', 'uni597D', 'A')
+        >>> font.outline("A")
+        <Outline 'A' gid 4 U+0041: 2 contours, 34 segments, advance 515, 1024 units per em>
     """
     path = Path(path)
     with opening(path):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path as FilePath
 from typing import Any
@@ -12,10 +11,11 @@ import numpy as np
 
 from ...curves.curvature import Comb, comb
 from ...fitting.results import ContourResult, GlyphResult
+from ...outlines.ink import ink_sides
 from ...outlines.joins import Kind, joins
 from ...outlines.outline import Contour
 from ...types import FloatArray
-from ..svg.curvature_map import LONGEST, SPACING, Teeth, teeth
+from ..svg.curvature_map import LONGEST, SPACING, Teeth, Whose, teeth
 from .patches import UNDATED, ascii_text, colour_bar, comb_patches, outline_patch
 
 PAGE = (8.27, 11.69)
@@ -52,6 +52,8 @@ def write_atlas(
     scale: float,
     *,
     heading: str,
+    whose: Whose = "result",
+    in_corners: bool = False,
     profiled: Callable[[GlyphResult], bool] = lambda glyph: False,
 ) -> int:
     """Write the atlas; the same glyphs give the same bytes.
@@ -60,6 +62,7 @@ def write_atlas(
         path: the PDF, replaced when it is complete. heading: the font's name.
         glyphs: results in the order of the pages; only one page and the profiled glyphs are held in memory.
         scale: curvature in 1/unit of a full tooth, from :func:`..svg.curvature_map.curvature_scale`.
+        whose: curvature the overview pages show. in_corners: also where a smooth result turns about a corner.
         profiled: whether a glyph has a profile page, after the overview pages.
 
     Returns:
@@ -75,7 +78,7 @@ def write_atlas(
         with PdfPages(partial, metadata=UNDATED) as pages:
             while part := list(islice(rest, COLUMNS * ROWS)):
                 count += 1
-                pages.savefig(overview(part, scale, f"{heading}, page {count}"))
+                pages.savefig(overview(part, scale, f"{heading}, page {count}", whose, in_corners=in_corners))
                 chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
             for glyph in chosen:
                 count += 1
@@ -86,7 +89,9 @@ def write_atlas(
     return count
 
 
-def overview(glyphs: Sequence[Glyph], scale: float, heading: str) -> Any:
+def overview(
+    glyphs: Sequence[Glyph], scale: float, heading: str, whose: Whose = "result", *, in_corners: bool = False
+) -> Any:
     """A page of combs as a matplotlib figure, on one pair of axes: ten times as fast as one pair per glyph."""
     figure = _figure(heading, next((glyph.options.words for glyph in glyphs if isinstance(glyph, GlyphResult)), ""))
     axes = figure.add_axes((0.04, 0.085, 0.92, 0.865))
@@ -97,8 +102,10 @@ def overview(glyphs: Sequence[Glyph], scale: float, heading: str) -> Any:
         corner = np.array([CELL * (index % COLUMNS), -CELL * (index // COLUMNS)])
         if isinstance(glyph, GlyphResult):
             place = _placed(glyph, corner)
-            outlines += [place(c.curve.cubics().reshape(-1, 2)).reshape(-1, 4, 2) for c in glyph.contours]
-            drawn += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in teeth(glyph, scale)]
+            shown = [c.curve if whose == "result" else c.source for c in glyph.contours]
+            outlines += [place(curve.cubics().reshape(-1, 2)).reshape(-1, 4, 2) for curve in shown]
+            found = teeth(glyph, scale, whose, in_corners=in_corners)
+            drawn += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in found]
             words = _name(glyph)
         else:
             words = f"{glyph[0]}: {glyph[1]}"[:60]
@@ -106,7 +113,7 @@ def overview(glyphs: Sequence[Glyph], scale: float, heading: str) -> Any:
         axes.text(x, y, ascii_text(words), fontsize=6, color="0.35", parse_math=False)
     _draw(axes, outlines, drawn)
     em = next((g.outline.metrics.units_per_em for g in glyphs if isinstance(g, GlyphResult)), 1000.0)
-    _legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em)
+    _legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, f" of the {whose}")
     return figure
 
 
@@ -119,10 +126,11 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
         height_ratios=[2.2] + [1] * len(longest),
     )  # fmt: skip
-    as_read = replace(glyph, contours=tuple(replace(c, curve=c.source) for c in glyph.contours))
-    for column, (shown, title) in enumerate([(as_read, "source"), (glyph, "result")]):
+    sides = ink_sides(glyph.arrays.source)
+    for column, title in enumerate(("source", "result")):
         axes = figure.add_subplot(grid[0, column])
-        _draw(axes, [c.curve.cubics() for c in shown.contours], teeth(shown, scale))
+        shown = [c.source if title == "source" else c.curve for c in glyph.contours]
+        _draw(axes, [curve.cubics() for curve in shown], teeth(glyph, scale, "source" if column == 0 else "result"))
         axes.autoscale_view()
         axes.set_aspect("equal")
         axes.set_axis_off()
@@ -130,7 +138,7 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
         if column == 0:
             _mark_breaks(axes, glyph, scale)
     for row, index in enumerate(longest):
-        _draw_profile(figure.add_subplot(grid[1 + row, :]), glyph.contours[index], index, scale, em)
+        _draw_profile(figure.add_subplot(grid[1 + row, :]), glyph.contours[index], index, sides[index], scale, em)
     _legend(figure, (0.3, 0.035, 0.4, 0.01), scale * em)
     return figure
 
@@ -169,8 +177,8 @@ def _mark_breaks(axes: Any, glyph: GlyphResult, scale: float) -> None:
         axes.legend(fontsize=6, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, frameon=False)
 
 
-def _draw_profile(axes: Any, contour: ContourResult, index: int, scale: float, em: float) -> None:
-    """κ over arc length of the source, its breaks, and the result, from the same point."""
+def _draw_profile(axes: Any, contour: ContourResult, index: int, side: float, scale: float, em: float) -> None:
+    """κ over arc length of the source, its breaks, and the result, from the same point; positive where it is convex."""
     source, result = (comb(c.cubics(), SPACING * em / 2) for c in (contour.source, contour.curve))
     s, total = _arc_length(source)
     t, length = _arc_length(result)
@@ -179,8 +187,8 @@ def _draw_profile(axes: Any, contour: ContourResult, index: int, scale: float, e
     order = np.argsort(t, kind="stable")
     limit = 2 * LONGEST * scale * em
     axes.axhspan(-scale * em, scale * em, color="0.96", zorder=0)
-    axes.plot(s / em, np.clip(source.curvature * em, -limit, limit), color=SOURCE, linewidth=0.9, label="source")
-    curvature = np.clip(result.curvature * em, -limit, limit)[order]
+    axes.plot(s / em, np.clip(side * source.curvature * em, -limit, limit), color=SOURCE, linewidth=0.9, label="source")
+    curvature = np.clip(side * result.curvature * em, -limit, limit)[order]
     axes.plot(t[order] / em, curvature, color="black", linewidth=0.8, label="result")
     found = joins(contour.source)
     at = s[source.pieces[:-1]]
@@ -204,9 +212,9 @@ def _length(contour: Contour) -> float:
     return float(np.hypot(*np.diff(contour.points, axis=0).T).sum())
 
 
-def _legend(figure: Any, place: tuple[float, float, float, float], reach: float) -> None:
+def _legend(figure: Any, place: tuple[float, float, float, float], reach: float, whose: str = "") -> None:
     bar = colour_bar(figure, reach, cax=figure.add_axes(place), orientation="horizontal")
-    bar.set_label("curvature in 1/em, left turns positive", fontsize=6)
+    bar.set_label(f"curvature{whose} in 1/em, convex positive", fontsize=6)
     bar.ax.tick_params(labelsize=6)
 
 

@@ -9,47 +9,67 @@ import numpy as np
 
 from ...fitting.results import GlyphResult
 from ..svg.colours import class_colour, colour_classes
-from ..svg.curvature_map import LONGEST, Teeth, curvature_scale, teeth
+from ..svg.curvature_map import LONGEST, Teeth, Whose, curvature_scale, teeth
 from .patches import UNDATED, ascii_text, colour_bar, outline_patch
 
 SIZE = 6.0
 """Width and height of the figure in inches."""
 
 
-def to_png(glyph: GlyphResult, *, scale: float | None = None, vertices: bool = True, dpi: int = 200) -> bytes:
+def to_png(
+    glyph: GlyphResult,
+    *,
+    comb: Whose = "result",
+    scale: float | None = None,
+    vertices: bool = True,
+    in_corners: bool = False,
+    dpi: int = 200,
+) -> bytes:
     """The curvature map as a PNG image on white; arguments as for :func:`to_curvature_svg`, and ``dpi``."""
-    return _save(glyph, scale, vertices, format="png", dpi=dpi, metadata={"Software": None})
+    how = {"format": "png", "dpi": dpi, "metadata": {"Software": None}}
+    return _save(glyph, comb, scale, vertices, in_corners, how)
 
 
-def to_pdf(glyph: GlyphResult, *, scale: float | None = None, vertices: bool = True) -> bytes:
+def to_pdf(
+    glyph: GlyphResult,
+    *,
+    comb: Whose = "result",
+    scale: float | None = None,
+    vertices: bool = True,
+    in_corners: bool = False,
+) -> bytes:
     """The curvature map as a one-page PDF; arguments as for :func:`to_curvature_svg`."""
-    return _save(glyph, scale, vertices, format="pdf", metadata=UNDATED)
+    return _save(glyph, comb, scale, vertices, in_corners, {"format": "pdf", "metadata": UNDATED})
 
 
-def _save(glyph: GlyphResult, scale: float | None, vertices: bool, **how: Any) -> bytes:
+def _save(
+    glyph: GlyphResult, whose: Whose, scale: float | None, vertices: bool, in_corners: bool, how: dict[str, Any]
+) -> bytes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    scale = curvature_scale([glyph]) if scale is None else scale
+    scale = curvature_scale([glyph], whose) if scale is None else scale
     figure = Figure(figsize=(SIZE, SIZE), layout="constrained")
     FigureCanvasAgg(figure)
-    draw_map(figure.add_subplot(), glyph, scale, vertices)
+    draw_map(figure.add_subplot(), glyph, whose, scale, vertices, in_corners)
     file = io.BytesIO()
     figure.savefig(file, **how)
     return file.getvalue()
 
 
-def draw_map(axes: Any, glyph: GlyphResult, scale: float, vertices: bool) -> None:
+def draw_map(axes: Any, glyph: GlyphResult, whose: Whose, scale: float, vertices: bool, in_corners: bool) -> None:
     """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
     outline = glyph.outline
-    curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
+    shown = [contour.curve if whose == "result" else contour.source for contour in glyph.contours]
+    curves = [contour.cubics() for contour in shown if len(contour)]
     for patch in outline_patch(curves, facecolor=(0, 0, 0, 0.07), edgecolor="black", linewidth=1):
         axes.add_patch(patch)
-    for part in teeth(glyph, scale):
+    for part in teeth(glyph, scale, whose, in_corners=in_corners):
         _draw_teeth(axes, part)
     if vertices:
         for contour in glyph.contours:
-            axes.plot(*contour.polygon.T, "k.", markersize=1.8)
+            points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
+            axes.plot(*points.T, "k.", markersize=1.8)
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -57,7 +77,7 @@ def draw_map(axes: Any, glyph: GlyphResult, scale: float, vertices: bool) -> Non
     axes.set_title(f"gid {outline.gid}  {ascii_text(outline.name)}", parse_math=False)
     reach = scale * outline.metrics.units_per_em
     bar = colour_bar(axes.figure, reach if reach > 0 else 1.0, ax=axes, location="bottom", shrink=0.5, aspect=40)
-    bar.set_label(f"curvature in 1/em, left turns positive; dots: cut at {LONGEST * reach:.3g}")
+    bar.set_label(f"curvature of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}")
 
 
 def _draw_teeth(axes: Any, part: Teeth) -> None:

@@ -14,8 +14,8 @@ SIDES = 7
 LIGHTNESS = 0.66
 """OKLab lightness of all colours: contrast of about 3:1 with white and 6:1 with black, so both themes can show it."""
 
-# Hue in degrees from flat to strongly curved: left turns green-blue to violet, right turns yellow to red.
-_LEFT, _RIGHT = (215.0, 300.0), (80.0, 20.0)
+# Hue in degrees from flat to strongly curved: convex ink green-blue to violet, concave yellow to red.
+_CONVEX, _CONCAVE = (215.0, 300.0), (80.0, 20.0)
 _CHROMA = (0.06, 0.2)
 
 
@@ -28,7 +28,7 @@ def colour_classes(relative: FloatArray) -> IntArray:
 def class_colour(index: int) -> str:
     """The colour of a class as "#rrggbb"; 0 is grey."""
     strength = abs(index) / SIDES
-    start, end = _LEFT if index > 0 else _RIGHT
+    start, end = _CONVEX if index > 0 else _CONCAVE
     chroma = 0.0 if index == 0 else _CHROMA[0] + (_CHROMA[1] - _CHROMA[0]) * strength
     return oklch(LIGHTNESS, chroma, start + (end - start) * strength)
 

@@ -19,20 +19,21 @@ from .path_text import LINE_BY, MOVE, MOVE_BY, TIE, dots, more, step
 
 CLASSES = 2 * SIDES + 1
 LAYERS = CLASSES + 2
-"""Texts of a comb: a path of teeth for each colour class, from the strongest right turn; the line; the marks."""
+"""Texts of a comb: a path of teeth for each colour class, from the most concave; the line; the marks."""
 
 FLAT = -1
 
 
 @compiled
 def comb_text(
-    curves: ContourArrays, spacing: float, most_teeth: float, angle: float, tooth: float, scale: float, longest: float,
-    least: float, tables: Figures,
+    curves: ContourArrays, sides: FloatArray, corners: FloatArray, near: float, spacing: float, most_teeth: float,
+    angle: float, tooth: float, scale: float, longest: float, least: float, tables: Figures,
 ) -> tuple[NDArray[np.uint8], IntArray, FloatArray]:  # fmt: skip
     """The texts of a glyph's comb.
 
     Args:
-        curves: the glyph's contours.
+        curves: the glyph's contours. sides: (C,) 1.0 where the ink is to the left of one, else -1.0.
+        corners: (k, 2) and near: teeth that would be cut are left out within this distance of these points.
         spacing, angle: largest distance and turn from tooth to tooth. most_teeth: beyond so many, spacing grows.
         tooth: length of a tooth at the scale. scale: in 1/unit; 0 draws no teeth. longest: where teeth are cut, in
             units of the scale. least: teeth shorter than this are left out.
@@ -55,7 +56,7 @@ def comb_text(
     used = 0
     for c in range(len(ends) - 1):
         part = samples[starts[curves.offsets[c]] : starts[curves.offsets[c + 1]]]
-        used = _place(part, tooth, scale, longest, least, power, points, classes, used)
+        used = _place(part, sides[c], corners, near, tooth, scale, longest, least, power, points, classes, used)
         ends[c + 1] = used
     box = _bounds(points[:used])
     start = np.uint64(text.ctypes.data)
@@ -71,8 +72,8 @@ def comb_text(
 
 @compiled(internal=True)
 def _place(
-    samples: FloatArray, tooth: float, scale: float, longest: float, least: float, power: int,
-    points: FloatArray, classes: IntArray, used: int,
+    samples: FloatArray, side: float, corners: FloatArray, near: float, tooth: float, scale: float, longest: float,
+    least: float, power: int, points: FloatArray, classes: IntArray, used: int,
 ) -> int:  # fmt: skip
     """Write a contour's feet and tips, rounded, and colour classes: FLAT if left out, CLASSES or above if cut.
 
@@ -83,6 +84,8 @@ def _place(
     half = 0.5 + TIE
     for i in range(len(samples)):
         strength = samples[i, CURVATURE] * inverse
+        if abs(strength) > longest and beside(corners, samples[i, X], samples[i, Y], near):
+            strength = 0.0
         reach = tooth * min(max(strength, -longest), longest)
         x, y = np.floor(samples[i, X] * power + half), np.floor(samples[i, Y] * power + half)
         tx = np.floor((samples[i, X] - reach * samples[i, NX]) * power + half)
@@ -92,13 +95,23 @@ def _place(
         points[used, 0], points[used, 1], points[used, 2], points[used, 3] = x, y, tx, ty
         classes[used] = FLAT
         if abs(reach) > least and (x != tx or y != ty):
-            index = np.int64(np.rint(min(max(strength, -1.0), 1.0) * SIDES)) + SIDES
+            index = np.int64(np.rint(min(max(side * strength, -1.0), 1.0) * SIDES)) + SIDES
             classes[used] = index + (CLASSES if abs(strength) > longest else 0)
         used += 1
     a = first
     if used > a + 1 and _same(points, used - 1, points[a, 0], points[a, 1], points[a, 2], points[a, 3]):
         used -= 1  # the contour is closed
     return used
+
+
+@compiled(internal=True)
+def beside(points: FloatArray, x: float, y: float, near: float) -> bool:
+    """Whether one of the points (k, 2) is within a distance of (x, y)."""
+    for k in range(len(points)):
+        dx, dy = points[k, 0] - x, points[k, 1] - y
+        if dx * dx + dy * dy <= near * near:
+            return True
+    return False
 
 
 @compiled(internal=True)

@@ -6,12 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from typing import Literal, get_args
 
 import numpy as np
 
 from ...curves.curvature import ANGLE, Comb, comb, relative, robust_scale
+from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
+from ...outlines.sampling import CORNER_ANGLE
 from ...types import BoolArray, FloatArray
 from .colours import SIDES, class_colour
 from .document import title
@@ -39,12 +42,21 @@ PRECISION = 1
 """Decimals of the comb, per 1000 units of the em: 1/10,000 em is finer than any screen shows."""
 
 
+NEAR = 1 / 40
+"""Distance in em from a corner of the source within which a smooth result makes the turn, and swings out beside it."""
+
+Whose = Literal["result", "source"]
+WHOSE: tuple[Whose, ...] = get_args(Whose)
+"""Whose curvature a comb shows: the curve's, or that of the outline it was made of, which is exact."""
+
+
 @dataclass(frozen=True, eq=False)
 class Teeth:
     """One contour's comb as drawn, in font units: all arrays in curve order.
 
     Attributes:
-        feet, tips: (k, 2). relative: (k,) curvature in units of the scale. cut: (k,) whether the tooth was shortened.
+        feet, tips: (k, 2). relative: (k,) curvature in units of the scale, positive where the ink is convex.
+        cut: (k,) whether the tooth was shortened.
     """
 
     feet: FloatArray
@@ -53,76 +65,129 @@ class Teeth:
     cut: BoolArray
 
 
-def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
+def curvature_scale(glyphs: Iterable[GlyphResult], whose: Whose = "result") -> float:
     """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`."""
-    return robust_scale(item for glyph in glyphs for item in combs(glyph))
+    return robust_scale(item for glyph in glyphs for item in combs(glyph, whose=whose))
 
 
-def combs(glyph: GlyphResult, density: float = 2.0) -> list[Comb]:
+def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> list[Comb]:
     """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large."""
     from ...curves.comb import control_length  # here and not above: the package opens without a compiler
     from ...outlines.segments import all_cubics
 
-    curves = glyph.arrays.curves
+    curves = curves_of(glyph, whose)
     cubics = all_cubics(curves)
     spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
     return [comb(cubics[a:b], spacing) for a, b in pairwise(curves.offsets.tolist()) if a < b]
 
 
-def teeth(glyph: GlyphResult, scale: float) -> list[Teeth]:
+def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
+    """The contours whose curvature is shown."""
+    require_choice("comb", whose, WHOSE)
+    return glyph.arrays.curves if whose == "result" else glyph.arrays.source
+
+
+def sides_and_corners(
+    glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
+) -> tuple[FloatArray, FloatArray]:
+    """(C,) sides of the ink, and (k, 2) corners in whose turn no teeth are drawn.
+
+    Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
+    curvatures.
+    """
+    from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
+
+    turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
+    corners = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE)) if turned else np.empty((0, 2))
+    return ink_sides(curves_of(glyph, whose)), corners
+
+
+def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
     """Feet and tips of each contour's comb. Teeth point away from the centre of curvature."""
-    em = glyph.outline.metrics.units_per_em
-    return [teeth_of(item, em, scale) for item in combs(glyph, density=1.0)]
+    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
+    sides, corners = sides_and_corners(glyph, whose, in_corners=in_corners)
+    drawn = sides[np.diff(curves.offsets) > 0].tolist()
+    found = combs(glyph, density=1.0, whose=whose)
+    return [teeth_of(item, em, scale, side, corners) for item, side in zip(found, drawn, strict=True)]
 
 
-def teeth_of(item: Comb, em: float, scale: float) -> Teeth:
-    """Feet and tips of one comb."""
+def teeth_of(item: Comb, em: float, scale: float, side: float = 1.0, corners: FloatArray | None = None) -> Teeth:
+    """Feet and tips of one comb; ``side`` and ``corners`` as for :func:`sides_and_corners`."""
     strength = relative(item.curvature, scale)
+    cut = np.abs(strength) > LONGEST
+    if corners is not None and len(corners):
+        away = item.points[cut][:, None] - corners
+        hidden = np.flatnonzero(cut)[(np.hypot(away[..., 0], away[..., 1]) <= NEAR * em).any(axis=1)]
+        strength[hidden], cut[hidden] = 0.0, False
     shown = np.clip(strength, -LONGEST, LONGEST)
     tips = item.points - (TOOTH * em * shown)[:, None] * item.normals
-    return Teeth(item.points, tips, strength, np.abs(strength) > LONGEST)
+    return Teeth(item.points, tips, side * strength, cut)
 
 
 def to_curvature_svg(
     glyph: GlyphResult,
     *,
+    comb: Whose = "result",
     scale: float | None = None,
     vertices: bool = True,
     control_polygon: bool = False,
+    in_corners: bool = False,
 ) -> str:
     """The outline with its curvature comb, as an SVG document that is legible on light and dark.
 
     A tooth stands on the curve along its normal, on the outer (convex) side, away from the centre of curvature. Its
     length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot. Colour
-    is signed κ: blue and violet turn left, yellow and red turn right in the contour's own direction. The legend is in
-    1/em.
+    is signed κ: blue and violet where the ink is convex, yellow and red where it is concave, whichever way the contours
+    run. The legend is in 1/em: curvature times units per em.
 
     Args:
         glyph: a result of :func:`convert`.
+        comb: "result" is the interpolated curve; "source" is the outline as the font has it, with its exact curvature.
         scale: the curvature, in 1/unit, of a full tooth. By default :func:`curvature_scale` of the glyph.
-        vertices: mark the polygon's vertices.
+        vertices: mark the polygon's vertices, or the points on the curve of a source.
         control_polygon: draw the control polygon of each interpolation.
+        in_corners: also draw the cut teeth where a smooth result turns about a corner of the source.
+
+    Raises:
+        OptionError: ``comb`` is none of these.
+
+    Example:
+        >>> from glyphspline import convert, open_font, to_curvature_svg
+        >>> glyph = convert(open_font("fonts_test/kouzan-gyosho.ttf").outline("O"))
+        >>> 'class="comb"' in to_curvature_svg(glyph)
+        True
     """
-    scale = curvature_scale([glyph]) if scale is None else scale
-    path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
-    return map_document(glyph, path, scale, vertices=vertices, control_polygon=control_polygon).decode()
+    scale = curvature_scale([glyph], comb) if scale is None else scale
+    path = curves_data(curves_of(glyph, comb), glyph.options.precision)[0]
+    return map_document(
+        glyph, path, scale, comb, vertices=vertices, control_polygon=control_polygon, in_corners=in_corners
+    ).decode()
 
 
 def map_document(
-    glyph: GlyphResult, path: PathData, scale: float, *, vertices: bool = True, control_polygon: bool = False
+    glyph: GlyphResult,
+    path: PathData,
+    scale: float,
+    whose: Whose = "result",
+    *,
+    vertices: bool = True,
+    control_polygon: bool = False,
+    in_corners: bool = False,
 ) -> bytes:
-    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the glyph's curves."""
+    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves that the comb stands on."""
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    layers, box = _comb_layer(arrays.curves, em, scale, precision)
+    marks = sides_and_corners(glyph, whose, in_corners=in_corners)
+    layers, box = _comb_layer(curves_of(glyph, whose), *marks, em, scale, precision)
     box = box or (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
     box = (min(box[0], 0.0), box[1], max(box[2], outline.advance), box[3])
+    kind = "outline" if whose == "result" else "source"
     layers += [
-        f'<path class="outline" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
+        f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
         ' fill-opacity=".07" fill-rule="nonzero" d="', path.text, '"/>\n',
     ]  # fmt: skip
-    if control_polygon:
+    if control_polygon and whose == "result":
         polygons = polylines_data(arrays.controls, precision)[0]
         layers += [
             f'<path class="control-polygon" stroke="currentColor" stroke-opacity=".6" stroke-width="{_width(em, 1.2)}"'
@@ -131,16 +196,19 @@ def map_document(
         box = union(box, polygons.box)
     if vertices:
         style = f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="'
-        layers += [style, dots_data(arrays.polygons.points, precision), '"/>\n']
-    legend, box = legend_svg(box, em, scale, precision, TOOTH, LONGEST)
+        source = arrays.source
+        joints = source.points[np.cumsum(source.degrees) - source.degrees]
+        points = arrays.polygons.points if whose == "result" else joints
+        layers += [style, dots_data(points, precision), '"/>\n']
+    legend, box = legend_svg(box, em, scale, precision, TOOTH, LONGEST, whose)
     margin = 0.02 * em
     box = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
-    prefix = id_prefix(outline.name, outline.gid)
+    prefix, drawn = id_prefix(outline.name, outline.gid), "" if whose == "result" else ", source"
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" role="img"'
         f' aria-labelledby="{prefix}-map-title" {data_attributes(outline, precision)}'
         f' data-scale="{scale:.6g}" fill="none" stroke-linecap="round" stroke-linejoin="round">\n'
-        f'<title id="{prefix}-map-title">Curvature of {title(outline)}</title>\n'
+        f'<title id="{prefix}-map-title">Curvature of {title(outline)}{drawn}</title>\n'
     )
     return document([head, *layers, legend, "\n</svg>\n"])
 
@@ -151,14 +219,16 @@ def comb_precision(em: float) -> int:
     return max(0, PRECISION + 3 - round(float(np.log10(em))))
 
 
-def _comb_layer(curves: ContourArrays, em: float, scale: float, precision: int) -> tuple[list[Text], Box | None]:
+def _comb_layer(
+    curves: ContourArrays, sides: FloatArray, corners: FloatArray, em: float, scale: float, precision: int
+) -> tuple[list[Text], Box | None]:
     """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
     from .comb_paths import comb_text  # here and not above: the package opens without a compiler
     from .numbers import figures
 
     text, ends, (left, bottom, right, top) = comb_text(
-        curves, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale, LONGEST, 0.5 * STROKE * em / 1000,
-        figures(precision),
+        curves, sides, corners, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale, LONGEST,
+        0.5 * STROKE * em / 1000, figures(precision),
     )  # fmt: skip
     view = text.data
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
-
 from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
-from .markup import code_points, data_attributes, document, id_prefix, text, union, view_box_value
+from .appearance import CURRENT, PLAIN, VIEW_BOXES, Appearance, ViewBox
+from .markup import code_points, data_attributes, document, id_prefix, number, text, union, view_box_value
 from .path_data import Box, PathData, curves_data
 
-ViewBox = Literal["em", "metrics", "ink"]
-VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
+STROKE = 1 / 1000
+"""Width in em of a line along the outline: cutters follow its middle."""
 
 
-def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
+def to_svg(
+    glyph: GlyphResult,
+    *,
+    view_box: ViewBox = "em",
+    size: str | None = None,
+    fill: str = CURRENT,
+    stroke: str = "none",
+) -> str:
     """The interpolated glyph as an SVG document.
 
     One user unit is one font unit; the font's (x, y) is written as (x, -y), with no transform, so that the
@@ -26,25 +32,38 @@ def to_svg(glyph: GlyphResult, *, view_box: ViewBox = "em") -> str:
         view_box: the region shown. "em": from 0 to the advance and from descender to ascender, widened where
             ink exceeds it, so nothing is clipped. "metrics": exactly that region, for drawings side by side;
             ink beyond it overflows visibly. "ink": the tight box around the ink.
+        size: height of the drawing with its unit, as in "20mm", its width in proportion: the attributes ``width`` and
+            ``height``. Units are mm, cm, in, pt, pc and px. None: as large as the page makes it.
+        fill: colour of the ink: a name of CSS, #rgb, #rrggbb, "none", or "currentColor", that of the text around it.
+        stroke: colour of a line of 1/1000 em along the outline, likewise.
 
     Raises:
-        OptionError: ``view_box`` is none of these.
+        OptionError: a view box, a size or a colour that is none of these.
+
+    Example:
+        >>> from glyphspline import convert, open_font, to_svg
+        >>> glyph = convert(open_font("fonts_test/kouzan-gyosho.ttf").outline("O"))
+        >>> to_svg(glyph, view_box="ink").startswith('<svg xmlns="http://www.w3.org/2000/svg" viewBox="')
+        True
     """
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
-    return svg_document(glyph, path, view_box).decode()
+    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke)).decode()
 
 
-def svg_document(glyph: GlyphResult, path: PathData, view_box: ViewBox) -> bytes:
+def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -> bytes:
     """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves."""
     outline, precision = glyph.outline, glyph.options.precision
-    box = shown_box(outline, path.box, view_box)
-    overflow = ' overflow="visible"' if view_box == "metrics" else ""
+    value = view_box_value(shown_box(outline, path.box, look.view_box), precision)
+    overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
+    size = look.attributes(*map(float, value.split()[2:])) if look.size else ""
+    line = number(STROKE * outline.metrics.units_per_em, 3)
+    stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
     prefix = id_prefix(outline.name, outline.gid)
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}"{overflow}'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{size}{overflow}'
         f' role="img" aria-labelledby="{prefix}-title" {data_attributes(outline, precision)}>\n'
         f'<title id="{prefix}-title">{title(outline)}</title>\n'
-        f'<path id="{prefix}-outline" fill="currentColor" fill-rule="nonzero" d="'
+        f'<path id="{prefix}-outline" fill="{text(look.fill)}"{stroke} fill-rule="nonzero" d="'
     )
     return document([head, path.text, '"/>\n</svg>\n'])
 

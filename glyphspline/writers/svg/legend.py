@@ -17,26 +17,37 @@ WIDTH = 0.56
 TEETH_PER_CLASS = 4
 """Teeth drawn for each colour class."""
 
+MEANING = (
+    "Length and colour of a tooth are the curvature there, 1/radius with the em as the unit: 2 is the bend of a circle"
+    " of half an em in radius. Blue to violet: the ink is convex; yellow to red: it is concave."
+)
+"""Tooltip of the legend."""
+
 FONT = 0.034
 """Height of the legend's letters in em."""
 
 
-def legend_svg(box: Box, em: float, scale: float, precision: int, tooth: float, longest: float) -> tuple[str, Box]:
+def legend_svg(
+    box: Box, em: float, scale: float, precision: int, tooth: float, longest: float, whose: str
+) -> tuple[str, Box]:
     """The legend, placed under a drawing's box, and the box around both.
 
     Args:
         box: of the drawing, y up. em: units per em. scale: κ of a full tooth in 1/unit. precision: decimals.
         tooth: length in em of a full tooth. longest: limit of teeth, in units of the scale.
+        whose: "source" or "result".
     """
     left, base = box[0] + 0.02 * em, box[1] - (0.06 + tooth) * em
-    content, width, height = _legend(em, scale, precision, tooth, longest)
+    content, width, height = _legend(em, scale, precision, tooth, longest, whose)
     place = f"translate({number(left, precision)} {number(-base, precision)})"
     svg = f'<g class="legend" transform="{place}" stroke-width="{number(0.003 * em, 3)}">{content}</g>'
     return svg, (box[0], base - height, max(box[2], left + width), box[3])
 
 
 @lru_cache(maxsize=8)
-def _legend(em: float, scale: float, precision: int, tooth: float, longest: float) -> tuple[str, float, float]:
+def _legend(
+    em: float, scale: float, precision: int, tooth: float, longest: float, whose: str
+) -> tuple[str, float, float]:
     """The legend's content with its origin at the left end of the axis; its width, and its extent below the axis."""
     letters, width, reach = FONT * em, WIDTH * em, scale * em
     strength = np.linspace(-1, 1, 2 * SIDES * TEETH_PER_CLASS + 1)
@@ -53,10 +64,11 @@ def _legend(em: float, scale: float, precision: int, tooth: float, longest: floa
         (width, f"{reach:.3g}", "end"),
     ]
     texts = [_label(x, -1.35 * letters, words, anchor, precision) for x, words, anchor in labels]
-    words = f"κ in 1/em, left turns positive; dots: cut at {longest * reach:.3g}"
+    words = f"κ of the {whose} in 1/em, convex positive; dots: cut at {longest * reach:.3g}"
     texts.append(_label(0.0, -2.75 * letters, words, "start", precision))
     content = (
-        "\n".join(paths)
+        f"<title>{MEANING}</title>"
+        + "\n".join(paths)
         + f'\n<path stroke="currentColor" d="M0 0h{number(width, precision)}"/>\n'
         + f'<g fill="currentColor" font-family="sans-serif" font-size="{number(letters, precision)}">'
         + "".join(texts)

@@ -1,0 +1,84 @@
+"""What a comb has to know of contours, compiled: on which side of each the ink is, and where they have corners."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.cubics import turns
+from ..types import FloatArray
+from .contour_arrays import ContourArrays
+from .segments import contour_cubics
+
+CHORDS = 4
+"""Chords a segment for which a point counts as inside or outside."""
+
+
+@compiled
+def ink_sides(contours: ContourArrays) -> FloatArray:
+    """(C,) 1.0 where the ink is to the left of a contour, -1.0 where it is to the right.
+
+    Curvature times this is positive where the ink is convex, whichever way a font draws its outer contours: TrueType
+    clockwise, PostScript counter-clockwise. A contour that runs counter-clockwise has its ink to the left, unless it is
+    the counter of a clockwise one, where the others wind the other way round it.
+    """
+    count = len(contours.offsets) - 1
+    chords, starts = np.empty((CHORDS * len(contours.degrees), 2)), CHORDS * contours.offsets
+    for c in range(count):
+        cubics = contour_cubics(contours, c)
+        for j in range(len(cubics)):
+            for k in range(CHORDS):
+                t = k / CHORDS
+                s = 1.0 - t
+                u, v, w, z = s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
+                for axis in range(2):
+                    chords[starts[c] + CHORDS * j + k, axis] = (
+                        u * cubics[j, 0, axis]
+                        + v * cubics[j, 1, axis]
+                        + w * cubics[j, 2, axis]
+                        + z * cubics[j, 3, axis]
+                    )
+    sides = np.empty(count)
+    for c in range(count):
+        own = chords[starts[c] : starts[c + 1]]
+        area = 0.0
+        for i in range(len(own)):
+            x, y = own[i - 1, 0] - own[0, 0], own[i - 1, 1] - own[0, 1]
+            area += x * (own[i, 1] - own[0, 1]) - y * (own[i, 0] - own[0, 0])
+        sides[c] = -1.0 if area < 0.0 else 1.0
+        around = 0
+        for other in range(count):
+            if other != c and len(own) > 1:  # a point inside a segment: contours may share the ends of theirs
+                around += _winding(chords[starts[other] : starts[other + 1]], own[1, 0], own[1, 1])
+        if around * sides[c] < 0.0:
+            sides[c] = -sides[c]
+    return sides
+
+
+@compiled(internal=True)
+def _winding(polygon: FloatArray, x: float, y: float) -> int:
+    """How often a closed polygon (n, 2) runs around a point, counter-clockwise."""
+    found = 0
+    for i in range(len(polygon)):
+        ax, ay, bx, by = polygon[i - 1, 0] - x, polygon[i - 1, 1] - y, polygon[i, 0] - x, polygon[i, 1] - y
+        if (ay <= 0.0) != (by <= 0.0):
+            left = ax * by - ay * bx
+            if by > ay and left > 0.0:
+                found += 1
+            elif by < ay and left < 0.0:
+                found -= 1
+    return found
+
+
+@compiled
+def corner_points(contours: ContourArrays, angle: float) -> FloatArray:
+    """(k, 2) where the tangents of contours turn by ``angle``, in radians, or more."""
+    found, count = np.empty((len(contours.degrees), 2)), 0
+    for c in range(len(contours.offsets) - 1):
+        cubics = contour_cubics(contours, c)
+        turned = turns(cubics, 0.0)
+        for j in range(len(cubics)):
+            if abs(turned[j]) >= angle:
+                found[count, 0], found[count, 1] = cubics[j, 0, 0], cubics[j, 0, 1]
+                count += 1
+    return found[:count]
