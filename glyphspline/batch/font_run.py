@@ -73,7 +73,6 @@ def convert_font(
     started = time.perf_counter()
     spec = spec or RunSpec()
     check_possible(spec)
-    make_folder(out)
     with locked(out):
         summary = _convert(source, glyphs, out, spec, jobs, executor, restart, observer)
     summary.missing = getattr(glyphs, "missing", ())

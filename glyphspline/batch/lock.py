@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import OutputError
-from .files import O_BINARY, writing
+from .files import O_BINARY, make_folder, writing
 
 LOCK = ".lock"
 
@@ -32,11 +32,12 @@ log = logging.getLogger(__name__)
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder, which exists.
+    """Hold the lock of a folder, which is made if it does not exist.
 
     Raises:
-        OutputError: another run holds it; the message has its process id. Or the file cannot be made.
+        OutputError: another run holds it; the message has its process id. Or folder or file cannot be made.
     """
+    make_folder(folder)
     path = folder / LOCK
     handle = _held(path)
     try:

@@ -8,7 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -108,74 +108,68 @@ def convert(
             stop("no fonts found")
         alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
         with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
-            if alone:
-                runs = [convert_alone(found[0], spec, executor, given)]
-            else:
-                runs = convert_several(found, spec, executor, given)
+            runs = convert_fonts(found, spec, executor, given, alone)
         from . import closing
 
         if not (quiet or json_log or alone):
+            say(f"written to {out}")
             say(closing.table(runs))
         if as_json:
             typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
     raise typer.Exit(1 if any(run.failed for run in runs) else 0)
 
 
-def convert_alone(font: Path, spec: RunSpec, executor: Executor, given: Mapping[str, Any]) -> FontRun:
-    """Convert one font into the folder itself."""
-    from ..readers import open_source
-    from .closing import FontRun, missing_words
-
-    source = open_source(font, given["face_index"] or 0, opt.location_of(given["location"]))
-    names = opt.selection_of(source, given)
-    if names.missing and not given["quiet"]:
-        say(f"not in the font: {missing_words(names.missing)}")
-    if not names:
-        stop("none of the glyphs asked for is in the font")
-    summary = run(source, names, given["out"], spec, executor, **conduct(given))
-    if not (given["quiet"] or given["json_log"]) and looks_like_type(source, names, spec):
-        say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
-    return FontRun(str(font), given["out"], summary)
-
-
-def convert_several(
-    fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any]
+def convert_fonts(
+    fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any], alone: bool
 ) -> list[FontRun]:
-    """Convert fonts, each face into a folder of its own. A font that cannot be read is named and passed over."""
-    from ..batch import OutputError, faces_of, folders_for, locked
-    from ..batch.files import make_folder
-    from ..errors import GlyphsplineError
-    from .closing import FontRun, missing_words
+    """Convert one font alone into the folder itself, or several, each face into a folder of its own.
 
-    given = {**given, "every": given["every"] or not opt.is_selected(given)}
+    Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
+    """
+    from ..batch import OutputError, faces_of, folders_for, locked
+    from ..errors import GlyphsplineError
+    from .closing import FontRun
+
+    if alone:
+        given, folders = {**given, "face_index": given["face_index"] or 0}, [given["out"]]
+    else:
+        given = {**given, "every": given["every"] or not opt.is_selected(given)}
+        folders = [given["out"] / name for name in folders_for(fonts)]
     location = opt.location_of(given["location"])
-    runs = []
-    make_folder(given["out"])
-    with locked(given["out"]):
-        for font, folder in zip(fonts, folders_for(fonts), strict=True):
-            out = given["out"] / folder
+    runs: list[FontRun] = []
+    with nullcontext() if alone else locked(given["out"]):
+        for font, folder in zip(fonts, folders, strict=True):
             try:
                 for source in faces_of(font, location, given["face_index"]):
-                    many = source.num_faces > 1
-                    name = f"{font}, face {source.face_index}" if many else str(font)
-                    names = opt.selection_of(source, given)
-                    if names.missing and not given["quiet"]:
-                        say(f"{name}: not in the font: {missing_words(names.missing)}")
-                    place = out / f"face-{source.face_index}" if many else out
-                    summary = run(source, names, place, spec, executor, **conduct(given), name=name)
-                    runs.append(FontRun(name, place, summary))
-            except OutputError:
-                raise
+                    runs.append(convert_face(source, str(font), folder, spec, executor, given, alone))
             except GlyphsplineError as error:
+                if alone or isinstance(error, OutputError):
+                    raise
                 if given["quiet"] or given["json_log"]:  # or else it is said below the table
                     say(str(error))
-                runs.append(FontRun(str(font), out, error=str(error)))
+                runs.append(FontRun(str(font), folder, error=str(error)))
     return runs
 
 
-def conduct(given: Mapping[str, Any]) -> dict[str, Any]:
-    """How a run goes on and what it says, from a command's arguments by name."""
-    return {"restart": not given["resume"], "quiet": given["quiet"], "json_log": given["json_log"]}
+def convert_face(
+    source: Source, name: str, out: Path, spec: RunSpec, executor: Executor, given: Mapping[str, Any], alone: bool
+) -> FontRun:
+    """Convert one face of the font called ``name``; those of a collection go to a folder each unless it is alone."""
+    from .closing import FontRun, missing_words
+
+    if source.num_faces > 1 and not alone:
+        name, out = f"{name}, face {source.face_index}", out / f"face-{source.face_index}"
+    quiet, json_log = given["quiet"], given["json_log"]
+    names = opt.selection_of(source, given)
+    if names.missing and not quiet:
+        say(("" if alone else f"{name}: ") + f"not in the font: {missing_words(names.missing)}")
+    if alone and not names:
+        stop("none of the glyphs asked for is in the font")
+    heading, restart = None if alone else name, not given["resume"]
+    summary = run(source, names, out, spec, executor, restart=restart, quiet=quiet, json_log=json_log, name=heading)
+    if alone and not (quiet or json_log) and looks_like_type(source, names, spec):
+        say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
+    return FontRun(name, out, summary)
 
 
 @app.command()
