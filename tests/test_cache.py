@@ -150,11 +150,8 @@ def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
     )  # fmt: skip
     assert started.stderr
     assert started.stderr.readline().startswith("compiling once: ")
-    time.sleep(6)
-    began = time.monotonic()
     started.send_signal(signal.SIGINT)
-    said = started.communicate(timeout=20)[1]  # until the last process has closed it
-    assert time.monotonic() - began < 2
+    said = started.communicate(timeout=20)[1]  # until the last process has closed it: to compile takes a minute and more
     assert (started.returncode, said) == (130, "interrupted; the same command goes on from here\n")
     assert run("-c", SMALL, **place).returncode == 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -99,3 +100,24 @@ def test_a_worker_has_imported_what_it_needs_before_its_time_counts(
     monkeypatch.syspath_prepend(tmp_path)
     with WorkerPool(1, seconds=LIMIT, preload=["slow_to_import"]) as pool:  # the server of forks is there already
         assert pool.submit(has_imported, "slow_to_import").result(timeout=60) is True
+
+
+def test_workers_do_not_import_from_the_current_folder(tmp_path: Path) -> None:
+    """A folder of fonts named as a package is, ``fs``, or somebody's ``numba.py``, is not a module."""
+    (tmp_path / "fs").mkdir()
+    (tmp_path / "numba.py").write_text("raise SystemExit('imported')")
+    code = (
+        "from glyphspline.batch.pool import WorkerPool\n"
+        "if __name__ == '__main__':\n"
+        "    pool = WorkerPool(1, 60.0, ['glyphspline.batch.worker'])\n"
+        "    print(pool.submit(len, 'abc').result(100))\n"
+        "    pool.shutdown()\n"
+    )
+    root = Path(__file__).parent.parent
+    (tmp_path / "script").mkdir()
+    (tmp_path / "script" / "run.py").write_text(code)
+    done = subprocess.run(
+        [sys.executable, "script/run.py"], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env=os.environ | {"PYTHONPATH": str(root)}, timeout=120,
+    )  # fmt: skip
+    assert (done.stdout, done.stderr) == ("3\n", "")

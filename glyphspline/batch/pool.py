@@ -61,14 +61,19 @@ def start_forkserver(preload: Sequence[str]) -> None:
     """Start the process from which workers are forked, if it does not run yet, without waiting for its imports.
 
     SIGINT is blocked in it and in its workers: only this process handles Ctrl-C. An interrupted import would print a
-    traceback.
+    traceback. It does not import from the current folder, which may have a folder ``fs`` or a file ``numba.py`` in it.
     """
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    kept = os.environ.pop("PYTHONSAFEPATH", None)
+    os.environ["PYTHONSAFEPATH"] = "1"
     try:
         forkserver.set_forkserver_preload(list(preload))
         forkserver.ensure_running()
     finally:
+        del os.environ["PYTHONSAFEPATH"]
+        if kept is not None:
+            os.environ["PYTHONSAFEPATH"] = kept
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
