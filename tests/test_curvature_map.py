@@ -13,7 +13,7 @@ import pytest
 from matplotlib.image import imread
 
 import glyphspline as gs
-from glyphspline.outlines.ink import ink_sides
+from glyphspline.outlines.ink import corner_points, ink_sides
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.raster import to_pdf, to_png
 from glyphspline.writers.svg.colours import SIDES, class_colour, colour_classes
@@ -116,6 +116,11 @@ def test_the_turn_about_a_corner_has_no_teeth_unless_asked_for() -> None:
     plain, every = (to_curvature_svg(glyph, scale=0.004, in_corners=asked) for asked in (False, True))
     assert 'class="cut"' not in plain
     assert 'class="cut"' in every
+    hidden = teeth(glyph, 0.004)[0]
+    corners = np.hypot(*(hidden.feet[:, None] - L_SHAPE).transpose(2, 0, 1)).min(axis=1) <= 25
+    assert not hidden.relative[corners].any(), "the swings beside the turn neither"
+    two = gs.Outline("s", contours=(polygon_contour(L_SHAPE), polygon_contour(L_SHAPE[::-1])))
+    assert corner_points(two.arrays, 0.2)[1].tolist() == [0, 6, 12]
     small = gs.convert(gs.Outline("o", 1, (), 600, (gs.Contour.from_segments(list(circle(9, 4))),), METRICS))
     assert all(part.cut.all() for part in teeth(small, 0.004)), "a tight bend is no corner"
 
@@ -128,6 +133,17 @@ def test_long_teeth_are_cut_and_marked() -> None:
     assert all(part.cut.all() for part in teeth(glyph, 1 / 1000))
     assert 'class="cut"' in svg
     assert 'class="cut"' not in to_curvature_svg(glyph, scale=1 / 200)
+
+
+def test_the_scale_is_that_of_the_sources() -> None:
+    source = polygon_contour(L_SHAPE)
+    disc_and_corners = gs.Contour.from_segments(list(circle(200, 8, centre=(300, 300))))
+    outline = gs.Outline("a", 1, (), 600, (source, disc_and_corners), METRICS)
+    scales = [curvature_scale([gs.convert(outline, gs.Options(corners=kind))]) for kind in ("smooth", "sharp")]
+    assert scales == pytest.approx([1 / 200] * 2, rel=1e-3), "the turns about corners do not count"
+    straight = gs.convert(gs.Outline("b", 1, (), 600, (source,), METRICS))
+    assert curvature_scale([straight]) > 0, "the result's, where no source is curved"
+    assert curvature_scale([]) == 0
 
 
 def test_scale_is_shared_and_in_the_legend() -> None:

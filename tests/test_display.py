@@ -146,6 +146,12 @@ def test_the_profile_draws_curvature_over_arc_length(glyph: gs.GlyphResult) -> N
         assert curves[name][-1, 0] == pytest.approx(2 * np.pi * 0.2, rel=0.03)
 
 
+def test_the_atlas_says_whose_comb_it_draws(glyph: gs.GlyphResult) -> None:
+    for whose in ("source", "result"):
+        figure = overview([glyph], 0.01, "Font", whose)  # type: ignore[arg-type]
+        assert f"curvature of the {whose} in 1/em, convex positive" in [axes.get_xlabel() for axes in figure.axes]
+
+
 def test_a_glyph_that_failed_is_named_in_the_atlas() -> None:
     figure = overview([("broken", "no outline")], 0.01, "Font")
     assert "broken: no outline" in [text.get_text() for axes in figure.axes for text in axes.texts]

@@ -45,7 +45,7 @@ def make_atlas(
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
     kept = {name: _converted(source, name, options) for name in names[:: -(-len(names) // SCALE_SAMPLE) or 1]}
-    scale = curvature_scale((glyph for glyph in kept.values() if isinstance(glyph, GlyphResult)), comb)
+    scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
     failures = 0
 
     def glyphs() -> Iterator[Glyph]:

@@ -16,7 +16,7 @@ from ..curves.curvature import Comb
 from ..errors import GlyphsplineError, OutputError
 from ..fitting.convert import convert_many
 from ..fitting.options import Options
-from ..fitting.results import GlyphResult, end_to_end
+from ..fitting.results import GlyphResult, as_glyph, end_to_end
 from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers import Source, open_source
@@ -67,15 +67,14 @@ def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
 
 
 def survey(job: Job, tasks: Sequence[Task]) -> list[Comb]:
-    """Combs of a few glyphs, for the run's curvature scale; glyphs that fail are skipped."""
+    """Combs of a few glyphs' outlines, for the run's curvature scale; glyphs that fail are skipped."""
     found = []
     for glyph in readable(job, tasks)[0]:
         sign_of_life()
         try:
-            (result,) = converted(job, [glyph])
+            found += combs(as_glyph(glyph.outline))
         except Exception:  # reported when the glyph is converted for its files
             continue
-        found += combs(result, whose=job.spec.comb) if isinstance(result, GlyphResult) else []
     return found
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import turns
-from ..types import FloatArray
+from ..types import BoolArray, FloatArray, IntArray
 from .contour_arrays import ContourArrays
 from .segments import contour_cubics
 
@@ -71,9 +71,10 @@ def _winding(polygon: FloatArray, x: float, y: float) -> int:
 
 
 @compiled
-def corner_points(contours: ContourArrays, angle: float) -> FloatArray:
-    """(k, 2) where the tangents of contours turn by ``angle``, in radians, or more."""
+def corner_points(contours: ContourArrays, angle: float) -> tuple[FloatArray, IntArray]:
+    """(k, 2) where the tangents turn by ``angle``, in radians, or more; (C + 1,) where those of each contour begin."""
     found, count = np.empty((len(contours.degrees), 2)), 0
+    offsets = np.zeros(len(contours.offsets), dtype=np.int64)
     for c in range(len(contours.offsets) - 1):
         cubics = contour_cubics(contours, c)
         turned = turns(cubics, 0.0)
@@ -81,4 +82,30 @@ def corner_points(contours: ContourArrays, angle: float) -> FloatArray:
             if abs(turned[j]) >= angle:
                 found[count, 0], found[count, 1] = cubics[j, 0, 0], cubics[j, 0, 1]
                 count += 1
-    return found[:count]
+        offsets[c + 1] = count
+    return found[:count], offsets
+
+
+@compiled
+def turned_about(corners: FloatArray, points: FloatArray, cut: BoolArray, near: float) -> BoolArray:
+    """(n,) which points of a contour (n, 2) lie in the turn about one of its corners (k, 2).
+
+    A curve turns about a corner if it has a point whose tooth would be ``cut`` within the distance ``near``; the turn
+    is all that is within this distance.
+    """
+    inside = np.zeros(len(points), dtype=np.bool_)
+    for k in range(len(corners)):
+        turned = False
+        for i in range(len(points)):
+            if cut[i] and _distance(corners, k, points, i) <= near:
+                turned = True
+                break
+        for i in range(len(points) if turned else 0):
+            inside[i] |= _distance(corners, k, points, i) <= near
+    return inside
+
+
+@compiled(internal=True)
+def _distance(corners: FloatArray, k: int, points: FloatArray, i: int) -> float:
+    dx, dy = corners[k, 0] - points[i, 0], corners[k, 1] - points[i, 1]
+    return np.sqrt(dx * dx + dy * dy)

@@ -179,8 +179,8 @@ const GS = {};
     });
   };
 
-  /** The points where contours have corners. */
-  GS.corners = (contours) => contours.flatMap((pieces) => {
+  /** The points where contours have corners, a list for each. */
+  GS.corners = (contours) => contours.map((pieces) => {
     const legs = pieces.map((p) => {
       const away = (from, others) => others.map(([x, y]) => [x - from[0], y - from[1]]).find(([x, y]) => x || y) || [0, 0];
       const [x, y] = away(p[p.length - 1], p.slice(0, -1).reverse());
@@ -199,14 +199,20 @@ const GS = {};
   };
 
   /** The comb as a group: teeth by colour class, the line through their tips, a dot where a tooth was cut.
-   *  `corners`: points in whose neighbourhood teeth that would be cut are left out; `gain` lengthens all teeth. */
+   *  `corners`, as GS.corners gives them: teeth in the turn about one are left out, which is all within a distance of it,
+   *  if a tooth there would be cut. `gain` lengthens all teeth. */
   GS.comb = (contours, em, scale, { name = "comb", corners = [], gain = 1 } = {}) => {
     const teeth = GS.palette.map(() => []), ends = [], cut = [], sides = GS.sides(contours);
-    const beside = ([x, y]) => corners.some(([cx, cy]) => Math.hypot(cx - x, cy - y) <= NEAR * em);
+    const strengthOf = ({ curvature }) => (scale > 0 ? curvature / scale : 0);
+    const near = (frame, [x, y]) => Math.hypot(frame.point[0] - x, frame.point[1] - y) <= NEAR * em;
     GS.frames(contours, em).forEach((frames, c) => {
+      // A contour that encloses nothing is left out of the result: then they are not told apart.
+      const own = corners.length === contours.length ? corners[c] : corners.flat();
+      const high = frames.filter((frame) => Math.abs(strengthOf(frame)) > LONGEST);
+      const turned = own.filter((corner) => high.some((frame) => near(frame, corner)));
       let down = false, line = "";
-      const tips = frames.map(({ point, normal, curvature }) => {
-        const whole = scale > 0 ? curvature / scale : 0, strength = Math.abs(whole) > LONGEST && beside(point) ? 0 : whole;
+      const tips = frames.map((frame) => {
+        const { point, normal } = frame, strength = turned.some((corner) => near(frame, corner)) ? 0 : strengthOf(frame);
         const reach = gain * TOOTH * em * Math.max(-LONGEST, Math.min(LONGEST, strength)), flat = Math.abs(reach) <= 1e-4 * em;
         const tip = [point[0] - reach * normal[0], point[1] - reach * normal[1]];
         if (!flat) teeth[GS.colourClass(sides[c] * strength)].push(move(point, tip));

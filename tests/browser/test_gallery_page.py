@@ -283,7 +283,7 @@ def test_convex_and_concave_are_the_inks(page: Any, gallery: Path) -> None:
     outer, counter = "M0 0l100 0 0 100 -100 0Z", "M20 20l0 60 60 0 0-60Z"  # y down: the outer contour runs clockwise
     reverse = "M0 0l0 100 100 0 0-100Z"
     assert page.evaluate(sides, [outer + counter, reverse]) == [[-1, -1], [1]]
-    corners = "(data) => GS.corners(GS.contours(data))"
+    corners = "(data) => GS.corners(GS.contours(data)).flat()"
     assert sorted(page.evaluate(corners, outer)) == [[0, 0], [0, 100], [100, 0], [100, 100]]
     page.keyboard.press("c")
     cut = page.locator(".card:has(b:text-is('uni9F8D')) .comb .cut")

@@ -48,7 +48,7 @@ def _save(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    scale = curvature_scale([glyph], whose) if scale is None else scale
+    scale = curvature_scale([glyph]) if scale is None else scale
     figure = Figure(figsize=(SIZE, SIZE), layout="constrained")
     FigureCanvasAgg(figure)
     draw_map(figure.add_subplot(), glyph, whose, scale, vertices, in_corners)

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from ...compiled import compiled
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
 from ...outlines.contour_arrays import ContourArrays
+from ...outlines.ink import turned_about
 from ...outlines.segments import all_cubics
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 from .colours import SIDES
 from .numbers import LARGEST, SLACK, WIDEST, Figures
 from .path_text import LINE_BY, MOVE, MOVE_BY, TIE, dots, more, step
@@ -26,14 +27,16 @@ FLAT = -1
 
 @compiled
 def comb_text(
-    curves: ContourArrays, sides: FloatArray, corners: FloatArray, near: float, spacing: float, most_teeth: float,
-    angle: float, tooth: float, scale: float, longest: float, least: float, tables: Figures,
+    curves: ContourArrays, sides: FloatArray, corners: FloatArray, corner_offsets: IntArray, near: float,
+    spacing: float, most_teeth: float, angle: float, tooth: float, scale: float, longest: float, least: float,
+    tables: Figures,
 ) -> tuple[NDArray[np.uint8], IntArray, FloatArray]:  # fmt: skip
     """The texts of a glyph's comb.
 
     Args:
         curves: the glyph's contours. sides: (C,) 1.0 where the ink is to the left of one, else -1.0.
-        corners: (k, 2) and near: teeth that would be cut are left out within this distance of these points.
+        corners: (k, 2), those of contour c from ``corner_offsets[c]``, and near: teeth in the turn about one of these
+            are left out; see :func:`...outlines.ink.turned_about`.
         spacing, angle: largest distance and turn from tooth to tooth. most_teeth: beyond so many, spacing grows.
         tooth: length of a tooth at the scale. scale: in 1/unit; 0 draws no teeth. longest: where teeth are cut, in
             units of the scale. least: teeth shorter than this are left out.
@@ -56,7 +59,9 @@ def comb_text(
     used = 0
     for c in range(len(ends) - 1):
         part = samples[starts[curves.offsets[c]] : starts[curves.offsets[c + 1]]]
-        used = _place(part, sides[c], corners, near, tooth, scale, longest, least, power, points, classes, used)
+        own = corners[corner_offsets[c] : corner_offsets[c + 1]]
+        hidden = turned_about(own, part[:, :2], np.abs(part[:, CURVATURE]) > longest * scale, near)
+        used = _place(part, sides[c], hidden, tooth, scale, longest, least, power, points, classes, used)
         ends[c + 1] = used
     box = _bounds(points[:used])
     start = np.uint64(text.ctypes.data)
@@ -72,7 +77,7 @@ def comb_text(
 
 @compiled(internal=True)
 def _place(
-    samples: FloatArray, side: float, corners: FloatArray, near: float, tooth: float, scale: float, longest: float,
+    samples: FloatArray, side: float, hidden: BoolArray, tooth: float, scale: float, longest: float,
     least: float, power: int, points: FloatArray, classes: IntArray, used: int,
 ) -> int:  # fmt: skip
     """Write a contour's feet and tips, rounded, and colour classes: FLAT if left out, CLASSES or above if cut.
@@ -84,7 +89,7 @@ def _place(
     half = 0.5 + TIE
     for i in range(len(samples)):
         strength = samples[i, CURVATURE] * inverse
-        if abs(strength) > longest and beside(corners, samples[i, X], samples[i, Y], near):
+        if hidden[i]:
             strength = 0.0
         reach = tooth * min(max(strength, -longest), longest)
         x, y = np.floor(samples[i, X] * power + half), np.floor(samples[i, Y] * power + half)
@@ -102,16 +107,6 @@ def _place(
     if used > a + 1 and _same(points, used - 1, points[a, 0], points[a, 1], points[a, 2], points[a, 3]):
         used -= 1  # the contour is closed
     return used
-
-
-@compiled(internal=True)
-def beside(points: FloatArray, x: float, y: float, near: float) -> bool:
-    """Whether one of the points (k, 2) is within a distance of (x, y)."""
-    for k in range(len(points)):
-        dx, dy = points[k, 0] - x, points[k, 1] - y
-        if dx * dx + dy * dy <= near * near:
-            return True
-    return False
 
 
 @compiled(internal=True)

@@ -15,7 +15,7 @@ from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.sampling import CORNER_ANGLE
-from ...types import BoolArray, FloatArray
+from ...types import BoolArray, FloatArray, IntArray
 from .colours import SIDES, class_colour
 from .document import title
 from .legend import legend_svg
@@ -43,7 +43,7 @@ PRECISION = 1
 
 
 NEAR = 1 / 40
-"""Distance in em from a corner of the source within which a smooth result makes the turn, and swings out beside it."""
+"""Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""
 
 Whose = Literal["result", "source"]
 WHOSE: tuple[Whose, ...] = get_args(Whose)
@@ -65,9 +65,16 @@ class Teeth:
     cut: BoolArray
 
 
-def curvature_scale(glyphs: Iterable[GlyphResult], whose: Whose = "result") -> float:
-    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`."""
-    return robust_scale(item for glyph in glyphs for item in combs(glyph, whose=whose))
+def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
+    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`.
+
+    It is that of the sources, so that combs of sources and of all their results compare; a smooth result's turns about
+    corners would make it larger. Where all sources are straight it is that of the results.
+    """
+    every = list(glyphs)
+    order: tuple[Whose, ...] = ("source", "result")
+    found = (robust_scale(item for glyph in every for item in combs(glyph, whose=whose)) for whose in order)
+    return next(filter(None, found), 0.0)
 
 
 def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> list[Comb]:
@@ -89,8 +96,8 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
 
 def sides_and_corners(
     glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
-) -> tuple[FloatArray, FloatArray]:
-    """(C,) sides of the ink, and (k, 2) corners in whose turn no teeth are drawn.
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """(C,) sides of the ink, (k, 2) corners in whose turn no teeth are drawn, and (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
     curvatures.
@@ -98,26 +105,30 @@ def sides_and_corners(
     from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
 
     turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
-    corners = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE)) if turned else np.empty((0, 2))
-    return ink_sides(curves_of(glyph, whose)), corners
+    corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
+    return ink_sides(curves_of(glyph, whose)), corners, offsets
 
 
 def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
     """Feet and tips of each contour's comb. Teeth point away from the centre of curvature."""
     em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
-    sides, corners = sides_and_corners(glyph, whose, in_corners=in_corners)
-    drawn = sides[np.diff(curves.offsets) > 0].tolist()
+    sides, corners, offsets = sides_and_corners(glyph, whose, in_corners=in_corners)
+    drawn = np.flatnonzero(np.diff(curves.offsets)).tolist()
     found = combs(glyph, density=1.0, whose=whose)
-    return [teeth_of(item, em, scale, side, corners) for item, side in zip(found, drawn, strict=True)]
+    return [
+        teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
+        for item, c in zip(found, drawn, strict=True)
+    ]
 
 
 def teeth_of(item: Comb, em: float, scale: float, side: float = 1.0, corners: FloatArray | None = None) -> Teeth:
-    """Feet and tips of one comb; ``side`` and ``corners`` as for :func:`sides_and_corners`."""
+    """Feet and tips of one comb; ``side`` and ``corners`` (k, 2) of its contour as for :func:`sides_and_corners`."""
     strength = relative(item.curvature, scale)
     cut = np.abs(strength) > LONGEST
     if corners is not None and len(corners):
-        away = item.points[cut][:, None] - corners
-        hidden = np.flatnonzero(cut)[(np.hypot(away[..., 0], away[..., 1]) <= NEAR * em).any(axis=1)]
+        from ...outlines.ink import turned_about  # as above
+
+        hidden = turned_about(corners, item.points, cut, NEAR * em)
         strength[hidden], cut[hidden] = 0.0, False
     shown = np.clip(strength, -LONGEST, LONGEST)
     tips = item.points - (TOOTH * em * shown)[:, None] * item.normals
@@ -146,7 +157,7 @@ def to_curvature_svg(
         scale: the curvature, in 1/unit, of a full tooth. By default :func:`curvature_scale` of the glyph.
         vertices: mark the polygon's vertices, or the points on the curve of a source.
         control_polygon: draw the control polygon of each interpolation.
-        in_corners: also draw the cut teeth where a smooth result turns about a corner of the source.
+        in_corners: also draw the teeth where a smooth result turns about a corner of the source, within 1/40 em.
 
     Raises:
         OptionError: ``comb`` is none of these.
@@ -157,7 +168,7 @@ def to_curvature_svg(
         >>> 'class="comb"' in to_curvature_svg(glyph)
         True
     """
-    scale = curvature_scale([glyph], comb) if scale is None else scale
+    scale = curvature_scale([glyph]) if scale is None else scale
     path = curves_data(curves_of(glyph, comb), glyph.options.precision)[0]
     return map_document(
         glyph, path, scale, comb, vertices=vertices, control_polygon=control_polygon, in_corners=in_corners
@@ -220,15 +231,21 @@ def comb_precision(em: float) -> int:
 
 
 def _comb_layer(
-    curves: ContourArrays, sides: FloatArray, corners: FloatArray, em: float, scale: float, precision: int
+    curves: ContourArrays,
+    sides: FloatArray,
+    corners: FloatArray,
+    corner_offsets: IntArray,
+    em: float,
+    scale: float,
+    precision: int,
 ) -> tuple[list[Text], Box | None]:
     """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
     from .comb_paths import comb_text  # here and not above: the package opens without a compiler
     from .numbers import figures
 
     text, ends, (left, bottom, right, top) = comb_text(
-        curves, sides, corners, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale, LONGEST,
-        0.5 * STROKE * em / 1000, figures(precision),
+        curves, sides, corners, corner_offsets, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale,
+        LONGEST, 0.5 * STROKE * em / 1000, figures(precision),
     )  # fmt: skip
     view = text.data
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
