@@ -10,7 +10,6 @@ import site
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -151,7 +150,7 @@ def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
     assert started.stderr
     assert started.stderr.readline().startswith("compiling once: ")
     started.send_signal(signal.SIGINT)
-    said = started.communicate(timeout=20)[1]  # until the last process has closed it: to compile takes a minute and more
+    said = started.communicate(timeout=20)[1]  # until the last process closes it; compiling takes a minute
     assert (started.returncode, said) == (130, "interrupted; the same command goes on from here\n")
     assert run("-c", SMALL, **place).returncode == 0
 
