@@ -18,12 +18,18 @@ from numba.core import event
 
 from .cache import TELLS
 
+ALTERNATIVES = frozenset({"glyphspline.fitting.sharp", "glyphspline.fitting.smooth"})
+"""Folders of which most commands need only one: their functions count once one of them is compiled or loaded."""
+
+ENOUGH = 0.02
+"""Share of the work that has to be done until there is a guess of the time for the rest."""
+
 FIRST_AGAIN = 10.0
 """Seconds until a process that does not write to a terminal tells again; each time the wait doubles."""
 
 
 class Progress(NamedTuple):
-    """How many functions are ready, of those in the folders that are used, and a guess of the seconds for the rest."""
+    """How many functions are ready, of those likely to be needed (0: not known yet); a guess of the seconds left."""
 
     ready: int
     total: int
@@ -31,6 +37,8 @@ class Progress(NamedTuple):
 
     def __str__(self) -> str:
         rest = "" if self.seconds is None else f", about {max(round(self.seconds, -1), 5):.0f} s"
+        if not self.total:
+            return "compiling once"
         return f"compiling once: {self.ready} of {self.total}{rest}"
 
 
@@ -64,13 +72,14 @@ class _Watch(event.Listener):  # type: ignore[misc, unused-ignore]
         if not opened:
             return None
         done = ready()
-        folders = {folder(function) for function in (*done, *opened)}
-        used = {function for function in self.functions if folder(function) in folders}
+        begun = {folder(function) for function in (*done, *opened)}
+        unused = ALTERNATIVES - begun
+        used = {function for function in self.functions if folder(function) not in unused}
         left = sum(map(effort, used - done))
         elapsed = self.seconds + time.monotonic() - self.since
-        if not used:  # a function of numba's own
-            return None
-        return Progress(len(used & done), len(used), elapsed * left / self.done if elapsed > 2 and self.done else None)
+        if opened[0] not in self.functions:  # compiled as its module is imported: not all functions are known yet
+            return Progress(0, 0, None)
+        return Progress(len(used & done), len(used), elapsed * left / self.done if self.done > ENOUGH * left else None)
 
     def tell(self) -> None:
         """Renew the line on a terminal, or write one if it is time."""

@@ -148,7 +148,7 @@ def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
         env=os.environ | place, cwd=PACKAGE.parent, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     assert started.stderr
-    assert started.stderr.readline().startswith("compiling once: ")
+    assert started.stderr.readline().startswith("compiling once")
     started.send_signal(signal.SIGINT)
     said = started.communicate(timeout=20)[1]  # until the last process closes it; compiling takes a minute
     assert (started.returncode, said) == (130, "interrupted; the same command goes on from here\n")
