@@ -148,7 +148,7 @@ def test_the_profile_draws_curvature_over_arc_length(glyph: gs.GlyphResult) -> N
 
 def test_the_atlas_says_whose_comb_it_draws(glyph: gs.GlyphResult) -> None:
     for whose in ("source", "result"):
-        figure = overview([glyph], 0.01, "Font", whose)  # type: ignore[arg-type]
+        figure = overview([glyph], 0.01, "Font", whose)
         assert f"curvature of the {whose} in 1/em, convex positive" in [axes.get_xlabel() for axes in figure.axes]
 
 

@@ -99,8 +99,8 @@ def turned_about(corners: FloatArray, points: FloatArray, cut: BoolArray, near: 
     turned, count = np.empty((len(corners), 2)), 0
     for k in range(len(corners)):
         x, y = corners[k, 0], corners[k, 1]
-        for i in high:
-            dx, dy = points[i, 0] - x, points[i, 1] - y
+        for h in high:
+            dx, dy = points[h, 0] - x, points[h, 1] - y
             if dx * dx + dy * dy <= square:
                 turned[count, 0], turned[count, 1] = x, y
                 count += 1
