@@ -94,18 +94,22 @@ def turned_about(corners: FloatArray, points: FloatArray, cut: BoolArray, near: 
     is all that is within this distance.
     """
     inside = np.zeros(len(points), dtype=np.bool_)
+    high = np.flatnonzero(cut)
+    square = near * near
+    turned, count = np.empty((len(corners), 2)), 0
     for k in range(len(corners)):
-        turned = False
-        for i in range(len(points)):
-            if cut[i] and _distance(corners, k, points, i) <= near:
-                turned = True
+        x, y = corners[k, 0], corners[k, 1]
+        for h in high:
+            dx, dy = points[h, 0] - x, points[h, 1] - y
+            if dx * dx + dy * dy <= square:
+                turned[count, 0], turned[count, 1] = x, y
+                count += 1
                 break
-        for i in range(len(points) if turned else 0):
-            inside[i] |= _distance(corners, k, points, i) <= near
+    for i in range(len(points)):
+        x, y = points[i, 0], points[i, 1]
+        for k in range(count):
+            dx, dy = turned[k, 0] - x, turned[k, 1] - y
+            if dx * dx + dy * dy <= square:
+                inside[i] = True
+                break
     return inside
-
-
-@compiled(internal=True)
-def _distance(corners: FloatArray, k: int, points: FloatArray, i: int) -> float:
-    dx, dy = corners[k, 0] - points[i, 0], corners[k, 1] - points[i, 1]
-    return np.sqrt(dx * dx + dy * dy)
