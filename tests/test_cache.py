@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import site
@@ -180,3 +181,9 @@ def test_everything_is_compiled_by_the_modules_for_it() -> None:
     )
     found = run("-c", code)
     assert (found.returncode, found.stdout.split()) == (0, []), found.stderr
+
+
+def test_warm_says_how_many_functions_are_compiled() -> None:
+    found = run("-m", "glyphspline", "warm", "--jobs", "1")
+    assert found.returncode == 0
+    assert re.fullmatch(r"\d{3} functions are compiled\n", found.stderr)
