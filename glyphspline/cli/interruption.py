@@ -20,7 +20,7 @@ STATUS = 130
 
 WORDS = "interrupted; the same command goes on from here"
 
-GRACE = 1.0
+GRACE = 0.6
 """Seconds in which a command may end in its own way, with what it has done so far written down."""
 
 
