@@ -5,12 +5,10 @@ Python acts on a signal between two of its own steps, and one step of the compil
 
 from __future__ import annotations
 
-import gc
 import os
 import signal
 import socket
 import sys
-import tempfile
 import threading
 import time
 from contextlib import suppress
@@ -20,7 +18,7 @@ STATUS = 130
 
 WORDS = "interrupted; the same command goes on from here"
 
-GRACE = 1.0
+GRACE = 0.6
 """Seconds in which a command may end in its own way, with what it has done so far written down."""
 
 
@@ -40,15 +38,16 @@ def _wait(ours: socket.socket, theirs: socket.socket) -> None:
 
 
 def end() -> None:
-    """Kill the worker processes, remove temporary folders, make the terminal usable, say so and exit."""
+    """Kill the worker processes, remove the copy of standard input, make the terminal usable, say so and exit."""
     with suppress(Exception):
         if "glyphspline.batch.pool" in sys.modules:
             from ..batch.pool import kill_all
 
             kill_all()
-        for thing in gc.get_objects():
-            if isinstance(thing, tempfile.TemporaryDirectory):
-                thing.cleanup()
+        if "glyphspline.readers.open" in sys.modules:
+            from ..readers.open import forget_standard_input
+
+            forget_standard_input()
     with suppress(Exception):
         if sys.stderr.isatty():
             sys.stderr.write("\r\x1b[K\x1b[?25h")  # an empty line, and the cursor, which a progress bar hides

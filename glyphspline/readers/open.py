@@ -86,3 +86,9 @@ def standard_input() -> Path:
     path = Path(_kept[-1].name) / "stdin"
     path.write_bytes(data)
     return path
+
+
+def forget_standard_input() -> None:
+    """Remove the copy of standard input, for a process that ends without the usual ceremony."""
+    while _kept:
+        _kept.pop().cleanup()
