@@ -101,7 +101,7 @@ def test_from_the_shell(tmp_path: Path) -> None:
     call = ["convert", str(FONT), "--text", "O", "--count", "24", "--jobs", "0", "--out", str(tmp_path), "--quiet"]
     run = CliRunner().invoke(app, [*call, *given])
     assert run.exit_code == 0, run.output
-    files = {path.parent.name: path.read_bytes() for path in tmp_path.rglob("O_.*")}
+    files = {path.parent.name: path.read_bytes() for path in tmp_path.rglob("O.*")}
     assert set(files) == {"svg", "png", "pdf", "curvature-png", "curvature-pdf"}
     root = root_of(files["svg"].decode())
     assert root.attrib["height"] == "20mm"
