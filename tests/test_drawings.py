@@ -112,7 +112,7 @@ def test_from_the_shell(tmp_path: Path) -> None:
     comb = ["--format", "curvature", "--comb", "source", "--corner-teeth", "--restart"]
     run = CliRunner().invoke(app, [*call, *comb])
     assert run.exit_code == 0, run.output
-    assert "κ of the source" in (tmp_path / "curvature" / "O_.svg").read_text(encoding="utf-8")
+    assert "κ of the source" in (tmp_path / "curvature" / "O.svg").read_text(encoding="utf-8")
     assert '"comb": "source"' in (tmp_path / "run.json").read_text(encoding="utf-8")
     refused = CliRunner().invoke(app, [*call, "--fill", "blu", "--restart"])
     assert refused.exit_code == 2
