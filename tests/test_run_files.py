@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -90,6 +92,17 @@ def test_run_json_has_the_options_in_effect_the_selection_and_the_command(font: 
         "count": len(summary.missing), "first": list(summary.missing)}  # fmt: skip
     expected = "glyphspline convert kouzan-gyosho.otf --text 'O龘?' --corners sharp --format svg"
     assert run["command"] == expected
+
+
+def test_the_command_of_a_run_has_how_its_drawings_look(font: Font, tmp_path: Path) -> None:
+    look = {"view_box": "ink", "size": "20mm", "fill": "none", "stroke": "red", "comb": "source", "corner_teeth": True}
+    given: dict[str, Any] = look | {"names": "gid"}
+    convert_font(font, font.select(text="O"), tmp_path, RunSpec(Options(step=90), ("svg",), **given), jobs=0)
+    told = shlex.split(json.loads((tmp_path / "run.json").read_text())["command"])
+    for name, value in given.items():
+        option = f"--{name.replace('_', '-')}"
+        assert option in told
+        assert value is True or told[told.index(option) + 1] == value
 
 
 def test_run_json_says_what_was_asked_for_last_and_the_rest_stays(font: Font, tmp_path: Path) -> None:

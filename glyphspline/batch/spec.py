@@ -197,10 +197,11 @@ def command(source: Source, spec: RunSpec, asked: dict[str, Any]) -> Iterator[st
 
 
 def _choices(spec: RunSpec) -> dict[str, tuple[Any, Any]]:
-    """The choices of a run, each with its default."""
+    """The choices of a run that decide what is in its files, each with its default."""
     plain = RunSpec()
     given = {f.name: (getattr(spec.options, f.name), getattr(plain.options, f.name)) for f in fields(Options)}
-    given |= {name: (getattr(spec, name), getattr(plain, name)) for name in ("view_box", "names")}
+    own = [f.name for f in fields(RunSpec) if f.name not in ("options", "formats", "limits")]
+    given |= {name: (getattr(spec, name), getattr(plain, name)) for name in own}
     return given | {"format": (",".join(spec.formats), ",".join(plain.formats))}
 
 
