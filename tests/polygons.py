@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from glyphspline.curves.crossings import chords, count_crossings, farthest_outside
+from glyphspline.curves.crossings import crossings
+from glyphspline.curves.overshoot import overshoot as farthest_overshoot
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 
@@ -140,9 +141,11 @@ def polygon(number: int, seed: int = 2012, scale: int = 1) -> tuple[str, FloatAr
 
 def self_crossings(cubics: FloatArray) -> int:
     """Number of self-crossings of a closed chain of cubics (m, 4, 2)."""
-    return int(count_crossings(cubics, *chords(cubics)))
+    found, complete = crossings(cubics, np.array([0, len(cubics)]), np.array([0, 1]))
+    assert complete.all()
+    return len(found)
 
 
 def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
     """Largest distance of a closed chain of cubics (m, 4, 2) outside the convex hull of a polygon (n, 2)."""
-    return float(farthest_outside(cubics, *chords(cubics), polygon))
+    return float(farthest_overshoot(cubics, polygon))

@@ -235,7 +235,7 @@ def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
     assert summary.headline() == "9 glyphs in 0.2 s, 7 not within 1 units"
     assert list(summary.lines()) == [
         "not within 1 units: g2, g3, g4, g5, g6 and 2 more",
-        "cross themselves where the source does not: g3",
+        "cross where the source does not: g3",
     ]
     summary = Summary(aim="1.02 units", seconds=0.4, done=2)
     for name in "龍好":

@@ -165,7 +165,9 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
     none = np.zeros(len(contours) + 1, dtype=np.int64)
-    areas = geometry(curve, Contours(contours).arrays, np.ascontiguousarray(exact.vertices[:, :2]), none).area_change
+    areas = geometry(
+        curve, curve, Contours(contours).arrays, np.ascontiguousarray(exact.vertices[:, :2]), none
+    ).area_change
     np.testing.assert_allclose(areas, 0, atol=1e-6)
 
 

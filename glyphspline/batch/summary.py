@@ -18,7 +18,7 @@ SLOW = 5.0
 """Seconds from which the slowest glyphs are listed."""
 
 NAMED = 5
-"""Glyphs outside the tolerance, or with new self-crossings, that are named; of the others there is the number."""
+"""Glyphs outside the tolerance, or with other crossings or areas, that are named; of others there is the number."""
 
 
 class Facts(NamedTuple):
@@ -27,7 +27,8 @@ class Facts(NamedTuple):
     Attributes:
         not_converged, outside: whether a contour did not converge, whether one is outside the tolerance.
         deviation: the largest of its contours; None if none was measured.
-        crossings: whether a contour crosses itself where its source does not.
+        crossings, collapsed, kept: whether a contour crosses where its source does not, has lost its area, or is the
+            source's own.
         notes: of a glyph that came out empty: what was left out.
     """
 
@@ -35,18 +36,27 @@ class Facts(NamedTuple):
     outside: bool = False
     deviation: float | None = None
     crossings: bool = False
+    collapsed: bool = False
+    kept: bool = False
     notes: tuple[str, ...] = ()
 
 
 NO_FACTS = Facts()
 
+CHANGED = {
+    "new_crossings": "cross where the source does not",
+    "collapsed": "have a contour that lost its area",
+    "source_kept": "have a contour kept as the source has it, because every fit crosses or loses its area",
+}
+"""What the summary says of glyphs whose contours enclose something else."""
+
 
 def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) -> Facts:
     """The facts of a glyph whose contours are those from ``first`` up to ``last``."""
-    names = ("converged", "within_tolerance", "deviation", "new_crossings")
-    converged, within, deviations, crossings = (measures.get(name, ())[first:last] for name in names)
-    known = [value for value in deviations if value is not None]
-    return Facts(False in converged, False in within, max(known, default=None), any(crossings))
+    names = ("converged", "within_tolerance", "deviation", "new_crossings", "collapsed", "source_kept")
+    converged, within, deviations, crossings, collapsed, kept = (measures.get(name, ())[first:last] for name in names)
+    deviation = max((value for value in deviations if value is not None), default=None)
+    return Facts(False in converged, False in within, deviation, any(crossings), any(collapsed), any(kept))
 
 
 def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
@@ -60,9 +70,10 @@ class Summary:
     """Counts of a folder's glyphs, and the extreme ones by name.
 
     Attributes:
-        statuses: glyphs by status. not_converged, outside_tolerance, new_crossings: glyphs with such a contour.
-        outside, crossing: the first few of the last two. left_out: (glyph, notes), the first few that came out empty
-            because of what was left out.
+        statuses: glyphs by status. not_converged, outside_tolerance, new_crossings, collapsed, source_kept: glyphs with
+            such a contour.
+        named: the first few glyphs of the last four, by what it is. left_out: (glyph, notes), the first few that came
+            out empty because of what was left out.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
         slowest: (seconds, glyph). done: number of glyphs converted in this run, not in an earlier one.
         remarks: on formats with one file a font.
@@ -74,8 +85,9 @@ class Summary:
     not_converged: int = 0
     outside_tolerance: int = 0
     new_crossings: int = 0
-    outside: list[str] = field(default_factory=list)
-    crossing: list[str] = field(default_factory=list)
+    collapsed: int = 0
+    source_kept: int = 0
+    named: dict[str, list[str]] = field(default_factory=dict)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     worst: list[tuple[float, str]] = field(default_factory=list)
     slowest: list[tuple[float, str]] = field(default_factory=list)
@@ -96,11 +108,12 @@ class Summary:
         if status == "failed" and len(self.failures) < SHOWN:
             self.failures.append((glyph, error or ""))
         self.not_converged += facts.not_converged
-        self.outside_tolerance += facts.outside
-        self.new_crossings += facts.crossings
-        for those, is_one in ((self.outside, facts.outside), (self.crossing, facts.crossings)):
-            if is_one and len(those) < NAMED:
-                those.append(glyph)
+        those = facts.outside, facts.crossings, facts.collapsed, facts.kept
+        for name, is_one in zip(("outside_tolerance", *CHANGED), those, strict=True):
+            if is_one:
+                setattr(self, name, getattr(self, name) + 1)
+                named = self.named.setdefault(name, [])
+                named += [glyph] if len(named) < NAMED else []
         if facts.notes and len(self.left_out) < NAMED:
             self.left_out.append((glyph, ", ".join(facts.notes)))
         if facts.deviation is not None:
@@ -132,9 +145,10 @@ class Summary:
     def lines(self) -> Iterator[str]:
         """What there is to say of single glyphs and files, as lines of text; failures come last."""
         if self.worst and self.aim and self.outside_tolerance:
-            yield f"not within {self.aim}: {listed(self.outside, self.outside_tolerance)}"
-        if self.new_crossings:
-            yield f"cross themselves where the source does not: {listed(self.crossing, self.new_crossings)}"
+            yield f"not within {self.aim}: {listed(self.named['outside_tolerance'], self.outside_tolerance)}"
+        for name, words in CHANGED.items():
+            if count := getattr(self, name):
+                yield f"{words}: {listed(self.named[name], count)}"
         if self.not_converged:
             yield f"{plural(self.not_converged, 'glyph')} with a contour that did not converge"
         for glyph, notes in self.left_out:

@@ -1,7 +1,14 @@
-"""Self-crossings of closed contours and their overshoot over a convex hull, from a few chords a segment.
+"""Crossings of contours, with themselves and with each other.
 
-Bézier points rule out most segments: a segment lies in their convex hull, and does not cross itself if all legs run
-forward along a common direction.
+Pieces are compared in pairs and halved until a pair is decided. A pair is apart if the boxes around its Bézier points
+are, or if its points lie on two sides of a line along one of the chords. Pieces that share a joint do not meet
+elsewhere if all legs of their control polygons run forward along a common direction, or if the two leave the joint
+within two cones that have no direction in common. Most pairs are decided by these tests before any halving. What is
+left in the end are chords that differ from the curve by less than ``FLAT`` of the extent. Every piece has its own
+chords, whatever it is compared with, so the chords of a contour are one polyline.
+
+Two chords cross if the ends of each lie on two sides of the other. If an end lies on the other chord, the strands
+*touch*, in a point or along a stretch: :mod:`.contacts` decides whether they change sides.
 """
 
 from __future__ import annotations
@@ -9,160 +16,325 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray, IntArray
-from .cubics import jet
+from ..types import BoolArray, FloatArray, IntArray
+from .contacts import crossing_contacts
+from .cubics import extent, split
 from .sorting import ascending
 
-STEPS = 12
-"""Chords a cubic; a straight one takes a single chord. Loops smaller than a twelfth of a segment go uncounted."""
+FLAT = 1e-9
+"""Share of a glyph's extent by which the chords that are compared may differ from the curves."""
+
+EXACT = 1e-12
+"""For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent."""
+
+TOUCH = 4.0
+"""An end of a chord within so many chord errors of another chord lies on it."""
+
+DEEPEST = 24
+"""Most halvings of a piece: from an extent of 1, its chords are nearer than ``FLAT`` after 15."""
+
+MOST_STEPS, MOST_MEETINGS = 20_000_000, 2_000
+"""Pairs of a glyph that are looked at, a second's work, and those that meet. Real glyphs take thousands and tens."""
+
+STACK = 3 * 3 * DEEPEST
+"""Pairs to do at a time: each halving adds two at most, to a piece's pair with itself and then to pairs of halves."""
+
+SELF, AFTER, BEFORE = 1, 2, 4
+"""What is known of a pair: it is one piece with itself; B begins where A ends; A begins where B ends."""
 
 
-@compiled(internal=True)
-def crossings_and_overshoot(cubics: FloatArray, polygon: FloatArray) -> tuple[int, float]:
-    """Self-crossings of a closed chain of cubics (m, 4, 2), and overshoot over a polygon, 0 if that is empty."""
-    points, first = chords(cubics)
-    beyond = farthest_outside(cubics, points, first, polygon) if len(polygon) > 0 else 0.0
-    return count_crossings(cubics, points, first), beyond
+def crossings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[FloatArray, BoolArray]:
+    """Points where contours of a glyph cross, each other or themselves.
+
+    Strands that penetrate each other by less than some ``FLAT`` of the extent touch. Touching is no crossing.
+
+    Args:
+        cubics: (m, 4, 2) segments of all contours. offsets: (C + 1,) where each contour begins in them.
+        glyphs: (G + 1,) where the contours of each glyph begin.
+
+    Returns:
+        (K, 4): the numbers of the two contours, the smaller one first, and the crossing's *place* on each: segment,
+        counted from the contour's first, and local parameter. And (G,) whether all of a glyph's were looked for: an
+        outline of thousands of coinciding strands would take minutes.
+    """
+    found, complete = meetings(cubics, offsets, glyphs)
+    single = np.isnan(found[:, 4])
+    if single.all():
+        return found[:, :4], complete
+    crossed = crossing_contacts(cubics, offsets, found[~single])
+    found = np.concatenate([found[single, :4], crossed])
+    return found[np.lexsort(found.T[::-1])], complete
 
 
 @compiled
-def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
-    """(N, 2) ends of the chords, the first not repeated at the end, and (m + 1,) where each segment's begin."""
-    m = len(cubics)
-    points, first = np.empty((STEPS * m, 2)), np.empty(m + 1, dtype=np.int64)
-    count = first[0] = 0
-    for j in range(m):
-        b = cubics[j]
+def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[FloatArray, BoolArray]:
+    """Pairs of chords that cross or touch; arguments as for :func:`crossings`.
+
+    Returns:
+        (K, 6): the two contours, and the places where contact begins and ends, by the first of them: (c, d, a, b, a',
+        b'). Of a crossing the last two are NaN. And (G,) whether all of a glyph's were looked for.
+    """
+    found, count = np.empty((16, 6)), 0
+    complete = np.ones(len(glyphs) - 1, dtype=np.bool_)
+    for g in range(len(glyphs) - 1):
+        before = count
+        found, count, complete[g] = glyph_meetings(cubics, offsets, glyphs[g], glyphs[g + 1], found, count)
+        if not complete[g]:
+            count = before
+    return found[:count], complete
+
+
+@compiled(internal=True)
+def glyph_meetings(
+    cubics: FloatArray, offsets: IntArray, first: int, last: int, found: FloatArray, count: int
+) -> tuple[FloatArray, int, bool]:
+    """Append the meetings of the contours from ``first`` up to ``last`` to ``found``; see :func:`meetings`."""
+    before = count
+    most = offsets[last] - offsets[first]
+    piece, contour, after = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
+    n = 0
+    for c in range(first, last):
+        begin = n
+        for s in range(offsets[c], offsets[c + 1]):
+            if legs(cubics[s]) > 0.0:  # rounding may leave pieces of no length
+                piece[n], contour[n], after[n] = s, c, n + 1
+                n += 1
+        if n > begin:
+            after[n - 1] = begin
+    left, right, low, high, deep = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n, np.int64)
+    flat = FLAT * extent(cubics[offsets[first] : offsets[last]])
+    for i in range(n):
+        b = cubics[piece[i]]
+        left[i] = right[i] = b[0, 0]
+        low[i] = high[i] = b[0, 1]
         bend = 0.0
-        for k in range(1, 3):
-            x, y = b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0], b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1]
-            bend = max(bend, abs(x) + abs(y))
-        n = STEPS if bend > 1e-9 * (abs(b[3, 0] - b[0, 0]) + abs(b[3, 1] - b[0, 1])) else 1
-        for k in range(n):
-            x, y, _, _, _, _ = jet(cubics, j, k / n)
-            if count == 0 or points[count - 1, 0] != x or points[count - 1, 1] != y:
-                points[count, 0], points[count, 1] = x, y
-                count += 1
-        first[j + 1] = count
-    return points[:count], first
-
-
-@compiled
-def count_crossings(cubics: FloatArray, points: FloatArray, first: IntArray) -> int:
-    """Pairs of chords that cross properly, of a closed chain (m, 4, 2) and its :func:`chords`."""
-    m, n = len(cubics), len(points)
-    left, right, low, high = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
-    for j in range(m):
-        left[j] = right[j] = cubics[j, 0, 0]
-        low[j] = high[j] = cubics[j, 0, 1]
         for k in range(1, 4):
-            left[j], right[j] = min(left[j], cubics[j, k, 0]), max(right[j], cubics[j, k, 0])
-            low[j], high[j] = min(low[j], cubics[j, k, 1]), max(high[j], cubics[j, k, 1])
-    order = ascending(left)
-    found = 0
-    for oi in range(m):
-        for oj in range(oi, m):
-            s, t = order[oi], order[oj]
-            if left[t] > right[s]:
+            left[i], right[i] = min(left[i], b[k, 0]), max(right[i], b[k, 0])
+            low[i], high[i] = min(low[i], b[k, 1]), max(high[i], b[k, 1])
+            if k < 3:
+                x, y = b[k + 1, 0] - 2 * b[k, 0] + b[k - 1, 0], b[k + 1, 1] - 2 * b[k, 1] + b[k - 1, 1]
+                bend = max(bend, abs(x) + abs(y))
+        deep[i], error = 0, 0.75 * bend  # of a chord, at most
+        while error > flat and deep[i] < DEEPEST:
+            deep[i] += 1
+            error /= 4
+    A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
+    marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
+    order, steps = ascending(left), 0
+    for oi in range(n):
+        i = order[oi]
+        for oj in range(oi, n):
+            j = order[oj]
+            if left[j] > right[i]:
                 break
-            if low[t] > high[s] or high[t] < low[s]:
+            steps += 1
+            if low[j] > high[i] or high[j] < low[i]:
                 continue
-            if abs(s - t) <= 1 and runs_forward(cubics, min(s, t), max(s, t)):
-                continue
-            for i in range(first[s], first[s + 1]):
-                ax, ay, bx, by = points[i, 0], points[i, 1], points[(i + 1) % n, 0], points[(i + 1) % n, 1]
-                least_x, most_x, least_y, most_y = min(ax, bx), max(ax, bx), min(ay, by), max(ay, by)
-                for j in range(i + 1 if s == t else first[t], first[t + 1]):
-                    cx, cy, dx, dy = points[j, 0], points[j, 1], points[(j + 1) % n, 0], points[(j + 1) % n, 1]
-                    if max(cx, dx) < least_x or min(cx, dx) > most_x or max(cy, dy) < least_y or min(cy, dy) > most_y:
-                        continue
-                    if j == (i + 1) % n or i == (j + 1) % n:
-                        continue
-                    # A chord that only reaches the other one is counted at one of its ends: zero belongs to the left.
-                    one = (side(ax, ay, bx, by, cx, cy) >= 0) != (side(ax, ay, bx, by, dx, dy) >= 0)
-                    if one and (side(cx, cy, dx, dy, ax, ay) >= 0) != (side(cx, cy, dx, dy, bx, by) >= 0):
-                        found += 1
-    return found
+            s, t = min(i, j), max(i, j)  # the order of the contours
+            touch = TOUCH * flat if deep[s] > 0 or deep[t] > 0 else EXACT / FLAT * flat
+            for k in range(8):
+                A[0, k // 2, k % 2], B[0, k // 2, k % 2] = (
+                    cubics[piece[s], k // 2, k % 2],
+                    cubics[piece[t], k // 2, k % 2],
+                )
+            marks[0, 0], marks[0, 1] = 0, 0
+            marks[0, 2] = (
+                AFTER * (after[s] == t) + BEFORE * (after[t] == s) if s != t else SELF + AFTER * (after[s] == s)
+            )
+            begins[0, 0], begins[0, 1] = 0.0, 0.0
+            top = 0
+            while top >= 0:
+                if steps > MOST_STEPS or count - before > MOST_MEETINGS:
+                    return found, count, False
+                steps += 1
+                kind = marks[top, 2]
+                if decided(A[top], B[top], kind):
+                    top -= 1
+                    continue
+                ended, other_ended = marks[top, 0] >= deep[s], marks[top, 1] >= deep[t]
+                on_each_other = 0 if kind else same_points(A[top], B[top])
+                if kind & SELF:
+                    top = top - 1 if ended else halve_itself(A, B, marks, begins, top)
+                elif on_each_other or (ended and other_ended):
+                    x, y, x_end, y_end = -1.0, 0.0, 0.0, 0.0
+                    if on_each_other:
+                        x, x_end, y = 0.0, 1.0, 0.0 if on_each_other > 0 else 1.0
+                        y_end = 1.0 - y
+                    elif kind == 0:
+                        x, y, x_end, y_end = meeting(A[top], B[top], touch)
+                    if x >= 0.0:
+                        if count == len(found):
+                            more = np.empty((2 * count, 6))
+                            for k in range(6 * count):
+                                more[k // 6, k % 6] = found[k // 6, k % 6]
+                            found = more
+                        found[count, 0], found[count, 1] = contour[s], contour[t]
+                        for k in range(2):
+                            which, one, other = (s, x, x_end) if k == 0 else (t, y, y_end)
+                            begin = piece[which] - offsets[contour[which]] + begins[top, k]
+                            found[count, 2 + k] = begin + one * 0.5 ** marks[top, k]
+                            found[count, 4 + k] = begin + other * 0.5 ** marks[top, k]
+                        count += 1
+                    top -= 1
+                elif other_ended or (not ended and legs(A[top]) >= legs(B[top])):
+                    top = halve(A, B, marks, begins, top, 0)
+                else:
+                    top = halve(A, B, marks, begins, top, 1)
+    return found, count, True
 
 
 @compiled(internal=True)
-def runs_forward(cubics: FloatArray, i: int, j: int) -> bool:
-    """Whether all legs of segments i to j run along the chord from the first point to the last."""
-    x, y = cubics[j, 3, 0] - cubics[i, 0, 0], cubics[j, 3, 1] - cubics[i, 0, 1]
-    for s in range(i, j + 1):
-        for k in range(3):
-            dx, dy = cubics[s, k + 1, 0] - cubics[s, k, 0], cubics[s, k + 1, 1] - cubics[s, k, 1]
-            if dx * x + dy * y <= 0 and (dx != 0 or dy != 0):
-                return False
+def same_points(A: FloatArray, B: FloatArray) -> int:
+    """1 if two pieces have the same Bézier points, -1 if in reverse, or else 0."""
+    same = back = True
+    for k in range(4):
+        same = same and A[k, 0] == B[k, 0] and A[k, 1] == B[k, 1]
+        back = back and A[k, 0] == B[3 - k, 0] and A[k, 1] == B[3 - k, 1]
+    return 1 if same else -1 if back else 0
+
+
+@compiled(internal=True)
+def legs(cubic: FloatArray) -> float:
+    """Length of a control polygon (4, 2), every leg as |x| + |y|."""
+    total = 0.0
+    for k in range(3):
+        total += abs(cubic[k + 1, 0] - cubic[k, 0]) + abs(cubic[k + 1, 1] - cubic[k, 1])
+    return total
+
+
+@compiled(internal=True)
+def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int, which: int) -> int:
+    """Replace the pair at the top of the stack by two, with the halves of A (``which`` 0) or B (1)."""
+    one, other = (A, B) if which == 0 else (B, A)
+    for k in range(8):
+        other[top + 1, k // 2, k % 2] = other[top, k // 2, k % 2]
+    split(one[top], 0.5, one[top + 1])  # the first half to the top, the second one below
+    for k in range(2):
+        marks[top + 1, k], begins[top + 1, k] = marks[top, k], begins[top, k]
+    marks[top, which] += 1
+    marks[top + 1, which] += 1
+    begins[top, which] += 0.5 ** marks[top, which]
+    kind = marks[top, 2]
+    ends, starts = (AFTER, BEFORE) if which == 0 else (BEFORE, AFTER)  # the joint at the end of the halved piece
+    marks[top, 2], marks[top + 1, 2] = kind & ends, kind & starts
+    return top + 1
+
+
+@compiled(internal=True)
+def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int) -> int:
+    """Replace a piece's pair with itself by those of its halves, with themselves and with each other."""
+    split(A[top], 0.5, A[top + 1])
+    level, begin = marks[top, 0] + 1, begins[top, 0]
+    middle = begin + 0.5**level
+    for k in range(8):
+        A[top + 2, k // 2, k % 2] = A[top + 1, k // 2, k % 2]
+        B[top + 2, k // 2, k % 2] = A[top, k // 2, k % 2]
+    for k in range(3):
+        marks[top + k, 0], marks[top + k, 1] = level, level
+        marks[top + k, 2] = SELF if k < 2 else AFTER + BEFORE * (marks[top, 2] & AFTER > 0)
+    begins[top, 0], begins[top + 1, 0], begins[top + 2, 0], begins[top + 2, 1] = middle, begin, begin, middle
+    return top + 2
+
+
+@compiled(internal=True)
+def decided(A: FloatArray, B: FloatArray, kind: int) -> bool:
+    """Whether Bézier points prove that two pieces do not meet, but for their joint; or one piece not itself."""
+    if kind & SELF:
+        return kind == SELF and runs_forward(A, A)
+    if kind == AFTER:
+        return runs_forward(A, B) or leaves_apart(A, B)
+    if kind == BEFORE:
+        return runs_forward(B, A) or leaves_apart(B, A)
+    if kind > 0:  # two joints
+        return False
+    for axis in range(2):
+        low, high, other_low, other_high = A[0, axis], A[0, axis], B[0, axis], B[0, axis]
+        for k in range(1, 4):
+            low, high = min(low, A[k, axis]), max(high, A[k, axis])
+            other_low, other_high = min(other_low, B[k, axis]), max(other_high, B[k, axis])
+        if low > other_high or other_low > high:
+            return True
+    return beside(A, B) or beside(B, A)
+
+
+@compiled(internal=True)
+def beside(A: FloatArray, B: FloatArray) -> bool:
+    """Whether a line along the chord of A separates A's Bézier points from B's."""
+    x, y = A[3, 0] - A[0, 0], A[3, 1] - A[0, 1]
+    low = high = 0.0
+    for k in range(1, 3):
+        across = x * (A[k, 1] - A[0, 1]) - y * (A[k, 0] - A[0, 0])
+        low, high = min(low, across), max(high, across)
+    least, most = np.inf, -np.inf
+    for k in range(4):
+        across = x * (B[k, 1] - A[0, 1]) - y * (B[k, 0] - A[0, 0])
+        least, most = min(least, across), max(most, across)
+    slack = 1e-13 * (abs(low) + abs(high) + abs(least) + abs(most))
+    return least > high + slack or most < low - slack
+
+
+@compiled(internal=True)
+def runs_forward(A: FloatArray, B: FloatArray) -> bool:
+    """Whether all legs of A, and of B that follows it or is A, run along the chord from the first point to the last."""
+    x, y = B[3, 0] - A[0, 0], B[3, 1] - A[0, 1]
+    for k in range(6):
+        cubic, r = (A, k) if k < 3 else (B, k - 3)
+        dx, dy = cubic[r + 1, 0] - cubic[r, 0], cubic[r + 1, 1] - cubic[r, 1]
+        if dx * x + dy * y <= 0 and (dx != 0 or dy != 0):
+            return False
     return True
 
 
 @compiled(internal=True)
-def side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
-    """Positive where p lies to the left of the line from a to b."""
-    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-
-
-@compiled
-def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, polygon: FloatArray) -> float:
-    """Largest distance of ends of the chain's :func:`chords` outside a polygon's convex hull."""
-    hull = convex_hull(polygon)
-    worst = 0.0
-    for s in range(len(cubics)):
-        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
-        reach = 0.0
-        for k in range(4):
-            reach = max(reach, outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
-        if reach > worst:
-            for k in range(first[s], first[s + 1]):
-                worst = max(worst, outside(hull, points[k, 0], points[k, 1]))
-    return worst
+def leaves_apart(A: FloatArray, B: FloatArray) -> bool:
+    """Whether A, run back from its end, and B, which begins there, run within cones that share no direction."""
+    sign = 0.0
+    for k in range(3):
+        ax, ay = A[k, 0] - A[k + 1, 0], A[k, 1] - A[k + 1, 1]
+        for r in range(3):
+            bx, by = B[r + 1, 0] - B[r, 0], B[r + 1, 1] - B[r, 1]
+            if (ax == 0 and ay == 0) or (bx == 0 and by == 0):
+                continue
+            turn = ax * by - ay * bx
+            if abs(turn) <= 1e-12 * (abs(ax) + abs(ay)) * (abs(bx) + abs(by)) or sign * turn < 0:
+                return False
+            sign = turn
+    return True
 
 
 @compiled(internal=True)
-def outside(hull: FloatArray, x: float, y: float) -> float:
-    """Distance of a point from a convex polygon, 0 within."""
-    n = len(hull)
-    seen = n < 3
-    for k in range(n):
-        ax, ay, bx, by = hull[k - 1, 0], hull[k - 1, 1], hull[k, 0], hull[k, 1]
-        seen = seen or side(ax, ay, bx, by, x, y) < 0
-    if not seen:
-        return 0.0
-    nearest = np.inf  # of all sides: rounding shows a point of the hull the outside of a side far away, in line with it
-    for k in range(n):
-        ax, ay = hull[k - 1, 0], hull[k - 1, 1]
-        dx, dy = hull[k, 0] - ax, hull[k, 1] - ay
-        square = dx * dx + dy * dy
-        along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
-        along = min(max(along, 0.0), 1.0)
-        nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
-    return np.sqrt(nearest)
+def meeting(A: FloatArray, B: FloatArray, touch: float) -> tuple[float, float, float, float]:
+    """Where the chords of two pieces meet: parameters x, y of A and B, then NaN if they cross there, and else those
+    where their contact ends. x is -1 if they do not meet.
 
-
-@compiled(internal=True)
-def convex_hull(points: FloatArray) -> FloatArray:
-    """The convex hull, counter-clockwise, by Andrew's monotone chain."""
-    n = len(points)
-    x, y, hull = np.empty(n), np.empty(n), np.empty((2 * n + 1, 2))
-    for i in range(n):
-        y[i] = points[i, 1]
-    by_y = ascending(y)
-    for i in range(n):
-        x[i] = points[by_y[i], 0]
-    by_x = ascending(x)
-    count = 0
-    for step in range(2):
-        base = count
-        for k in range(n):
-            q = by_y[by_x[k if step == 0 else n - 1 - k]]
-            px, py = points[q, 0], points[q, 1]
-            while count >= base + 2:
-                a, b = count - 2, count - 1
-                if side(hull[a, 0], hull[a, 1], hull[b, 0], hull[b, 1], px, py) > 0:
-                    break
-                count -= 1
-            hull[count, 0], hull[count, 1] = px, py
-            count += 1
-        count -= 1
-    return hull[: max(count, 1)]
+    Args:
+        touch: ends of a chord nearer than this to the other chord lie on it.
+    """
+    ax, ay, bx, by = A[0, 0], A[0, 1], A[3, 0], A[3, 1]
+    cx, cy, dx, dy = B[0, 0], B[0, 1], B[3, 0], B[3, 1]
+    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    u, v = ux * ux + uy * uy, vx * vx + vy * vy
+    x, y, x_end, y_end = np.inf, 0.0, -np.inf, 0.0
+    for k in range(4):
+        if k < 2:  # an end of B on A
+            px, py = (cx, cy) if k == 0 else (dx, dy)
+            along = min(max(((px - ax) * ux + (py - ay) * uy) / u, 0.0), 1.0)
+            near = (ax + along * ux - px) ** 2 + (ay + along * uy - py) ** 2
+            one, other = along, float(k)
+        else:
+            px, py = (ax, ay) if k == 2 else (bx, by)
+            along = min(max(((px - cx) * vx + (py - cy) * vy) / v, 0.0), 1.0)
+            near = (cx + along * vx - px) ** 2 + (cy + along * vy - py) ** 2
+            one, other = k - 2.0, along
+        if near <= touch * touch:
+            if one < x:
+                x, y = one, other
+            if one > x_end:
+                x_end, y_end = one, other
+    if x <= x_end:
+        return x, y, x_end, y_end
+    c, d = ux * (cy - ay) - uy * (cx - ax), ux * (dy - ay) - uy * (dx - ax)
+    a, b = vx * (ay - cy) - vy * (ax - cx), vx * (by - cy) - vy * (bx - cx)
+    if (c >= 0) == (d >= 0) or (a >= 0) == (b >= 0):
+        return -1.0, 0.0, 0.0, 0.0
+    return a / (a - b), c / (c - d), np.nan, np.nan

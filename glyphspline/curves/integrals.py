@@ -10,7 +10,7 @@ from ..compiled import compiled
 from ..types import FloatArray
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
-"""For integrals over a Bézier piece; exact for areas, converged for the rest but at near-cusps."""
+"""For integrals over a Bézier piece; converged but at near-cusps."""
 
 CURVATURE_STEPS = 32
 """Steps a piece at whose ends curvature is looked at for its maximum."""
@@ -36,15 +36,20 @@ class Shape(NamedTuple):
 
 def shape(pieces: FloatArray) -> Shape:
     """Measure a closed chain of cubics (m, 4, 2)."""
-    return Shape(*integrals(np.ascontiguousarray(pieces)))
+    pieces = np.ascontiguousarray(pieces)
+    length, energy, curvature = integrals(pieces)
+    return Shape(length, area(pieces), energy, curvature)
 
 
 @compiled
-def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
-    """The numbers of a :class:`Shape`, of some cubics (m, 4, 2), closed or not. The loops over places become SIMD."""
-    length = area = energy = highest = 0.0
+def integrals(pieces: FloatArray) -> tuple[float, float, float]:
+    """Length, energy and curvature of a :class:`Shape`, of some cubics (m, 4, 2), closed or not.
+
+    The loops over places become SIMD.
+    """
+    length = energy = highest = 0.0
     count, nodes = len(PLACES), len(NODES)
-    speeds, bends, areas = np.empty(count), np.empty(count), np.empty(count)
+    speeds, bends = np.empty(count), np.empty(count)
     for s in range(len(pieces)):
         c = pieces[s]
         ax, ay = 3 * (c[1, 0] - c[0, 0]), 3 * (c[1, 1] - c[0, 1])
@@ -54,23 +59,29 @@ def integrals(pieces: FloatArray) -> tuple[float, float, float, float]:
             x = PLACES[k]
             dx, dy = ax + x * (2 * bx + x * ex), ay + x * (2 * by + x * ey)
             hx, hy = 2 * (bx + x * ex), 2 * (by + x * ey)
-            px = c[0, 0] + x * (ax + x * (bx + x * (ex / 3)))
-            py = c[0, 1] + x * (ay + x * (by + x * (ey / 3)))
             speed = np.sqrt(dx * dx + dy * dy)
             # Dividing by the speed three times keeps tiny and huge curves from under- and overflow.
             inverse = 1 / speed
             speeds[k] = speed
             bends[k] = abs(dx * inverse * (hy * inverse) - dy * inverse * (hx * inverse)) * inverse
-            areas[k] = px * dy - py * dx
         for k in range(nodes):
             length += WEIGHTS[k] * speeds[k] / 2
-            area += WEIGHTS[k] * areas[k] / 4
             energy += WEIGHTS[k] * bends[k] * bends[k] * speeds[k] / 2 if speeds[k] > 0 else np.inf
         for k in range(nodes, count):
             highest = max(highest, bends[k] if speeds[k] > 0 else np.inf)
-    return length, area, energy, highest
+    return length, energy, highest
 
 
-def area(pieces: FloatArray) -> float:
-    """Signed area of a closed chain of cubics (m, 4, 2), positive if it runs counter-clockwise."""
-    return shape(pieces).area
+@compiled
+def area(cubics: FloatArray) -> float:
+    """Signed area of a closed chain of cubics (m, 4, 2), positive if it runs counter-clockwise.
+
+    It is a quadratic form of the Bézier points, taken from the first one: what the position adds is rounding.
+    """
+    total = 0.0
+    for s in range(len(cubics)):
+        for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):
+            ax, ay = cubics[s, i, 0] - cubics[0, 0, 0], cubics[s, i, 1] - cubics[0, 0, 1]
+            bx, by = cubics[s, j, 0] - cubics[0, 0, 0], cubics[s, j, 1] - cubics[0, 0, 1]
+            total += weight * (ax * by - ay * bx)
+    return total / 20

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
-from ..types import BoolArray
+from ..types import BoolArray, IntArray
 from .options import Options
 from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns
 
@@ -114,7 +114,8 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
         notes[k].append(f"contour {index - before[k]} has fewer than three distinct points and is left out")
     which = np.flatnonzero(kept)
     try:
-        found = _convert_contours(given.chosen(which.tolist()), options, tolerance, em)
+        ends = np.searchsorted(which, before)
+        found = _convert_contours(given.chosen(which.tolist()), ends, options, tolerance, em)
     except GlyphsplineError as error:
         k = 0
         if error.contour is not None:
@@ -122,30 +123,40 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
             k = int(np.searchsorted(before, index, side="right")) - 1
             error.contour = index - int(before[k])
         raise error.locate(glyph=glyphs[k].name) from error.__cause__
-    ends = np.searchsorted(which, before).tolist()
     results = []
-    for outline, (first, last), said in zip(glyphs, pairwise(ends), notes, strict=True):
+    for outline, (first, last), said in zip(glyphs, pairwise(ends.tolist()), notes, strict=True):
         own = ContourResults(found, first, last)
         results.append(GlyphResult(outline, options, own, (*said, *remarks(found.measures, first, last, tolerance))))
     return results
 
 
-def _convert_contours(contours: ContourArrays, options: Options, tolerance: float, em: float) -> ConvertedContours:
-    """Fit all contours in the mode of the options; an error's ``contour`` is the index."""
+def _convert_contours(
+    contours: ContourArrays, glyphs: IntArray, options: Options, tolerance: float, em: float
+) -> ConvertedContours:
+    """Fit all contours in the mode of the options; an error's ``contour`` is the index.
+
+    Args:
+        glyphs: (G + 1,) where the contours of each glyph begin.
+    """
     # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING
-    if options.corners == "sharp":
-        from .sharp.sharp_fit import convert_sharp
+    from .fixed_sampling import convert_fixed, fixed_fits
+    from .refit import faithful
 
-        return convert_sharp(contours, options, tolerance, em)
-    if not options.is_fixed:
-        from .smooth.smooth_fit import convert_smooth
+    if options.is_fixed and not options.measure:
+        return convert_fixed(contours, options, tolerance)
+    if options.is_fixed:
+        fits = fixed_fits(contours, options, tolerance)
+    elif options.corners == "sharp":
+        from .sharp.sharp_fit import sharp_fits
 
-        return convert_smooth(contours, options, tolerance)
-    from .fixed_sampling import convert_fixed
+        fits = sharp_fits(contours, options, tolerance, em)
+    else:
+        from .smooth.smooth_fit import smooth_fits
 
-    return convert_fixed(contours, options, tolerance)
+        fits = smooth_fits(contours, options, tolerance)
+    return faithful(contours, glyphs, fits, options, tolerance)
 
 
 def enclosing(contours: ContourArrays) -> BoolArray:
@@ -162,11 +173,19 @@ def enclosing(contours: ContourArrays) -> BoolArray:
 
 
 def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -> Iterator[str]:
-    """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance or have new self-crossings."""
+    """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance, or enclose something else."""
     for index, within in enumerate(measures.get("within_tolerance", ())[first:last]):
         if within is False:
             bound = measures["deviation_bound"][first + index]
             yield f"result contour {index} is certified to {bound:.3g} units, not to {tolerance:g}"
     for index, crossings in enumerate(measures.get("new_crossings", ())[first:last]):
         if crossings:
-            yield f"result contour {index} crosses itself, {crossings} times more than its source"
+            yield f"result contour {index} crosses itself or others, {crossings} times more than its source"
+        elif crossings is None:
+            yield f"crossings of result contour {index} are not counted: too many strands lie on each other"
+    for index, collapsed in enumerate(measures.get("collapsed", ())[first:last]):
+        if collapsed:
+            yield f"result contour {index} has lost its area, or runs the other way round than its source"
+    for index, kept in enumerate(measures.get("source_kept", ())[first:last]):
+        if kept:
+            yield f"result contour {index} is the source's own: its fits cross or lose their area"

@@ -18,7 +18,14 @@ from .certified_distance import SHARPNESS, pair_stretches
 from .closed_curves import beziers, interpolated
 from .measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from .options import Options
+from .refit import Fits
 from .results import ConvertedContours
+
+
+def fixed_fits(contours: ContourArrays, options: Options, tolerance: float) -> Fits:
+    """The one fit of :func:`convert_fixed`: vertices are where the options put them, whatever comes of it."""
+    fitted = convert_fixed(contours, options, tolerance)
+    return Fits(1, lambda which, attempt: fitted, keeps_collapsed=False)
 
 
 def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
@@ -76,7 +83,7 @@ def through_polygons(
     if options.measure:
         if places is not None:
             measures |= _distances(contours, written, places, ends, arcs, tolerance)
-        measures |= geometric_columns(curves, contours, polygons)
+        measures |= geometric_columns(curves, options.precision, contours, polygons)
     return ConvertedContours(
         contours, curves, polygons, arcs, Polylines(controls, ends, closed),
         np.arange(len(counts) + 1), measures,

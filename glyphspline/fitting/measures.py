@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.crossings import crossings_and_overshoot
 from ..curves.fairness import curvature_extrema
-from ..curves.integrals import integrals
+from ..curves.integrals import area, integrals
+from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
 from ..interpolation.batched import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
@@ -79,9 +79,9 @@ def certified_rate(arc: Interpolation) -> float:
     return arc.rate_bound / 2 if alone else arc.rate_bound
 
 
-def geometric_columns(result: ContourArrays, source: ContourArrays, polygons: Polylines) -> Columns:
-    """Length, area, curvature and crossings of results, compared with their sources."""
-    found = geometry(result, source, polygons.points, polygons.offsets)
+def geometric_columns(curves: ContourArrays, precision: int, source: ContourArrays, polygons: Polylines) -> Columns:
+    """Length, area and curvature of curves, as they are written with so many decimals, and of their sources."""
+    found = geometry(curves, curves.rounded(precision), source, polygons.points, polygons.offsets)
     return {name: values.tolist() for name, values in found._asdict().items()}
 
 
@@ -95,31 +95,32 @@ class Geometry(NamedTuple):
     max_curvature: FloatArray
     curvature_extrema: IntArray
     source_curvature_extrema: IntArray
-    new_crossings: IntArray
 
 
 @compiled
-def geometry(result: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray) -> Geometry:
-    """Measure contours.
+def geometry(
+    curves: ContourArrays, written: ContourArrays, source: ContourArrays, polygons: FloatArray, offsets: IntArray
+) -> Geometry:
+    """Measure contours as they are written; but the extrema of curvature as they are fitted.
 
     Args:
-        result: the curves. source: the contours that they approximate.
+        curves: the curves; written: the same, rounded. source: the contours that they approximate.
         polygons: (n, 2) their vertices. offsets: (C + 1,) where each polygon begins.
     """
     C = len(offsets) - 1
     length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
-    extrema, extrema_before, crossings = np.empty((3, C), dtype=np.int64)
+    extrema, extrema_before = np.empty((2, C), dtype=np.int64)
     for c in range(C):
-        cubics, given = contour_cubics(result, c), contour_cubics(source, c)
-        length[c], energy[c], curvature[c] = _bends(cubics, result.degrees[result.offsets[c] : result.offsets[c + 1]])
+        cubics, given = contour_cubics(written, c), contour_cubics(source, c)
+        length[c], energy[c], curvature[c] = _bends(
+            cubics, written.degrees[written.offsets[c] : written.offsets[c + 1]]
+        )
         length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
-        extrema[c] = curvature_extrema(cubics, length[c], CORNER)
+        extrema[c] = curvature_extrema(contour_cubics(curves, c), length[c], CORNER)
         extrema_before[c] = curvature_extrema(given, length_before, CORNER)
-        change[c] = _area(cubics) - _area(given)
-        found, beyond[c] = crossings_and_overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
-        before, _ = crossings_and_overshoot(given, polygons[:0])
-        crossings[c] = max(found - before, 0)
-    return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before, crossings)
+        change[c] = area(cubics) - area(given)
+        beyond[c] = overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
+    return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before)
 
 
 @compiled(internal=True)
@@ -130,18 +131,8 @@ def _bends(cubics: FloatArray, degrees: IntArray) -> tuple[float, float, float]:
         if degrees[j] == 1:
             length += np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
             continue
-        own_length, _, own_energy, own_curvature = integrals(cubics[j : j + 1])
+        own_length, own_energy, own_curvature = integrals(cubics[j : j + 1])
         length += own_length
         energy += own_energy
         curvature = max(curvature, own_curvature)
     return length, energy, curvature
-
-
-@compiled
-def _area(cubics: FloatArray) -> float:
-    """Exact signed area of a closed chain of cubics, as a quadratic form of its Bézier points."""
-    total = 0.0
-    for b in cubics:
-        for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):
-            total += weight * (b[i, 0] * b[j, 1] - b[i, 1] * b[j, 0])
-    return total / 20

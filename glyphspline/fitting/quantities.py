@@ -37,7 +37,13 @@ QUANTITIES = {
     "max_curvature": Quantity("largest curvature", PER_EM, "of the sharpest bend: 1/radius, with the em as the unit"),
     "curvature_extrema": Quantity("curvature extrema", "", "where curvature peaks between corners; an o has 4"),
     "source_curvature_extrema": Quantity("curvature extrema, source", "", "the same of the source outline"),
-    "new_crossings": Quantity("new crossings", "", "self-crossings of the result beyond those of the source"),
+    "new_crossings": Quantity(
+        "new crossings", "", "crossings of contours, with themselves and others, beyond the source's"
+    ),
+    "collapsed": Quantity("collapsed", "", "whether a contour has lost its area, or runs the other way round"),
+    "source_kept": Quantity(
+        "source kept", "", "whether a contour is the source's own, as every fit crosses or collapses"
+    ),
 }
 """By the name of the measure, in the order of :class:`.results.Measures`. Lengths are in font units."""
 

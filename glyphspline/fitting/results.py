@@ -44,7 +44,11 @@ class Measures:
             four. See :func:`..curves.fairness.curvature_extrema`.
         source_curvature_extrema: the same of the source contour. Sources of quadratics have many: each quadratic has a
             peak of curvature of its own.
-        new_crossings: self-crossings of the result beyond those of the source contour.
+        new_crossings: crossings of the contour, with itself and with others of the glyph, beyond those of the source. A
+            crossing of two contours counts for both.
+        collapsed: whether the written contour has less than a quarter of the source's area, or runs the other way
+            round; never of contours that cross themselves.
+        source_kept: whether the result is the source's own contour, because every fit crosses or collapses.
     """
 
     vertices: int
@@ -66,6 +70,8 @@ class Measures:
     curvature_extrema: int | None = None
     source_curvature_extrema: int | None = None
     new_crossings: int | None = None
+    collapsed: bool | None = None
+    source_kept: bool | None = None
 
     def __repr__(self) -> str:
         known = {field.name: getattr(self, field.name) for field in fields(self)}

@@ -29,6 +29,10 @@ class ContourArrays(NamedTuple):
         """C."""
         return len(self.offsets) - 1
 
+    def rounded(self, precision: int) -> ContourArrays:
+        """The contours as they are written with so many decimals."""
+        return self._replace(points=np.round(self.points, precision) + 0.0)
+
     def part(self, first: int, last: int) -> ContourArrays:
         """The contours from ``first`` to ``last``, exclusive, as views."""
         offsets, starts = self.offsets[first : last + 1], self.starts[first : last + 1]

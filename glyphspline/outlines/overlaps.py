@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.crossings import chords
 from ..curves.integrals import area
+from ..curves.overshoot import chords
 from ..extras import need
 from ..types import FloatArray, IntArray
 from .contour_arrays import offsets_of

@@ -25,6 +25,8 @@ MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
     "new_crossings": sum,
     "converged": all,
     "within_tolerance": all,
+    "collapsed": any,
+    "source_kept": any,
 }
 """How the values of contours combine to the glyph's, for each measure: the worst, or the sum."""
 

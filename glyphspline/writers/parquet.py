@@ -21,7 +21,7 @@ bezier_points        list<point>                   their control points, each sh
 source_degrees,      as those two                  the source contour in the same form
 source_points
 vertices …           as in :class:`.Measures`      one column each, null where it was not computed
-new_crossings
+source_kept
 ==================== ============================= ==================================================================
 """
 

@@ -1,7 +1,7 @@
 """The sharp mode: contours cut at corners and straight lines, with one spline of variant 2 in between, or cubics.
 
 :mod:`.cutting` cuts the contours and fits the pieces, :mod:`.assembly` puts them together; this file makes sure that
-the result is within the tolerance, measures it, and fits contours again whose results cross themselves.
+the result is within the tolerance, and measures it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
 from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
-from ..results import ConvertedContours, assembled
+from ..refit import Fits
+from ..results import ConvertedContours
 from .assembly import certify, put_together
 from .cutting import choose, cut_again, cut_all, source_pieces
 from .pieces import CLOSED, CONTOUR, SPANS, Pieces, part
@@ -28,8 +29,8 @@ from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
 from .split_contours import Settings, SplitContours
 
-CLOSER = (1.0, 0.5, 0.25)
-"""Shares of the tolerance tried until a result has no self-crossings of its own."""
+TRIES = (1.0, 0.5, 0.25, 0.1)
+"""Shares of the tolerance that are tried."""
 
 LONG_LINE = 0.02
 """Share of the em from which straight lines stay lines."""
@@ -43,35 +44,28 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
 
-TRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
+RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
 """What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
 corners. In the end the source's own segments take their place.
 """
 
 
-def convert_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> ConvertedContours:
-    """Fit and measure contours; ``tolerance`` and ``em`` are in font units.
-
-    Results that cross themselves where their source did not are fitted again more closely, and flagged if that is no
-    cure.
+def sharp_fits(contours: ContourArrays, options: Options, tolerance: float, em: float) -> Fits:
+    """Fits within ``tolerance``, and then closer; it and ``em`` are in font units.
 
     Raises:
-        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
+        GlyphsplineError: a contour that cannot be fitted, now or in a fit; its ``contour`` is the index.
     """
     check_coordinates(contours)
-    found: dict[int, tuple[ConvertedContours, int]] = {}
-    left = list(range(contours.num_contours))
-    for share in CLOSER:
-        if not left:
-            break
+
+    def fit(which: Sequence[int], attempt: int) -> ConvertedContours:
         try:
-            own = _converted(contours.chosen(left), options, tolerance, share, em)
+            return _converted(contours.chosen(which), options, tolerance, TRIES[attempt], em)
         except PolygonError as error:
-            error.contour = None if error.contour is None else left[error.contour]
+            error.contour = None if error.contour is None else which[error.contour]
             raise
-        found |= {c: (own, k) for k, c in enumerate(left)}
-        left = [c for k, c in enumerate(left) if own.measures["new_crossings"][k]]
-    return assembled([found[c] for c in range(contours.num_contours)])
+
+    return Fits(len(TRIES), fit, keeps_crossing=True)
 
 
 def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
@@ -95,7 +89,7 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
         np.searchsorted(arcs, fit.offsets),
         _solved_columns(fit)
         | distance_columns(gaps.tolist(), bounds.tolist(), tolerance)
-        | geometric_columns(fit.curve, source, polygons),
+        | geometric_columns(fit.curve, options.precision, source, polygons),
     )
 
 
@@ -183,7 +177,7 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
     fit = _certified(split, choose(split, pieces, settings.near), options, tolerance)
-    tries = TRIES[options.continuity]
+    tries = RETRIES[options.continuity]
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
@@ -227,7 +221,7 @@ def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance
     splines = _interpolated(pieces, options)
     assembly = put_together(pieces, count, *_splines(splines.values()))
     curves = assembly.curves
-    written = curves._replace(points=np.round(curves.points, options.precision) + 0.0)
+    written = curves.rounded(options.precision)
     bounds, gaps = certify(split, pieces, assembly, written, SHARPNESS * tolerance, tolerance)
     offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, assembly.controls, bounds, gaps)

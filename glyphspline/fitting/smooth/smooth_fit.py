@@ -1,4 +1,4 @@
-"""The smooth mode: one closed curve for each contour. Contours whose curves cross themselves are fitted again."""
+"""The smooth mode: one closed curve for each contour."""
 
 from __future__ import annotations
 
@@ -12,48 +12,34 @@ from ...types import Views
 from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
 from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
 from ..options import Options
-from ..results import ConvertedContours, assembled
+from ..refit import Fits
+from ..results import ConvertedContours
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
 
-AGAIN = ((1.0, 3), (0.5, 3), (0.25, 3))
-"""For contours that cross themselves: shares of the tolerance, and rounds in which vertices are taken out as well.
+TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3), (0.1, 3), (0.04, 3))
+"""Shares of the tolerance, and rounds in which vertices are taken out as well: a number of its own, or None.
 
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
 """
 
 
-def convert_smooth(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
-    """Fit a closed C2 curve to each contour, within ``tolerance`` in font units, and measure it.
-
-    Results that cross themselves where their source did not are fitted again, with fewer vertices and more closely; the
-    one with the fewest crossings counts, and is flagged if it has any. Outlines that go back the way they came may keep
-    some.
+def smooth_fits(contours: ContourArrays, options: Options, tolerance: float) -> Fits:
+    """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer.
 
     Raises:
-        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
+        GlyphsplineError: a contour that cannot be fitted, now or in a fit; its ``contour`` is the index.
     """
     check_coordinates(contours)
     canonical = canonical_contours(contours)
-    near = np.full(contours.num_contours, tolerance)
-    best: dict[int, tuple[ConvertedContours, int]] = {}
-    left = np.arange(contours.num_contours)
-    for share, early in ((1.0, None), *AGAIN):
-        if len(left) == 0:
-            break
-        near[left] = share * tolerance
-        kept = refined(canonical, left, options, near, early)
-        own = _converted(contours, canonical, left.tolist(), [kept[k] for k in left.tolist()], tolerance)
-        for j, k in enumerate(left.tolist()):
-            if k not in best or _rank(own, j) < _rank(*best[k]):
-                best[k] = own, j
-        left = left[np.array(own.measures["new_crossings"]) > 0]
-    return assembled([best[k] for k in range(contours.num_contours)])
 
+    def fit(which: Sequence[int], attempt: int) -> ConvertedContours:
+        share, early = TRIES[attempt]
+        near = np.full(contours.num_contours, share * tolerance)
+        kept = refined(canonical, np.array(which), options, near, early)
+        return _converted(contours, canonical, list(which), [kept[k] for k in which], options.precision, tolerance)
 
-def _rank(found: ConvertedContours, k: int) -> tuple[bool, int]:
-    """Lower is better: first within the tolerance, then the number of crossings."""
-    return not found.measures["within_tolerance"][k], found.measures["new_crossings"][k]
+    return Fits(len(TRIES), fit)
 
 
 def _converted(
@@ -61,6 +47,7 @@ def _converted(
     canonical: CanonicalContours,
     which: list[int],
     kept: Sequence[tuple[Round, int]],
+    precision: int,
     tolerance: float,
 ) -> ConvertedContours:
     """Results for some contours from their rounds: measured in the fitted direction, returned in the given one."""
@@ -69,13 +56,6 @@ def _converted(
     pieces = [found.part(found.pieces, i) for found, i in kept]
     controls = [found.part(found.found.controls, i) for found, i in kept]
     offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
-    geometry = geometric_columns(
-        cubic_contours(np.concatenate(pieces), offsets),
-        cubic_contours(canonical.cubics, canonical.offsets).chosen(which),
-        Polylines(np.concatenate(points), offsets, closed),
-    )
-    changes = zip(geometry["area_change"], flipped, strict=True)
-    geometry["area_change"] = [-change if back else change for change, back in changes]
     distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in zip(which, kept, strict=True)]
     bounds, gaps = [bound for bound, _ in distances], [gap for _, gap in distances]
     for n in [n for n, back in enumerate(flipped) if back]:
@@ -85,16 +65,18 @@ def _converted(
         each = zip(kept, flipped, strict=True)
         return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
 
+    source, curves = contours.chosen(which), cubic_contours(np.concatenate(pieces), offsets)
+    polygons = Polylines(np.concatenate(points), offsets, closed)
     return ConvertedContours(
-        contours.chosen(which),
-        cubic_contours(np.concatenate(pieces), offsets),
-        Polylines(np.concatenate(points), offsets, closed),
+        source,
+        curves,
+        polygons,
         Views(len(which), arcs),
         Polylines(np.concatenate(controls), offsets, closed),
         np.arange(len(which) + 1),
         solved_columns([(found.found, np.array([i])) for found, i in kept])
         | distance_columns(gaps, bounds, tolerance)
-        | geometry,
+        | geometric_columns(curves, precision, source, polygons),
     )
 
 

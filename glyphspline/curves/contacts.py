@@ -1,0 +1,140 @@
+"""Whether strands that touch change sides: contacts of contours, in a point or along a stretch.
+
+A contact is a set of pairs of chords that touch, each at a place of the two contours or along a stretch, and that hang
+together. At its two ends, which are one point if it is no stretch, the second contour leaves the first one to its left
+or to its right. The contours cross if it leaves to different sides. What side that is, is read from the points at which
+the strands cross a small circle around the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types import FloatArray, IntArray
+
+RADIUS = 2e-5
+"""Radius of that circle, as a share of the extent: far above the chord errors, far below what a contour draws."""
+
+TIED = 1e-8
+"""Directions nearer to each other than this, in radians, are the same."""
+
+HALVINGS = 50
+"""Of an interval of parameters, for the point at which a strand crosses the circle."""
+
+
+def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArray) -> FloatArray:
+    """Of the contacts of contours, those in which they change sides.
+
+    Args:
+        cubics: (m, 4, 2) segments of all contours. offsets: (C + 1,) where each contour begins.
+        touching: (K, 6) pairs of chords that touch: the contours c <= d, and the places (a, b), (a', b') where the
+            contact of the two chords begins and ends, a <= a'.
+
+    Returns:
+        (L, 4) the contours, and the places where a contact begins.
+    """
+    radius = RADIUS * float(np.abs(cubics).max())
+    found = []
+    for c, d in sorted({(int(c), int(d)) for c, d in touching[:, :2]}):
+        one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]], radius) for k in (c, d))
+        for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
+            if c == d and contact.is_fold(one, radius):
+                continue
+            (a, b), (a_end, b_end) = contact.begin, contact.end
+            along = other.way(b, b_end) >= 0
+            sides = _is_left(one, a, other, b, not along), _is_left(one, a_end, other, b_end, along)
+            if None not in sides and sides[0] != sides[1]:
+                found.append((c, d, a, b))
+    return np.array(found, dtype=np.float64).reshape(-1, 4)
+
+
+class _Strand:
+    """A contour along which one walks."""
+
+    def __init__(self, cubics: FloatArray, radius: float) -> None:
+        self.cubics, self.radius = cubics, radius
+        legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
+        self.lengths = np.concatenate([[0.0], np.cumsum(legs)])
+
+    def position(self, place: float) -> float:
+        """Length of the control polygon up to a place, which grows with the place."""
+        return float(np.interp(place, np.arange(len(self.lengths)), self.lengths))
+
+    def way(self, place: float, to: float) -> float:
+        """The shorter way between two places as positions count it, negative if it runs back."""
+        total = self.lengths[-1]
+        return float((self.position(to) - self.position(place) + total / 2) % total - total / 2)
+
+    def at(self, place: float) -> FloatArray:
+        s = min(int(place), len(self.cubics) - 1)
+        x = place - s
+        weights = np.array([(1 - x) ** 3, 3 * (1 - x) ** 2 * x, 3 * (1 - x) * x * x, x**3])
+        point: FloatArray = weights @ self.cubics[s]
+        return point
+
+    def direction(self, centre: FloatArray, place: float, forward: bool) -> float:
+        """Angle, seen from ``centre``, at which the contour leaves the circle around it, from a place on."""
+        m, s = len(self.cubics), min(int(place), len(self.cubics) - 1)
+        x = place - s
+        for _ in range(m + 1):
+            end = 1.0 if forward else 0.0
+            if np.hypot(*(self.at(s + end) - centre)) >= self.radius:
+                break
+            s = (s + (1 if forward else -1)) % m
+            x = 0.0 if forward else 1.0
+        inside, outside = x, end
+        for _ in range(HALVINGS):
+            middle = (inside + outside) / 2
+            if np.hypot(*(self.at(s + middle) - centre)) < self.radius:
+                inside = middle
+            else:
+                outside = middle
+        return float(np.arctan2(*(self.at(s + outside) - centre)[::-1]))
+
+
+@dataclass
+class _Contact:
+    """Where a contact begins and ends: places on both contours, and the positions that it covers on the second one."""
+
+    begin: tuple[float, float]
+    end: tuple[float, float]
+    covered: list[float]
+
+    def is_fold(self, strand: _Strand, radius: float) -> bool:
+        """Whether the contour goes from the one strand to the other within the contact."""
+        return any(abs(strand.way(a, b)) <= 4 * radius for a, b in (self.begin, self.end))
+
+
+def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
+    """Pairs of chords that hang together; see :func:`crossing_contacts`."""
+    found: list[_Contact] = []
+    for a, b, a_end, b_end in touching[np.lexsort(touching.T[::-1])].tolist():
+        for contact in reversed(found):
+            ahead = one.position(a) - one.position(contact.end[0]) <= radius
+            if ahead and any(abs(other.way(x, y)) <= radius for x in (b, b_end) for y in contact.covered):
+                if a_end > contact.end[0]:
+                    contact.end = a_end, b_end
+                contact.covered += [b, b_end]
+                break
+        else:
+            found.append(_Contact((a, b), (a_end, b_end), [b, b_end]))
+    for contact in found[1:]:  # one that runs over the contour's start is in two parts
+        first = found[0]
+        over = abs(one.way(contact.end[0], first.begin[0])) <= radius
+        if over and abs(other.way(contact.end[1], first.begin[1])) <= radius:
+            contact.end = first.end
+            return found[1:]
+    return found
+
+
+def _is_left(one: _Strand, a: float, other: _Strand, b: float, forward: bool) -> bool | None:
+    """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
+    centre = one.at(a)
+    ahead, back = (one.direction(centre, a, way) for way in (True, False))
+    leaves = other.direction(centre, b, forward)
+    whole = 2 * np.pi
+    if any(abs((leaves - x + np.pi) % whole - np.pi) <= TIED for x in (ahead, back)):
+        return None
+    return bool((leaves - ahead) % whole < (back - ahead) % whole)
