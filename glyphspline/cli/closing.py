@@ -108,9 +108,9 @@ def outside(run: FontRun) -> int:
 
 def missing_words(missing: Sequence[str], shown: int = 10) -> str:
     """What a font does not have: code points with their characters, the first few and the number of the others."""
-    words = [_with_character(phrase) for phrase in missing[:shown]]
-    more = f" and {len(missing) - shown} more" if len(missing) > shown else ""
-    return ", ".join(words) + more
+    from ..batch.summary import listed
+
+    return listed([_with_character(phrase) for phrase in missing[:shown]], len(missing))
 
 
 def _with_character(phrase: str) -> str:
