@@ -8,6 +8,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .messages import printable
+
 if TYPE_CHECKING:
     from ..batch import Summary
 
@@ -118,8 +120,3 @@ def _with_character(phrase: str) -> str:
         return phrase
     character = chr(int(phrase[2:], 16))
     return f"{phrase} {character}" if character.isprintable() and not character.isspace() else phrase
-
-
-def printable(text: str) -> str:
-    """Text without characters that move a terminal's cursor or change its colours; fonts may have any in names."""
-    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
