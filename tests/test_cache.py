@@ -26,6 +26,8 @@ NOBODY = 65534
 SMALL = "import numpy; from glyphspline.curves.integrals import area; print(area(numpy.zeros((1, 4, 2))))"
 """A program that compiles little."""
 
+has_users = pytest.mark.skipif(os.name == "nt", reason="has no users with numbers")
+
 
 def run(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """The interpreter of the tests, with changes of its environment."""
@@ -68,7 +70,7 @@ def as_nobody(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     pytest.skip("there is no interpreter that another user can run")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="has no users with numbers")
+@has_users
 def test_without_a_place_the_cache_is_a_folder_of_ones_own(installed: Path) -> None:
     for _ in range(2):
         found = as_nobody(installed, "-c", SMALL)
@@ -79,7 +81,7 @@ def test_without_a_place_the_cache_is_a_folder_of_ones_own(installed: Path) -> N
     assert list(folder.rglob("*.nbc"))
 
 
-@pytest.mark.skipif(os.name == "nt", reason="has no users with numbers")
+@has_users
 def test_a_command_says_once_where_the_cache_is(installed: Path) -> None:
     font = shutil.copy(PACKAGE.parent / "fonts_test" / "variable.ttf", installed)
     found = as_nobody(installed, "-m", "glyphspline", "info", str(font))
@@ -87,7 +89,7 @@ def test_a_command_says_once_where_the_cache_is(installed: Path) -> None:
     assert found.stderr.count("compiled code is kept in") == 1
 
 
-@pytest.mark.skipif(os.name == "nt", reason="has no users with numbers")
+@has_users
 @pytest.mark.parametrize("harm", ["open to all", "a link", "a file"])
 def test_a_folder_that_others_can_change_is_not_used(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -15,7 +15,7 @@ from matplotlib.image import imread
 import glyphspline as gs
 from glyphspline.outlines.ink import corner_points, ink_sides
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.raster import to_pdf, to_png
+from glyphspline.writers.figures.raster import map_image
 from glyphspline.writers.svg.colours import SIDES, class_colour, colour_classes
 from glyphspline.writers.svg.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
 
@@ -201,19 +201,19 @@ def test_without_curvature_there_is_still_a_map(curves: tuple[gs.Contour, ...]) 
     svg = to_curvature_svg(glyph)
     assert strokes(svg) == {}
     assert "nan" not in svg
-    assert to_png(glyph).startswith(b"\x89PNG")
+    assert map_image(glyph, "png").startswith(b"\x89PNG")
 
 
 def test_same_input_gives_the_same_bytes() -> None:
     assert to_curvature_svg(random_glyph()) == to_curvature_svg(random_glyph())
-    assert to_png(random_glyph()) == to_png(random_glyph())
-    pdf = to_pdf(random_glyph())
-    assert pdf == to_pdf(random_glyph())
+    assert map_image(random_glyph(), "png") == map_image(random_glyph(), "png")
+    pdf = map_image(random_glyph(), "pdf")
+    assert pdf == map_image(random_glyph(), "pdf")
     assert b"Date" not in pdf
 
 
 def test_png_shows_the_comb_in_its_colours() -> None:
-    pixels = np.round(imread(io.BytesIO(to_png(disc(200, 1), scale=1 / 200, vertices=False)))[..., :3] * 255)
+    pixels = np.round(imread(io.BytesIO(map_image(disc(200, 1), "png", scale=1 / 200, vertices=False)))[..., :3] * 255)
     violet = np.array([int(class_colour(SIDES)[i : i + 2], 16) for i in (1, 3, 5)])
     body = pixels[100:-250]  # without the title and the colour bar, which shows every colour
     assert (np.abs(body - violet).max(axis=2) < 40).sum() > 500

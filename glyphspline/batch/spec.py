@@ -16,7 +16,7 @@ from ..fitting.options import Options
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
 from ..types import Names
-from ..writers.svg.appearance import CURRENT, Appearance, ViewBox
+from ..writers.svg.appearance import Appearance, ViewBox
 from ..writers.svg.curvature_map import WHOSE, Whose
 from .file_names import NAMES
 from .files import write_whole
@@ -77,12 +77,12 @@ class RunSpec:
 
     options: Options = field(default_factory=Options)
     formats: tuple[str, ...] = ("svg", "curvature", GALLERY)
-    view_box: ViewBox = "em"
+    view_box: ViewBox = Appearance.view_box
     names: Names = "glyph"
     limits: Limits = field(default_factory=Limits)
-    size: str | None = None
-    fill: str = CURRENT
-    stroke: str = "none"
+    size: str | None = Appearance.size
+    fill: str = Appearance.fill
+    stroke: str = Appearance.stroke
     comb: Whose = "result"
     corner_teeth: bool = False
 

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
 
 from ..fitting.results import MeasureColumns
+from ..types import counted
 from .entry import columns_of
 
 SHOWN = 10
@@ -131,7 +132,7 @@ class Summary:
     def headline(self) -> str:
         """The run in one clause: how many glyphs, in what time, how near to the source."""
         kinds = [(self.statuses["empty"], "empty"), (self.failed, "failed")]
-        parts = [plural(self.statuses["ok"], "glyph"), *(f"{count} {kind}" for count, kind in kinds if count)]
+        parts = [counted(self.statuses["ok"], "glyph"), *(f"{count} {kind}" for count, kind in kinds if count)]
         earlier = sum(self.statuses.values()) - self.done
         before = f" ({earlier} of them before)" if earlier > 0 else ""
         how = []
@@ -150,7 +151,7 @@ class Summary:
             if count := getattr(self, name):
                 yield f"{words}: {listed(self.named[name], count)}"
         if self.not_converged:
-            yield f"{plural(self.not_converged, 'glyph')} with a contour that did not converge"
+            yield f"{counted(self.not_converged, 'glyph')} with a contour that did not converge"
         for glyph, notes in self.left_out:
             yield f"{glyph} came out empty: {notes}"
         yield from self.remarks
@@ -177,8 +178,3 @@ def listed(names: Sequence[str], count: int) -> str:
     """The names, and how many more there are of ``count``."""
     more = f" and {count - len(names)} more" if count > len(names) else ""
     return ", ".join(names) + more
-
-
-def plural(count: int, thing: str) -> str:
-    """A number of things."""
-    return f"{count} {thing}{'' if count == 1 else 's'}"

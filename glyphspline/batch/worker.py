@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
+from ..writers.figures.images import ImageKind
 from ..writers.svg.curvature_map import combs, curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
@@ -249,17 +250,17 @@ def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.corner_teeth)
 
 
-def _drawing(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
+def _drawing(job: Job, glyph: Glyph, kind: ImageKind) -> bytes:
     from ..writers.figures.drawing import drawing_image  # imports matplotlib
 
     return drawing_image(glyph.result, kind, job.spec.look, glyph.path.box)
 
 
-def _map(job: Job, glyph: Glyph, kind: Literal["png", "pdf"]) -> bytes:
-    from ..writers.figures import raster
+def _map(job: Job, glyph: Glyph, kind: ImageKind) -> bytes:
+    from ..writers.figures.raster import map_image
 
-    draw = raster.to_png if kind == "png" else raster.to_pdf
-    return draw(glyph.result, comb=job.spec.comb, scale=job.curvature_scale, in_corners=job.spec.corner_teeth)
+    spec = job.spec
+    return map_image(glyph.result, kind, comb=spec.comb, scale=job.curvature_scale, in_corners=spec.corner_teeth)
 
 
 def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,13 +21,13 @@ if TYPE_CHECKING:
     from ..batch import RunSpec
     from ..readers import Selection, Source
 
-GLYPHS = "Which glyphs"
-CLOSENESS = "How close to the source"
-CORNERS = "Corners"
-FILES = "What is written"
-LOOK = "How drawings look"
-RUN = "The run"
-METHOD = "The method, in the paper's terms"
+glyph_option = partial(typer.Option, rich_help_panel="Which glyphs")
+closeness_option = partial(typer.Option, rich_help_panel="How close to the source")
+corner_option = partial(typer.Option, rich_help_panel="Corners")
+file_option = partial(typer.Option, rich_help_panel="What is written")
+look_option = partial(typer.Option, rich_help_panel="How drawings look")
+run_option = partial(typer.Option, rich_help_panel="The run")
+method_option = partial(typer.Option, rich_help_panel="The method, in the paper's terms")
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
 FONTS_HELP = (
@@ -96,222 +97,140 @@ OwnFont = Annotated[Path | None, typer.Argument(metavar="[FONT]", help="A font o
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)]
 RunFont = Annotated[Path | None, typer.Option("--font", metavar="FONT", help="The font that the run was made of.")]
 
-Text = Annotated[str | None, typer.Option("--text", help="Glyphs of these characters.", rich_help_panel=GLYPHS)]
-TextFile = Annotated[
-    Path | None, typer.Option("--text-file", help="Glyphs of a UTF-8 file's characters.", rich_help_panel=GLYPHS)
-]
-Unicodes = Annotated[
-    str | None, typer.Option("--unicodes", help="Code points: U+4E00-4E10,9F8D or *.", rich_help_panel=GLYPHS)
-]
-Glyphs = Annotated[
-    str | None, typer.Option("--glyphs", help="Glyph names, between commas, or *.", rich_help_panel=GLYPHS)
-]
-Gids = Annotated[str | None, typer.Option("--gids", help="Glyph indices: 5,10-20 or *.", rich_help_panel=GLYPHS)]
-Every = Annotated[bool, typer.Option("--all", help="Every glyph of the font.", rich_help_panel=GLYPHS)]
+Text = Annotated[str | None, glyph_option("--text", help="Glyphs of these characters.")]
+TextFile = Annotated[Path | None, glyph_option("--text-file", help="Glyphs of a UTF-8 file's characters.")]
+Unicodes = Annotated[str | None, glyph_option("--unicodes", help="Code points: U+4E00-4E10,9F8D or *.")]
+Glyphs = Annotated[str | None, glyph_option("--glyphs", help="Glyph names, between commas, or *.")]
+Gids = Annotated[str | None, glyph_option("--gids", help="Glyph indices: 5,10-20 or *.")]
+Every = Annotated[bool, glyph_option("--all", help="Every glyph of the font.")]
 
-FaceIndex = Annotated[
-    int,
-    typer.Option(
-        "--face-index", parser=natural, metavar="N", help="Which font of a collection.", rich_help_panel=GLYPHS
-    ),
-]
-OneFace = Annotated[
-    int | None,
-    typer.Option(
-        "--face-index", parser=natural, metavar="N", help="Only this font of a collection.", rich_help_panel=GLYPHS
-    ),
-]
+face_option = partial(glyph_option, "--face-index", parser=natural, metavar="N")
+FaceIndex = Annotated[int, face_option(help="Which font of a collection.")]
+OneFace = Annotated[int | None, face_option(help="Only this font of a collection.")]
 Location = Annotated[
     str | None,
-    typer.Option(
-        "--location", metavar="TAG=VALUE,…", help="Place of a variable font: wght=700,wdth=80, or a name: Bold.",
-        rich_help_panel=GLYPHS,
+    glyph_option(
+        "--location", metavar="TAG=VALUE,…", help="Place of a variable font: wght=700,wdth=80, or a name: Bold."
     ),
-]  # fmt: skip
+]
 
 Tolerance = Annotated[
     float | None,
-    typer.Option(
-        "--tolerance", parser=number, metavar="UNITS",
+    closeness_option(
+        "--tolerance",
+        parser=number,
+        metavar="UNITS",
         help="How far a curve may be from its source, in font units. Without it, 1/1000 em.",
-        rich_help_panel=CLOSENESS,
     ),
-]  # fmt: skip
-HowHard = Annotated[
-    Effort, typer.Option("--effort", help="best takes longer to find fewer points.", rich_help_panel=CLOSENESS)
 ]
+HowHard = Annotated[Effort, closeness_option("--effort", help="best takes longer to find fewer points.")]
 Step = Annotated[
     float | None,
-    typer.Option(
-        "--step", parser=number, metavar="UNITS", help="Instead: a point at every so many font units of the outline.",
-        rich_help_panel=CLOSENESS,
+    closeness_option(
+        "--step", parser=number, metavar="UNITS", help="Instead: a point at every so many font units of the outline."
     ),
-]  # fmt: skip
+]
 Count = Annotated[
-    int | None,
-    typer.Option(
-        "--count", parser=whole, metavar="N", help="Instead: this number of points a contour.",
-        rich_help_panel=CLOSENESS,
-    ),
-]  # fmt: skip
+    int | None, closeness_option("--count", parser=whole, metavar="N", help="Instead: this number of points a contour.")
+]
 Measure = Annotated[
-    bool,
-    typer.Option(
-        "--measure", help="With --step and --count too: measure distance, length, curvature.",
-        rich_help_panel=CLOSENESS,
-    ),
-]  # fmt: skip
+    bool, closeness_option("--measure", help="With --step and --count too: measure distance, length, curvature.")
+]
 
 Choice = Annotated[
     Preset | None,
-    typer.Option(
-        "--preset", help="type: sharp corners, few points, for letters. paper: smooth, c = 0, as the paper has it.",
-        rich_help_panel=CORNERS,
+    corner_option(
+        "--preset", help="type: sharp corners, few points, for letters. paper: smooth, c = 0, as the paper has it."
     ),
-]  # fmt: skip
+]
 CornerMode = Annotated[
     Corners,
-    typer.Option(
-        "--corners", help="smooth: one curve a contour, for brush and traced outlines. sharp: corners stay, for type.",
-        rich_help_panel=CORNERS,
+    corner_option(
+        "--corners", help="smooth: one curve a contour, for brush and traced outlines. sharp: corners stay, for type."
     ),
-]  # fmt: skip
+]
 CornerAngle = Annotated[
     float,
-    typer.Option(
-        "--corner-angle", parser=number, metavar="DEGREES", help="How sharp a turn counts as a corner.",
-        rich_help_panel=CORNERS,
-    ),
-]  # fmt: skip
+    corner_option("--corner-angle", parser=number, metavar="DEGREES", help="How sharp a turn counts as a corner."),
+]
 Between = Annotated[
     Continuity,
-    typer.Option(
+    corner_option(
         "--continuity",
         help="Between corners: c2, one spline, whose curvature has no jumps; g1, cubics that only meet without a kink.",
-        rich_help_panel=CORNERS,
     ),
 ]
 
 Out = Annotated[
-    Path,
-    typer.Option("--out", "-o", parser=place, metavar="DIR", help="Folder to write to.", show_default=False,
-                 rich_help_panel=FILES),
-]  # fmt: skip
+    Path, file_option("--out", "-o", parser=place, metavar="DIR", help="Folder to write to.", show_default=False)
+]
 Formats = Annotated[
     str,
-    typer.Option(
-        "--format",
-        help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet.",
-        rich_help_panel=FILES,
+    file_option(
+        "--format", help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet."
     ),
 ]
 FileNames = Annotated[
     Names,
-    typer.Option(
+    file_option(
         "--names",
         help="What files are called after: the glyph's name, its code point (uni9F8D), its index, its character.",
-        rich_help_panel=FILES,
     ),
 ]
-Each = Annotated[
-    bool,
-    typer.Option("--each", help="A folder in DIR for each font, as of several, for one font too.",
-                 rich_help_panel=FILES),
-]  # fmt: skip
+Each = Annotated[bool, file_option("--each", help="A folder in DIR for each font, as of several, for one font too.")]
+Precision = Annotated[int, file_option("--precision", parser=whole, metavar="N", help="Decimals written, 0 to 9.")]
+RemoveOverlaps = Annotated[bool, file_option("--remove-overlaps", help="Unite overlapping contours first.")]
 
-Region = Annotated[ViewBox, typer.Option("--view-box", help="Region a drawing shows.", rich_help_panel=LOOK)]
+Region = Annotated[ViewBox, look_option("--view-box", help="Region a drawing shows.")]
 Height = Annotated[
-    str | None,
-    typer.Option(
-        "--size", help="Height of a drawing with its unit, as 20mm; its width in proportion.", rich_help_panel=LOOK
-    ),
+    str | None, look_option("--size", help="Height of a drawing with its unit, as 20mm; its width in proportion.")
 ]
-Fill = Annotated[
-    str,
-    typer.Option("--fill", help="Colour of the ink: a CSS name, #rrggbb, none or currentColor.", rich_help_panel=LOOK),
-]
-Stroke = Annotated[
-    str, typer.Option("--stroke", help="Colour of a thin line along the outline, likewise.", rich_help_panel=LOOK)
-]
+Fill = Annotated[str, look_option("--fill", help="Colour of the ink: a CSS name, #rrggbb, none or currentColor.")]
+Stroke = Annotated[str, look_option("--stroke", help="Colour of a thin line along the outline, likewise.")]
 Comb = Annotated[
-    Whose,
-    typer.Option(
-        "--comb", help="Whose curvature is shown: the result's, or the source outline's own, exact.",
-        rich_help_panel=LOOK,
-    ),
-]  # fmt: skip
+    Whose, look_option("--comb", help="Whose curvature is shown: the result's, or the source outline's own, exact.")
+]
 CornerTeeth = Annotated[
-    bool,
-    typer.Option(
-        "--corner-teeth", help="Teeth of a smooth result's comb also in the turn of a corner.", rich_help_panel=LOOK
-    ),
-]
-
-Precision = Annotated[
-    int,
-    typer.Option("--precision", parser=whole, metavar="N", help="Decimals written, 0 to 9.", rich_help_panel=FILES),
-]
-RemoveOverlaps = Annotated[
-    bool, typer.Option("--remove-overlaps", help="Unite overlapping contours first.", rich_help_panel=FILES)
+    bool, look_option("--corner-teeth", help="Teeth of a smooth result's comb also in the turn of a corner.")
 ]
 
 Jobs = Annotated[
     int | None,
-    typer.Option(
-        "--jobs",
-        "-j",
-        parser=natural,
-        metavar="N",
-        help="Worker processes. Without it, one a core.",
-        rich_help_panel=RUN,
-    ),
+    run_option("--jobs", "-j", parser=natural, metavar="N", help="Worker processes. Without it, one a core."),
 ]
-Resume = Annotated[
-    bool,
-    typer.Option("--resume/--restart", help="Go on with what is in --out, or do it all anew.", rich_help_panel=RUN),
-]
+Resume = Annotated[bool, run_option("--resume/--restart", help="Go on with what is in --out, or do it all anew.")]
 Scheduler = Annotated[
-    str | None,
-    typer.Option(
-        "--scheduler", metavar="TCP://…", help="Work on this dask.distributed cluster instead.", rich_help_panel=RUN
-    ),
+    str | None, run_option("--scheduler", metavar="TCP://…", help="Work on this dask.distributed cluster instead.")
 ]
 Config = Annotated[
     Path | None,
-    typer.Option(
-        "--config", metavar="FILE", callback=configured, is_eager=True, rich_help_panel=RUN,
+    run_option(
+        "--config",
+        metavar="FILE",
+        callback=configured,
+        is_eager=True,
         help="TOML with options by name: tolerance = 2. So is the table tool.glyphspline of ./pyproject.toml.",
     ),
-]  # fmt: skip
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing but errors.", rich_help_panel=RUN)]
-JsonSummary = Annotated[
-    bool, typer.Option("--json", help="The summary as JSON on standard output.", rich_help_panel=RUN)
 ]
-JsonLog = Annotated[
-    bool,
-    typer.Option("--json-log", help="Progress and summary as JSON lines on standard error.", rich_help_panel=RUN),
-]
+Quiet = Annotated[bool, run_option("--quiet", "-q", help="Say nothing but errors.")]
+JsonSummary = Annotated[bool, run_option("--json", help="The summary as JSON on standard output.")]
+JsonLog = Annotated[bool, run_option("--json-log", help="Progress and summary as JSON lines on standard error.")]
 
 Variant = Annotated[
-    int,
-    typer.Option(
-        "--variant", parser=whole, metavar="0…4", help="How footpoints are sought (Table 1).", rich_help_panel=METHOD
-    ),
+    int, method_option("--variant", parser=whole, metavar="0…4", help="How footpoints are sought (Table 1).")
 ]
 Margin = Annotated[
     float,
-    typer.Option(
-        "--margin", parser=number, metavar="C", rich_help_panel=METHOD,
+    method_option(
+        "--margin",
+        parser=number,
+        metavar="C",
         help="How much less than it might a footpoint moves from its knot, 0 to 0.5 (c of Lemma 2).",
     ),
-]  # fmt: skip
+]
 WhereNone = Annotated[
-    Fallback,
-    typer.Option(
-        "--fallback", help="Where chords are too uneven for a guarantee (Lemma 2 has no interval).",
-        rich_help_panel=METHOD,
-    ),
-]  # fmt: skip
+    Fallback, method_option("--fallback", help="Where chords are too uneven for a guarantee (Lemma 2 has no interval).")
+]
 
 AtlasFile = Annotated[Path, typer.Option("--out", "-o", parser=place, metavar="FILE", help="PDF to write.")]
 Profiles = Annotated[

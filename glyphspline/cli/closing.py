@@ -8,6 +8,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .messages import printable
+
 if TYPE_CHECKING:
     from ..batch import Summary
 
@@ -108,9 +110,9 @@ def outside(run: FontRun) -> int:
 
 def missing_words(missing: Sequence[str], shown: int = 10) -> str:
     """What a font does not have: code points with their characters, the first few and the number of the others."""
-    words = [_with_character(phrase) for phrase in missing[:shown]]
-    more = f" and {len(missing) - shown} more" if len(missing) > shown else ""
-    return ", ".join(words) + more
+    from ..batch.summary import listed
+
+    return listed([_with_character(phrase) for phrase in missing[:shown]], len(missing))
 
 
 def _with_character(phrase: str) -> str:
@@ -118,8 +120,3 @@ def _with_character(phrase: str) -> str:
         return phrase
     character = chr(int(phrase[2:], 16))
     return f"{phrase} {character}" if character.isprintable() and not character.isspace() else phrase
-
-
-def printable(text: str) -> str:
-    """Text without characters that move a terminal's cursor or change its colours; fonts may have any in names."""
-    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -3,33 +3,23 @@
 from __future__ import annotations
 
 import json
-import logging
 import os
 import sys
-import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any
 
 import typer
 
 from ..fitting.options import Options
+from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption
-
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
-    from ..batch import RunSpec, Summary
-    from ..readers import Source
-    from .closing import FontRun
+from .messages import errors, listen, printable, say, stop
+from .progress import progress
+from .running import convert_fonts, run, workplace
 
 PATIENCE = 60.0
 """Time limit in seconds of ``info --deep`` for some hundred glyphs."""
-
-LOOKED_AT = 64
-"""Outlines that are looked at to tell type from brush."""
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
@@ -60,28 +50,28 @@ def convert(
     every: opt.Every = False,
     face_index: opt.OneFace = None,
     location: opt.Location = None,
-    variant: opt.Variant = 2,
-    margin: opt.Margin = 0.02,
-    fallback: opt.WhereNone = "peak",
+    variant: opt.Variant = Options.variant,
+    margin: opt.Margin = Options.margin,
+    fallback: opt.WhereNone = Options.fallback,
     preset: opt.Choice = None,
-    corners: opt.CornerMode = "smooth",
+    corners: opt.CornerMode = Options.corners,
     corner_angle: opt.CornerAngle = Options.corner_angle,
-    continuity: opt.Between = "c2",
-    tolerance: opt.Tolerance = None,
-    step: opt.Step = None,
-    count: opt.Count = None,
-    effort: opt.HowHard = "fast",
+    continuity: opt.Between = Options.continuity,
+    tolerance: opt.Tolerance = Options.tolerance,
+    step: opt.Step = Options.step,
+    count: opt.Count = Options.count,
+    effort: opt.HowHard = Options.effort,
     names: opt.FileNames = "glyph",
     each: opt.Each = False,
-    view_box: opt.Region = "em",
-    size: opt.Height = None,
-    fill: opt.Fill = "currentColor",
-    stroke: opt.Stroke = "none",
+    view_box: opt.Region = Appearance.view_box,
+    size: opt.Height = Appearance.size,
+    fill: opt.Fill = Appearance.fill,
+    stroke: opt.Stroke = Appearance.stroke,
     comb: opt.Comb = "result",
     corner_teeth: opt.CornerTeeth = False,
-    precision: opt.Precision = 2,
-    remove_overlaps: opt.RemoveOverlaps = False,
-    measure: opt.Measure = False,
+    precision: opt.Precision = Options.precision,
+    remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
+    measure: opt.Measure = Options.measure,
     formats: opt.Formats = "svg,curvature,gallery",
     jobs: opt.Jobs = None,
     scheduler: opt.Scheduler = None,
@@ -119,59 +109,6 @@ def convert(
     raise typer.Exit(1 if any(run.failed for run in runs) else 0)
 
 
-def convert_fonts(
-    fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any], alone: bool
-) -> list[FontRun]:
-    """Convert one font alone into the folder itself, or several, each face into a folder of its own.
-
-    Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
-    """
-    from ..batch import OutputError, faces_of, folders_for, locked
-    from ..errors import GlyphsplineError
-    from .closing import FontRun
-
-    if alone:
-        given, folders = {**given, "face_index": given["face_index"] or 0}, [given["out"]]
-    else:
-        given = {**given, "every": given["every"] or not opt.is_selected(given)}
-        folders = [given["out"] / name for name in folders_for(fonts)]
-    location = opt.location_of(given["location"])
-    runs: list[FontRun] = []
-    with nullcontext() if alone else locked(given["out"]):
-        for font, folder in zip(fonts, folders, strict=True):
-            try:
-                for source in faces_of(font, location, given["face_index"]):
-                    runs.append(convert_face(source, str(font), folder, spec, executor, given, alone))
-            except GlyphsplineError as error:
-                if alone or isinstance(error, OutputError):
-                    raise
-                if given["quiet"] or given["json_log"]:  # or else it is said below the table
-                    say(str(error))
-                runs.append(FontRun(str(font), folder, error=str(error)))
-    return runs
-
-
-def convert_face(
-    source: Source, name: str, out: Path, spec: RunSpec, executor: Executor, given: Mapping[str, Any], alone: bool
-) -> FontRun:
-    """Convert one face of the font called ``name``; those of a collection go to a folder each unless it is alone."""
-    from .closing import FontRun, missing_words
-
-    if source.num_faces > 1 and not alone:
-        name, out = f"{name}, face {source.face_index}", out / f"face-{source.face_index}"
-    quiet, json_log = given["quiet"], given["json_log"]
-    names = opt.selection_of(source, given)
-    if names.missing and not quiet:
-        say(("" if alone else f"{name}: ") + f"not in the font: {missing_words(names.missing)}")
-    if alone and not names:
-        stop("none of the glyphs asked for is in the font")
-    heading, restart = None if alone else name, not given["resume"]
-    summary = run(source, names, out, spec, executor, restart=restart, quiet=quiet, json_log=json_log, name=heading)
-    if alone and not (quiet or json_log) and looks_like_type(source, names, spec):
-        say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
-    return FontRun(name, out, summary)
-
-
 @app.command()
 def info(
     font: opt.FontFile,
@@ -183,7 +120,6 @@ def info(
     """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
     with errors():
         from ..readers.facts import file_facts
-        from .closing import printable
         from .describe import lines_of
 
         facts = file_facts(font, face_index, opt.location_of(location))
@@ -232,17 +168,17 @@ def atlas(
     profiles: opt.Profiles = None,
     face_index: opt.FaceIndex = 0,
     location: opt.Location = None,
-    variant: opt.Variant = 2,
-    margin: opt.Margin = 0.02,
-    fallback: opt.WhereNone = "peak",
+    variant: opt.Variant = Options.variant,
+    margin: opt.Margin = Options.margin,
+    fallback: opt.WhereNone = Options.fallback,
     preset: opt.Choice = None,
-    corners: opt.CornerMode = "smooth",
+    corners: opt.CornerMode = Options.corners,
     corner_angle: opt.CornerAngle = Options.corner_angle,
-    continuity: opt.Between = "c2",
-    tolerance: opt.Tolerance = None,
-    step: opt.Step = None,
-    count: opt.Count = None,
-    effort: opt.HowHard = "fast",
+    continuity: opt.Between = Options.continuity,
+    tolerance: opt.Tolerance = Options.tolerance,
+    step: opt.Step = Options.step,
+    count: opt.Count = Options.count,
+    effort: opt.HowHard = Options.effort,
     comb: opt.Comb = "result",
     corner_teeth: opt.CornerTeeth = False,
     quiet: opt.Quiet = False,
@@ -259,10 +195,9 @@ def atlas(
             stop("none of the glyphs asked for is in the font")
         chosen = None if profiles is None else source.select(text=profiles)
         with progress(quiet) as observer:
-            each = (lambda done, total: observer(done, total, 0)) if observer else None
             pages, failed = make_atlas(
                 source, names, out, opt.options_of(given), profiles=chosen, comb=comb, in_corners=corner_teeth,
-                observer=each,
+                observer=observer,
             )  # fmt: skip
         if not quiet:
             say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
@@ -325,7 +260,7 @@ def warm(jobs: opt.Jobs = None, quiet: opt.Quiet = False) -> None:
     with errors(quiet=True):  # the bar tells
         from ..batch.precompile import precompile
 
-        with counted(quiet) as observer:
+        with progress(quiet, compiling=True) as observer:
             total = precompile(jobs, observer)
     if not quiet:
         say(f"{total} functions are compiled")
@@ -345,184 +280,6 @@ def demo_fonts() -> list[tuple[Path, str]]:
         (fonts / "kouzan-gyosho.otf", "龍好"),
         (dejavu, "g&"),
     ]
-
-
-@contextmanager
-def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
-    """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
-    if scheduler is not None:
-        from ..batch.cluster import ClusterExecutor
-
-        executor: Executor = ClusterExecutor(scheduler)
-    else:
-        from ..batch.schedule import workers
-
-        executor = workers(jobs, spec.limits.seconds, spec.options, spec.formats)
-    with executor:
-        yield executor
-
-
-def run(
-    source: Source,
-    names: Sequence[str],
-    out: Path,
-    spec: RunSpec,
-    executor: Executor,
-    *,
-    restart: bool,
-    quiet: bool,
-    json_log: bool = False,
-    name: str | None = None,
-) -> Summary:
-    """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
-    from ..batch import convert_font
-    from ..report.data import FOLDER as GALLERY
-
-    with json_lines() if json_log else progress(quiet) as observer:
-        summary = convert_font(source, names, out, spec, executor=executor, restart=restart, observer=observer)
-    if json_log:
-        say(json.dumps({"out": str(out), **summary.facts()}))
-    elif not quiet:
-        seen = f"open {out / 'index.html'}" if GALLERY in spec.formats else f"written to {out}"
-        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}; {seen}")
-        for line in summary.lines():
-            say(f"  {line}" if name else line)
-    return summary
-
-
-def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec) -> bool:
-    """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
-    from ..errors import GlyphsplineError
-    from ..outlines.corner_share import share_of_corners
-
-    if spec.options.corners != "smooth" or spec.options.is_fixed:
-        return False
-    outlines = []
-    for name in names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]:
-        with suppress(GlyphsplineError):
-            outlines.append(source.outline(name))
-    return share_of_corners(outlines) > 0.5
-
-
-@contextmanager
-def json_lines() -> Iterator[Any]:
-    """Progress as JSON lines on standard error, one a second at most."""
-    last = 0.0
-
-    def observe(done: int, total: int, failed: int) -> None:
-        nonlocal last
-        now = time.monotonic()
-        if now - last >= 1 or done == total:
-            last = now
-            say(json.dumps({"done": done, "total": total, "failed": failed}))
-
-    yield observe
-
-
-@contextmanager
-def progress(quiet: bool) -> Iterator[Any]:
-    """A progress bar on standard error, if that is a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]:.0f}/s"),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[failed]} failed"),
-    )
-    bar = Progress(*columns, console=Console(stderr=True), transient=True)
-    task = bar.add_task("", total=None, rate=0.0, failed=0)
-
-    def observe(done: int, total: int, failed: int) -> None:
-        bar.start()  # not before: until then the line belongs to what is compiled
-        speed = bar.tasks[0].speed or 0.0
-        bar.update(task, completed=done, total=total, failed=failed, rate=speed)
-
-    try:
-        yield observe
-    finally:
-        bar.stop()
-
-
-@contextmanager
-def counted(quiet: bool) -> Iterator[Any]:
-    """A bar of functions that are ready, on standard error, if that is a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (TextColumn("compiling"), BarColumn(), MofNCompleteColumn(), TextColumn("functions"), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=None)
-        yield lambda ready, total: bar.update(task, completed=ready, total=total or None)
-
-
-@contextmanager
-def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
-    """Print an expected error as one line on standard error and exit with status 2.
-
-    Args:
-        quiet, json_log: of the command: how this process and those it starts tell what they compile.
-    """
-    from ..cache import TELLS, settle
-    from ..errors import GlyphsplineError
-
-    os.environ[TELLS] = "" if quiet else "json" if json_log else "line"
-    try:
-        settle()
-        yield
-    except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
-        stop(str(error))
-    except MemoryError:
-        stop("not enough memory")
-    except KeyboardInterrupt:
-        say(interruption.WORDS)
-        raise typer.Exit(interruption.STATUS) from None
-    finally:
-        del os.environ[TELLS]
-
-
-def say(line: str) -> None:
-    """Print a line on standard error. What fonts have in names does not move the cursor."""
-    from .closing import printable
-
-    typer.echo(printable(line), err=True)
-
-
-class Said(logging.Handler):
-    """Prints what this package and fontTools log, each sentence once."""
-
-    def __init__(self, level: int) -> None:
-        super().__init__(level)
-        self._before: set[str] = set()
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Print a record as a line on standard error."""
-        line = f"{record.name.partition('.')[0]}: {record.getMessage()}"
-        if line not in self._before:
-            self._before.add(line)
-            say(line)
-
-
-def listen(quiet: bool = False) -> None:
-    """Print warnings of the libraries on standard error, or only their errors."""
-    for name in ("glyphspline", "fontTools"):
-        log = logging.getLogger(name)
-        log.handlers[:] = [handler for handler in log.handlers if not isinstance(handler, Said)]
-        log.addHandler(Said(logging.ERROR if quiet else logging.WARNING))
-
-
-def stop(message: str) -> NoReturn:
-    """Exit with a message and status 2: the call or the font is unusable."""
-    say(f"glyphspline: {message}")
-    raise typer.Exit(2)
 
 
 def limit_memory() -> None:

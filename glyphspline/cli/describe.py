@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ..types import counted
+
 SHOWN = 5
 """Maximum number of glyph names in a line."""
 
 
 def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:
     """The facts that :func:`glyphspline.readers.facts.file_facts` gives, line by line."""
-    yield f"{facts['file']}: {facts['format']}, {facts['faces']} face{'s' if facts['faces'] != 1 else ''}"
+    yield f"{facts['file']}: {facts['format']}, {counted(facts['faces'], 'face')}"
     for font in facts["fonts"]:
         yield f"face {font['face_index']}: {font['family']} {font['style']}"
         yield (
@@ -34,4 +36,4 @@ def lines_of(facts: Mapping[str, Any]) -> Iterator[str]:
 def _glyphs(names: Sequence[str], what: str) -> Iterator[str]:
     if names:
         more = ", …" if len(names) > SHOWN else ""
-        yield f"  {len(names)} glyph{'s' if len(names) != 1 else ''} {what}: {', '.join(names[:SHOWN])}{more}"
+        yield f"  {counted(len(names), 'glyph')} {what}: {', '.join(names[:SHOWN])}{more}"

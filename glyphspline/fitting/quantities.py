@@ -35,7 +35,7 @@ QUANTITIES = {
     "area_change": Quantity("change of area", "units²", "area of the result less that of the source"),
     "bending_energy": Quantity("bending energy", PER_EM, "integral of squared curvature: less is rounder"),
     "max_curvature": Quantity("largest curvature", PER_EM, "of the sharpest bend: 1/radius, with the em as the unit"),
-    "curvature_extrema": Quantity("curvature extrema", "", "where curvature peaks between corners; an o has 4"),
+    "curvature_extrema": Quantity("curvature extrema", "", "where curvature peaks between corners; an ellipse has 4"),
     "source_curvature_extrema": Quantity("curvature extrema, source", "", "the same of the source outline"),
     "new_crossings": Quantity(
         "new crossings", "", "crossings of contours, with themselves and others, beyond the source's"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import turns
+from ..curves.cubics import jet, turns
 from ..types import BoolArray, FloatArray, IntArray
 from .contour_arrays import ContourArrays
 from .segments import contour_cubics
@@ -28,16 +28,8 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
         cubics = contour_cubics(contours, c)
         for j in range(len(cubics)):
             for k in range(CHORDS):
-                t = k / CHORDS
-                s = 1.0 - t
-                u, v, w, z = s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
-                for axis in range(2):
-                    chords[starts[c] + CHORDS * j + k, axis] = (
-                        u * cubics[j, 0, axis]
-                        + v * cubics[j, 1, axis]
-                        + w * cubics[j, 2, axis]
-                        + z * cubics[j, 3, axis]
-                    )
+                i = starts[c] + CHORDS * j + k
+                chords[i, 0], chords[i, 1], _, _, _, _ = jet(cubics, j, k / CHORDS)
     sides = np.empty(count)
     for c in range(count):
         own = chords[starts[c] : starts[c + 1]]

@@ -9,17 +9,13 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import jet, length, newton_step
 from ...types import FloatArray, IntArray
-from .spline_curve import Curve
+from .spline_curve import SHORT, Curve
 
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
 
 NOTICED = 0.5
 """Points of the curve between two feet count from this share of the tolerance on."""
-
-
-SHORT = 0.01
-"""Share of a span below which Newton's step to a foot is the last."""
 
 
 class Samples(NamedTuple):

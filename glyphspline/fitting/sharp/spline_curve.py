@@ -26,7 +26,7 @@ Lemma 2 has no interval there and needs none: each step multiplies the error of 
 """
 
 SHORT = 0.01
-"""Share of a span below which Newton's step to a footpoint is the last of a pass."""
+"""Share of a span below which Newton's step to a footpoint, of a vertex or of a sample, is the last."""
 
 MOST_PASSES = 200
 """Passes of variant 2 before a curve counts as lost."""

@@ -134,11 +134,8 @@ def find_spline(
         error = np.inf
         if possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
             k = curve.size[0]
-            width, start = k + 1 - closed, 0 * k
             rounds = search.few_rounds if k <= 3 else (search.removal_rounds if what == REMOVE else search.rounds)
-            if what == REMOVE and 2 * search.reach < width:
-                start = (at - search.reach) % k if closed else min(max(at - search.reach, 0), width - 2 * search.reach)
-                width = 2 * search.reach
+            start, width = slots_beside(curve, at, search.reach) if what == REMOVE else (0 * k, k + 1 - closed)
             wobble = search.fairness * mean_chord(curve) ** 3
             error = improve(fit, samples, near, search.margin, search.residual, rounds, start, width, wobble)
         # How it went.
@@ -274,6 +271,16 @@ def _resize(curve: Curve, old: Curve, k: int) -> None:
         size = length(x, y)
         share = min(1.0, 0.5 * chord / size) if size > 0 else 1.0
         curve.X[tip, 0], curve.X[tip, 1] = curve.X[end, 0] + share * x, curve.X[end, 1] + share * y
+
+
+@compiled(internal=True)
+def slots_beside(curve: Curve, at: int, reach: int) -> tuple[int, int]:
+    """The first of the slots that move where vertex ``at`` was taken out, ``reach`` on either side; and how many."""
+    k, closed = curve.size[0], curve.size[1]
+    slots, width = k + 1 - closed, 2 * reach
+    if width >= slots:
+        return 0 * k, slots
+    return (at - reach) % k if closed else min(max(at - reach, 0), slots - width), width
 
 
 @compiled(internal=True)

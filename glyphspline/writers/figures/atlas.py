@@ -16,7 +16,8 @@ from ...outlines.joins import Kind, joins
 from ...outlines.outline import Contour
 from ...types import FloatArray
 from ..svg.curvature_map import LONGEST, SPACING, Teeth, Whose, teeth
-from .patches import UNDATED, ascii_text, colour_bar, comb_patches, outline_patch
+from .images import UNDATED, blank
+from .patches import ascii_text, colour_bar, comb_patches, outline_patch
 
 PAGE = (8.27, 11.69)
 """A4 in inches."""
@@ -144,9 +145,7 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
 
 
 def _figure(heading: str, caption: str) -> Any:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=PAGE)
+    figure = blank(*PAGE)
     figure.text(0.05, 0.967, ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
     figure.text(0.05, 0.955, caption, fontsize=7, color="0.35", parse_math=False)
     return figure

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import io
-from typing import Literal
-
 from ...fitting.results import GlyphResult
 from ..svg.appearance import CURRENT, PLAIN, Appearance
 from ..svg.document import STROKE, shown_box
 from ..svg.path_data import Box, curves_data
-from .patches import UNDATED, outline_patch
-
-Kind = Literal["png", "pdf"]
+from .images import DPI, ImageKind, blank, saved
+from .patches import outline_patch
 
 HEIGHT = 6.0
 """Height in inches of a drawing that says none."""
 
-DPI = 200.0
-"""Pixels an inch of a PNG. A height in px is that many pixels."""
+PX = 96.0
+"""Pixels an inch of a PNG whose height is in px, which is then that many pixels."""
 
 LARGEST = 8000.0
 """Maximum width and height of a PNG in pixels; a larger one has fewer an inch."""
 
 
-def drawing_image(glyph: GlyphResult, kind: Kind, look: Appearance = PLAIN, ink: Box | None = None) -> bytes:
+def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN, ink: Box | None = None) -> bytes:
     """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
 
     Args:
@@ -31,17 +27,13 @@ def drawing_image(glyph: GlyphResult, kind: Kind, look: Appearance = PLAIN, ink:
         look: its height is 6 inches unless it says another; "currentColor" is black.
         ink: the box around the glyph's curves, if it is known.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     outline = glyph.outline
     left, bottom, right, top = shown_box(
         outline, ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
     )
     width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
     inches = look.inches(HEIGHT)
-    figure = Figure(figsize=(inches * width / height, inches))
-    FigureCanvasAgg(figure)
+    figure = blank(inches * width / height, inches)
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height))
     axes.set_axis_off()
@@ -51,11 +43,5 @@ def drawing_image(glyph: GlyphResult, kind: Kind, look: Appearance = PLAIN, ink:
     for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
         patch.set_clip_on(False)
         axes.add_patch(patch)
-    file = io.BytesIO()
-    if kind == "pdf":
-        figure.savefig(file, format="pdf", metadata=UNDATED)
-    else:
-        dpi = 96.0 if str(look.size).endswith("px") else DPI
-        dpi = min(dpi, LARGEST / (inches * max(1.0, width / height)))
-        figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})
-    return file.getvalue()
+    dpi = PX if str(look.size).endswith("px") else DPI
+    return saved(figure, kind, min(dpi, LARGEST / (inches * max(1.0, width / height))))

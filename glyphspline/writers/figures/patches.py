@@ -11,9 +11,6 @@ from ...types import FloatArray
 from ..svg.colours import SIDES, class_colour, colour_classes
 from ..svg.curvature_map import Teeth
 
-UNDATED = {"CreationDate": None, "Producer": None, "Creator": None}
-"""Metadata of a PDF: without dates and versions the same input gives the same bytes."""
-
 
 def ascii_text(text: str) -> str:
     """The text with "?" for what the fonts of matplotlib may lack."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any
 
 import numpy as np
@@ -10,51 +9,27 @@ import numpy as np
 from ...fitting.results import GlyphResult
 from ..svg.colours import class_colour, colour_classes
 from ..svg.curvature_map import LONGEST, Teeth, Whose, curvature_scale, teeth
-from .patches import UNDATED, ascii_text, colour_bar, outline_patch
+from .images import ImageKind, blank, saved
+from .patches import ascii_text, colour_bar, outline_patch
 
 SIZE = 6.0
 """Width and height of the figure in inches."""
 
 
-def to_png(
+def map_image(
     glyph: GlyphResult,
-    *,
-    comb: Whose = "result",
-    scale: float | None = None,
-    vertices: bool = True,
-    in_corners: bool = False,
-    dpi: int = 200,
-) -> bytes:
-    """The curvature map as a PNG image on white; arguments as for :func:`to_curvature_svg`, and ``dpi``."""
-    how = {"format": "png", "dpi": dpi, "metadata": {"Software": None}}
-    return _save(glyph, comb, scale, vertices, in_corners, how)
-
-
-def to_pdf(
-    glyph: GlyphResult,
+    kind: ImageKind,
     *,
     comb: Whose = "result",
     scale: float | None = None,
     vertices: bool = True,
     in_corners: bool = False,
 ) -> bytes:
-    """The curvature map as a one-page PDF; arguments as for :func:`to_curvature_svg`."""
-    return _save(glyph, comb, scale, vertices, in_corners, {"format": "pdf", "metadata": UNDATED})
-
-
-def _save(
-    glyph: GlyphResult, whose: Whose, scale: float | None, vertices: bool, in_corners: bool, how: dict[str, Any]
-) -> bytes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
+    """The curvature map as a PNG on white, or as a one-page PDF; the others as for :func:`to_curvature_svg`."""
     scale = curvature_scale([glyph]) if scale is None else scale
-    figure = Figure(figsize=(SIZE, SIZE), layout="constrained")
-    FigureCanvasAgg(figure)
-    draw_map(figure.add_subplot(), glyph, whose, scale, vertices, in_corners)
-    file = io.BytesIO()
-    figure.savefig(file, **how)
-    return file.getvalue()
+    figure = blank(SIZE, SIZE, layout="constrained")
+    draw_map(figure.add_subplot(), glyph, comb, scale, vertices, in_corners)
+    return saved(figure, kind)
 
 
 def draw_map(axes: Any, glyph: GlyphResult, whose: Whose, scale: float, vertices: bool, in_corners: bool) -> None:
