@@ -21,7 +21,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cmp_to_key, reduce
-from itertools import pairwise
+from itertools import pairwise, product
 from math import factorial, isqrt, lcm
 from typing import Any, NamedTuple, TypeAlias
 
@@ -153,12 +153,13 @@ def _middle(p: Vector, q: Vector) -> Vector:
 
 def area(drawing: Drawing, contour: int) -> Fraction:
     """The signed area of a contour in square units, positive where it is counter-clockwise."""
-    total = Fraction(0)
+    total = 0
     for piece in drawing.contours[contour]:
         x, y = power(piece)
-        terms = ((i, j) for i in range(len(x)) for j in range(len(x)) if i + j)
-        total += sum(Fraction(x[i] * y[j] * (j - i), i + j) for i, j in terms)
-    return total / (2 * drawing.unit**2)
+        for i, j in product(range(len(x)), repeat=2):
+            if i != j:
+                total += x[i] * y[j] * (j - i) * (60 // (i + j))
+    return Fraction(total, 120 * drawing.unit**2)
 
 
 def defects(written: Drawing | str, source: Drawing) -> tuple[dict[tuple[int, int], int], list[int]]:
@@ -184,6 +185,20 @@ def defects(written: Drawing | str, source: Drawing) -> tuple[dict[tuple[int, in
     areas = [(area(result, k), area(source, k)) for k in range(len(source.contours))]
     collapsed = [k for k, (own, its) in enumerate(areas) if its and own * its <= 0 and (k, k) not in given]
     return {pair: count for pair, count in more.items() if count > 0}, collapsed
+
+
+def unflagged(found: dict[tuple[int, int], int], collapsed: list[int], measures: Sequence[Any]) -> list[str]:
+    """The :func:`defects` of a glyph of which the measures of its contours say nothing, each in words.
+
+    A crossing of two contours has to be in ``new_crossings`` of both.
+    """
+    silent = [pair for pair in found if not all(measures[k].new_crossings for k in pair)]
+    still = [k for k in collapsed if not getattr(measures[k], "collapsed", False)]
+    return [
+        *(f"{found[i, j]} crossings of contours {i} and {j}" for i, j in silent if i != j),
+        *(f"{found[i, j]} crossings of contour {i} with itself" for i, j in silent if i == j),
+        *(f"contour {k} has collapsed" for k in still),
+    ]
 
 
 # Crossings
@@ -267,21 +282,24 @@ def _near(points: Any) -> list[tuple[int, int]]:
 
 def _loops(piece: Piece) -> int:
     """1 for a piece that crosses itself between its ends, else 0."""
-    node = _node(piece)
+    node = _node(piece, within=True)
     if node is None:
         return 0
-    total, product = node  # of the two parameters at the double point
-    inside = product > 0 and 1 - total + product > 0 and 0 < total < 2
-    return int(inside and total * total > 4 * product)
+    total, times = node  # of the two parameters at the double point
+    inside = times > 0 and 1 - total + times > 0 and 0 < total < 2
+    return int(inside and total * total > 4 * times)
 
 
-def _node(piece: Piece) -> tuple[Fraction, Fraction] | None:
-    """Sum and product of the parameters at which a cubic is in one place; they may be equal, or complex."""
+def _node(piece: Piece, *, within: bool = False) -> tuple[Fraction, Fraction] | None:
+    """Sum and product of the parameters at which a cubic is in one place; they may be equal, or complex.
+
+    None if there are none; with ``within``, also if they cannot both be between 0 and 1, by their sum.
+    """
     if len(piece) < 4:
         return None
     x, y = power(piece)
     ab, ac, bc = (x[i] * y[j] - y[i] * x[j] for i, j in ((3, 2), (3, 1), (2, 1)))
-    if ab == 0:
+    if ab == 0 or (within and not 0 < -ac * ab < 2 * ab * ab):
         return None
     total = Fraction(-ac, ab)
     return total, total * total - Fraction(bc, ab)
@@ -302,7 +320,7 @@ def _inside(a: Piece, b: Piece) -> int:
         values.pop()
     while values[0] == 0:
         values.pop(0)
-    for t in [Fraction(1), *(t for end in (a[0], a[-1]) for t in parameters(b, end) if 0 < t < 1)]:
+    for t in [1, *(t for end in (a[0], a[-1]) for t in parameters(b, end) if 0 < t < 1)]:
         while len(values) > 1 and _value(values, t) == 0:
             values = _divided(values, t)
     above, below = _inversion(a, b, matrix)
@@ -356,8 +374,8 @@ def _same_curve(a: Piece, b: Piece) -> int:
     node = _node(a)
     if node is None:
         return 0
-    total, product = node
-    if total * total <= 4 * product:
+    total, times = node
+    if total * total <= 4 * times:
         return 0
     (x, y), (u, v) = power(a), power(b)
     beta = _cube_root(Fraction(u[3], x[3]) if x[3] else Fraction(v[3], y[3]))  # b(t) = a(alpha + beta t)
@@ -367,7 +385,7 @@ def _same_curve(a: Piece, b: Piece) -> int:
 
     def holds(low: Fraction, high: Fraction) -> tuple[bool, bool]:
         """Whether the smaller root is between, and whether the larger is."""
-        at_low, at_high = (s * s - total * s + product for s in (low, high))
+        at_low, at_high = (s * s - total * s + times for s in (low, high))
         smaller = (at_low > 0 and 2 * low < total) and (at_high < 0 or 2 * high > total)
         larger = (at_low < 0 or 2 * low < total) and (at_high > 0 and 2 * high > total)
         return smaller, larger
@@ -438,7 +456,7 @@ def _contacts(
 
 def _closes(piece: Piece) -> bool:
     """Whether a cubic's double point is at one of its ends."""
-    node = _node(piece)
+    node = _node(piece, within=True)
     return node is not None and (node[1] == 0 or 1 - node[0] + node[1] == 0)
 
 
@@ -589,7 +607,7 @@ def _times(p: Poly, q: Poly) -> Poly:
     return result
 
 
-def _value(p: Poly, t: Fraction) -> Any:
+def _value(p: Poly, t: Any) -> Any:
     return reduce(lambda total, c: total * t + c, reversed(p))
 
 
@@ -601,7 +619,7 @@ def _shifted(p: Poly, s: Fraction, way: int) -> Poly:
     return result[: len(p)]
 
 
-def _divided(p: Poly, t: Fraction) -> Poly:
+def _divided(p: Poly, t: Any) -> Poly:
     """p over (x - t), of which it is a multiple."""
     result: Poly = []
     carry: Any = 0
