@@ -46,11 +46,11 @@ class Face:
 
 
 FACES = (
-    Face("LXGW WenKai", "LXGWWenKai-Regular.ttf"),
-    Face("AR PL UKai", "ukai.ttc"),
+    Face("LXGW WenKai", "LXGWWenKai-Regular.ttf", "餪"),
+    Face("AR PL UKai", "ukai.ttc", "煕犼當藼"),
     Face("Noto Sans CJK", "NotoSansCJK-Regular.ttc", "撇壑毣夆醟"),
     Face("Noto Serif CJK", "NotoSerifCJK-Regular.ttc", "荴槚鶧橾簞袿拏覿陃"),
-    Face("Kouzan gyosho", "kouzan-mouhitsu-gyosho.ttf", "龍"),
+    Face("Kouzan gyosho", "kouzan-mouhitsu-gyosho.ttf", "龍槌矜隧授"),
 )
 
 WAYS: tuple[tuple[Any, Any], ...] = tuple(product(("smooth", "sharp"), ("fast", "best")))
