@@ -20,6 +20,9 @@ RADIUS = 2e-5
 TIED = 1e-8
 """Directions nearer to each other than this, in radians, are the same."""
 
+RECENT = 8
+"""Ends of chords at the end of a contact that the next pair of chords may hang on."""
+
 HALVINGS = 50
 """Of an interval of parameters, for the point at which a strand crosses the circle."""
 
@@ -113,7 +116,7 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     for a, b, a_end, b_end in touching[np.lexsort(touching.T[::-1])].tolist():
         for contact in reversed(found):
             ahead = one.position(a) - one.position(contact.end[0]) <= radius
-            if ahead and any(abs(other.way(x, y)) <= radius for x in (b, b_end) for y in contact.covered):
+            if ahead and any(abs(other.way(x, y)) <= radius for x in (b, b_end) for y in contact.covered[-RECENT:]):
                 if a_end > contact.end[0]:
                     contact.end = a_end, b_end
                 contact.covered += [b, b_end]

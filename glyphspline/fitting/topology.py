@@ -22,6 +22,9 @@ from ..types import BoolArray, FloatArray, IntArray
 COLLAPSED = 0.25
 """A contour whose area is less than this share of its source's, or of the other sign, has collapsed."""
 
+UNCOUNTED = 1_000
+"""For how many crossings those count that are not counted."""
+
 
 class Changes(NamedTuple):
     """What changed in C contours.
@@ -37,8 +40,8 @@ class Changes(NamedTuple):
 
     @property
     def number(self) -> int:
-        """Number of changes; a crossing of two contours counts twice."""
-        return int(np.maximum(self.new_crossings, 0).sum() + self.collapsed.sum())
+        """Number of changes: a crossing of two contours counts twice, and crossings that are not counted as many."""
+        return int(np.where(self.new_crossings < 0, UNCOUNTED, self.new_crossings).sum() + self.collapsed.sum())
 
     def copy(self) -> Changes:
         """The same in arrays of their own."""
