@@ -15,9 +15,9 @@ from .curves.bspline import Spline
 from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
 from .fitting.quantities import QUANTITIES, shown
-from .fitting.results import GlyphResult, Measures, as_glyph
+from .fitting.results import BOUNDS, GlyphResult, Measures, as_glyph
 from .outlines.outline import Contour, Outline
-from .types import FloatArray
+from .types import FloatArray, rounded_up
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,6 +62,7 @@ def _head(label: str, unit: str, about: str) -> str:
 
 def _cells(measures: Measures, em: float) -> str:
     values = [shown(name, getattr(measures, name), em) for name in SHOWN]
+    values = [rounded_up(v, 3) if n in BOUNDS and v is not None else v for n, v in zip(SHOWN, values, strict=True)]
     return "".join(f"<td>{f'{v:.3g}' if isinstance(v, float) else '–' if v is None else v}</td>" for v in values)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from decimal import Context, Decimal
 from typing import Any, Generic, Literal, TypeAlias, TypeVar, overload
 
 import numpy as np
@@ -21,6 +22,13 @@ T = TypeVar("T", covariant=True)
 def counted(number: int, noun: str) -> str:
     """A number and its noun, in the plural unless there is one."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def rounded_up(value: float, digits: int) -> float:
+    """The least number of so many significant digits that is not below ``value``: how a proven bound is written."""
+    text = f"{value:.{digits}g}"
+    near = float(text)
+    return near if not near < value else float(Decimal(text).next_plus(Context(prec=digits)))
 
 
 class Views(Sequence[T], Generic[T]):

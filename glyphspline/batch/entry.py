@@ -8,9 +8,9 @@ from json.encoder import encode_basestring_ascii as quoted
 
 import numpy as np
 
-from ..fitting.results import MEASURES, MeasureColumns
-from ..report.data import number
-from ..types import IntArray
+from ..fitting.results import BOUNDS, MEASURES, MeasureColumns
+from ..report.data import DECIMALS, number
+from ..types import IntArray, rounded_up
 
 
 def manifest_line(
@@ -52,7 +52,7 @@ def contour_texts(measures: MeasureColumns, offsets: IntArray) -> list[str]:
     for name in MEASURES:
         form = "null"
         if name in measures:
-            form, column = _written(measures[name])
+            form, column = _written(measures[name], name in BOUNDS)
             columns.append(column)
         template.append(f'"{name}":{form}')
     text = (
@@ -62,8 +62,10 @@ def contour_texts(measures: MeasureColumns, offsets: IntArray) -> list[str]:
     return [",".join(lines[a:b]) for a, b in pairwise(offsets.tolist())]
 
 
-def _written(column: Sequence[float | None]) -> tuple[str, Sequence[object]]:
-    """A format for ``%`` and its arguments, which write the values of a column as :func:`number` does."""
+def _written(column: Sequence[float | None], is_bound: bool) -> tuple[str, Sequence[object]]:
+    """A format for ``%`` and its arguments, which write the values of a column as :func:`number` does; bounds up."""
+    if is_bound:
+        column = [value if value is None else rounded_up(value, DECIMALS) for value in column]
     values = np.array(column)
     if values.dtype.kind == "i":
         return "%d", column

@@ -12,6 +12,7 @@ from ..extras import need
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
+from ..types import rounded_up
 from .files import PARTIAL, write_whole, writing
 from .manifest import entries_of
 from .spec import RESULTS, RunSpec
@@ -73,7 +74,7 @@ def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSp
     write_whole(str(path), data, durable=True)
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:
-        remark += f", within {summary.largest_error:.3g} units of the source"
+        remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
     remark += f", {summary.extrema} points added at extrema"
     if summary.beyond:
         remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"

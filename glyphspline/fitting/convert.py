@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from typing import Literal, overload
 
@@ -11,11 +12,14 @@ import numpy as np
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
-from ..types import BoolArray, IntArray
+from ..types import BoolArray, IntArray, rounded_up
 from .options import Options
 from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns
 
 DEFAULTS = Options()
+
+SNAPPED = 0.0015
+"""Above the distance, in font units, by which readers of fonts snap points; see :class:`.Outline`."""
 
 
 @overload
@@ -88,7 +92,7 @@ def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineErr
 
 
 def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]:
-    """Convert glyphs of one em at a time, because the tolerance depends on it."""
+    """Convert glyphs of one tolerance at a time: it depends on the em, and on what the reader took of it."""
     notes: list[list[str]] = [[] for _ in glyphs]
     if options.remove_overlaps:
         from ..outlines.overlaps import remove_overlaps
@@ -96,15 +100,23 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
         united = [remove_overlaps(outline) for outline in glyphs]
         glyphs, notes = [outline for outline, _ in united], [[note] if note else [] for _, note in united]
     results: dict[int, GlyphResult] = {}
-    for em in dict.fromkeys(outline.metrics.units_per_em for outline in glyphs):
-        those = [k for k, outline in enumerate(glyphs) if outline.metrics.units_per_em == em]
-        found = _convert_em([glyphs[k] for k in those], [notes[k] for k in those], options, em)
+    kinds = [(outline.metrics.units_per_em, _reserve(outline.snapped)) for outline in glyphs]
+    for em, reserve in dict.fromkeys(kinds):
+        those = [k for k, kind in enumerate(kinds) if kind == (em, reserve)]
+        found = _convert_alike([glyphs[k] for k in those], [notes[k] for k in those], options, em, reserve)
         results |= zip(those, found, strict=True)
     return [results[k] for k in range(len(glyphs))]
 
 
-def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options, em: float) -> list[GlyphResult]:
-    """Convert glyphs whose em is ``em``, all contours end to end."""
+def _reserve(snapped: float) -> float:
+    """What is set aside of the tolerance: the same for most outlines that were snapped, which are fitted together."""
+    return max(snapped, SNAPPED) if snapped else 0.0
+
+
+def _convert_alike(
+    glyphs: list[Outline], notes: list[list[str]], options: Options, em: float, reserve: float
+) -> list[GlyphResult]:
+    """Convert glyphs whose em is ``em``, all contours end to end; so much of the tolerance is set aside."""
     tolerance = options.tolerance_for(em)
     given = joined([outline.arrays for outline in glyphs])
     before = offsets_of([len(outline.contours) for outline in glyphs])
@@ -115,7 +127,8 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
     which = np.flatnonzero(kept)
     try:
         ends = np.searchsorted(which, before)
-        found = _convert_contours(given.chosen(which.tolist()), ends, options, tolerance, em)
+        contours = given.chosen(which.tolist())
+        found = _convert_contours(contours, ends, options, max(tolerance - reserve, tolerance / 2), em)
     except GlyphsplineError as error:
         k = 0
         if error.contour is not None:
@@ -123,6 +136,13 @@ def _convert_em(glyphs: list[Outline], notes: list[list[str]], options: Options,
             k = int(np.searchsorted(before, index, side="right")) - 1
             error.contour = index - int(before[k])
         raise error.locate(glyph=glyphs[k].name) from error.__cause__
+    if reserve and "deviation_bound" in found.measures:
+        from .measures import distance_columns  # imports the compiler
+
+        snapped = np.repeat([outline.snapped for outline in glyphs], np.diff(ends)).tolist()
+        bounds = [a + b for a, b in zip(found.measures["deviation_bound"], snapped, strict=True)]
+        columns = distance_columns(found.measures["deviation"], bounds, tolerance)
+        found = replace(found, measures={**found.measures, **columns})
     results = []
     for outline, (first, last), said in zip(glyphs, pairwise(ends.tolist()), notes, strict=True):
         own = ContourResults(found, first, last)
@@ -176,7 +196,7 @@ def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -
     """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance, or enclose something else."""
     for index, within in enumerate(measures.get("within_tolerance", ())[first:last]):
         if within is False:
-            bound = measures["deviation_bound"][first + index]
+            bound = rounded_up(measures["deviation_bound"][first + index], 3)
             yield f"result contour {index} is certified to {bound:.3g} units, not to {tolerance:g}"
     for index, crossings in enumerate(measures.get("new_crossings", ())[first:last]):
         if crossings:

@@ -27,7 +27,7 @@ QUANTITIES = {
     "converged": Quantity("converged", "", "whether the residual is below the solver's tolerance"),
     "rate_bound": Quantity("rate bound", "", "certified factor by which the largest error shrinks at every step"),
     "fallbacks": Quantity("fallbacks", "", "vertices for which Lemma 2 has no interval"),
-    "deviation": Quantity("deviation", "units", "largest distance between result and source, measured both ways"),
+    "deviation": Quantity("deviation", "units", "largest distance seen between paired points of result and source"),
     "deviation_bound": Quantity("deviation, certified", "units", "bound that the distance is proven to be within"),
     "within_tolerance": Quantity("within tolerance", "", "whether that bound is within the tolerance asked for"),
     "overshoot": Quantity("overshoot", "units", "largest distance of the curve outside the hull of its polygon"),

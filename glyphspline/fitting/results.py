@@ -20,7 +20,7 @@ from ..outlines.contour_arrays import (
     polylines,
 )
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
-from ..types import FloatArray, IntArray, Views, counted
+from ..types import FloatArray, IntArray, Views, counted, rounded_up
 from .options import Options
 
 
@@ -31,9 +31,12 @@ class Measures:
     Attributes:
         vertices: of the polygon. segments: Bézier segments of the result. numbers: coordinates to store.
         iterations, residual, converged, rate_bound, fallbacks: of the interpolation (worst of several arcs).
-        deviation: measured two-sided distance to the source; deviation_bound: certified bound of it.
+        deviation: largest distance seen between points of the result and of the source that the certificate pairs. It
+            is near the two-sided distance, and mostly a little below it; deviation_bound: certified bound of that
+            distance, with what the reader snapped.
         within_tolerance: whether the bound (or, failing one, the measure) is within the tolerance.
-        overshoot: largest distance of the curve outside the polygon's convex hull.
+        overshoot: largest distance of the curve outside the polygon's convex hull. This and what follows is measured on
+            the curve as it is written, rounded; but the extrema of curvature.
         length: arc length. area_change: area of the result less that of the source contour.
         bending_energy: integral of curvature squared over arc length, in 1/unit.
         max_curvature: largest absolute curvature, in 1/unit.
@@ -75,12 +78,16 @@ class Measures:
 
     def __repr__(self) -> str:
         known = {field.name: getattr(self, field.name) for field in fields(self)}
+        known |= {name: rounded_up(value, 4) for name in BOUNDS if (value := known[name]) is not None}
         said = [f"{name}={f'{v:.4g}' if isinstance(v, float) else v}" for name, v in known.items() if v is not None]
         return f"Measures({', '.join(said)})"
 
 
 MEASURES = tuple(field.name for field in fields(Measures))
 """The measures, in the order in which they are written."""
+
+BOUNDS = ("rate_bound", "deviation_bound")
+"""The measures that are proven bounds, which are rounded up wherever they are written."""
 
 SOLVED = MEASURES[:8]
 """The measures that the interpolation itself provides."""
@@ -262,7 +269,7 @@ def _told(measures: Sequence[Measures]) -> str:
     for name, words in (("deviation_bound", "certified within"), ("deviation", "deviation")):
         known = [value for m in measures if (value := getattr(m, name)) is not None]
         if known:
-            said.append(f"{words} {max(known):.3g} units")
+            said.append(f"{words} {rounded_up(max(known), 3) if name in BOUNDS else max(known):.3g} units")
             break
     bad = sum(m.converged is False for m in measures)
     return ", ".join([*said, *([f"{bad} not converged"] if bad else [])])

@@ -150,6 +150,8 @@ class Outline:
         contours: its contours in the font's order; any iterable is accepted; empty for a space.
         metrics: units per em, ascender and descender of its font.
         notes: one sentence for each part that the reader left out.
+        snapped: how far, at most, the contours are from what the font draws, in font units: a reader drops segments
+            that are shorter than a thousandth of a unit, and closes gaps of that size.
     """
 
     name: str
@@ -159,6 +161,7 @@ class Outline:
     contours: Sequence[Contour] = ()
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
+    snapped: float = 0.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.contours, Contours):

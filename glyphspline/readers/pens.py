@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import hypot
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -38,6 +39,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     Attributes:
         contours: the contours so far. left_out: numbers of those left out. drawn: the count of both.
         numbers: the number of each contour to come, unless contours are drawn from 0 on without gaps.
+        snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
     """
 
     skipMissingComponents = False
@@ -48,6 +50,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self.left_out: list[int] = []
         self.numbers: Sequence[int] = ()
         self.drawn = 0
+        self.snapped = 0.0
         self._coincident = coincident
         self._points: list[Point] = []
         self._degrees: list[int] = []
@@ -90,6 +93,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
                 self._points.extend(to)
                 self._degrees.append(len(to))
                 return
+        self.snapped = max(self.snapped, *(hypot(a - x, b - y) for a, b in to))
 
     _lineTo = _qCurveToOne = _curveToOne = _add
 
@@ -100,7 +104,8 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         if not self._same(self._points[0], self._points[-1]):
             self._degrees.append(1)
         elif self._degrees:
-            self._points.pop()  # the last segment ends on points[0]
+            (ax, ay), (bx, by) = self._points[0], self._points.pop()  # the last segment ends on points[0]
+            self.snapped = max(self.snapped, hypot(bx - ax, by - ay))
         points = np.array(self._points, dtype=np.float64)
         if not np.isfinite(points).all():
             raise GlyphsplineError("coordinates that are not finite", contour=self._number())

@@ -106,7 +106,8 @@ def read_drawing(file: Path) -> Outline:
         pen.finish()
     name, gid = root.get("data-glyph") or file.stem, int(root.get("data-gid") or 0)
     unicodes = _unicodes(root.get("data-unicodes"), name)
-    return Outline(name, gid, unicodes, advance, tuple(pen.contours), metrics, (*pen.notes, *notes))
+    said = (*pen.notes, *notes)
+    return Outline(name, gid, unicodes, advance, tuple(pen.contours), metrics, said, pen.snapped)
 
 
 def _unicodes(written: str | None, name: str) -> tuple[int, ...]:

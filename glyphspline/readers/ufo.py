@@ -81,7 +81,7 @@ class Ufo(Source):
         glyph = self._glyphs[head.name]
         glyph.draw(pen)
         pen.finish()
-        return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes)
+        return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
 
     def _claims(self, name: str) -> list[int]:
         """A glyph's code points. Its file is checked for entities here, before ufoLib reads it."""

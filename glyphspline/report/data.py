@@ -9,7 +9,8 @@ from json.encoder import encode_basestring_ascii as quoted
 from pathlib import PurePosixPath
 from typing import Any
 
-from ..fitting.results import SOLVED
+from ..fitting.results import BOUNDS, SOLVED
+from ..types import rounded_up
 from ..writers.svg.markup import Text, document
 from .glyph_measures import MEASURES, glyph_measures
 
@@ -53,8 +54,12 @@ def files_text(files: Mapping[str, str]) -> str:
     return ",".join([f"{quoted(name)}:{quoted(path)}" for name, path in files.items()])
 
 
-def number(value: float | None, digits: int = 7) -> str:
-    """A number as JSON: seven significant digits, beyond which measures are rounding noise; not finite is null."""
+DECIMALS = 7
+"""Significant digits of measures, beyond which they are rounding noise."""
+
+
+def number(value: float | None, digits: int = DECIMALS) -> str:
+    """A number as JSON, of so many significant digits; not finite is null."""
     if value is None:
         return "null"
     if value is True or value is False:
@@ -76,6 +81,7 @@ def row_of(line: str | bytes | Mapping[str, Any]) -> str:
         number(entry.get("advance")), as_json(str(entry["status"])), as_json(file if inside(file) else None),
         as_json(entry.get("error")), str(len(contours)),
     ]  # fmt: skip
+    measures |= {name: rounded_up(value, DIGITS) for name in BOUNDS if (value := measures[name]) is not None}
     row += [number(measures[name], DIGITS) for name in COLUMNS[len(row) :]]
     while row[-1] == "null":
         row.pop()

@@ -83,7 +83,7 @@
     const fact = sort === "gid" ? "deviation" : sort;
     grid.set(chosen, (row) => (row.status !== "ok" ? row.status
       : GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
-        : [GS.number(GS.value(row, fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" ")));
+        : [GS.number(GS.value(row, fact), GS.isBound(fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" ")));
     at("none").hidden = chosen.length > 0;
     at("csv").disabled = chosen.length === 0;
     at("count").textContent = chosen.length === rows.length ? `${rows.length} glyphs` : `${chosen.length} of ${rows.length} glyphs`;

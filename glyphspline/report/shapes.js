@@ -24,13 +24,17 @@ const GS = {};
   };
   GS.shown = (name, value, em) => (typeof value === "number" && GS.measures.get(name)?.unit === "1/em" ? value * em : value);
 
-  GS.number = (value) => {
+  /** Three digits; proven bounds are rounded up. */
+  GS.number = (value, up = false) => {
     if (value === null || value === undefined) return "–";
     if (value === true) return "yes";
     if (value === false) return "no";
     if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
-    return String(+value.toPrecision(3)).replace("-", "\u2212");
+    let near = +value.toPrecision(3);
+    if (up && near < value) near = +(near + 10 ** (Math.floor(Math.log10(value)) - 2)).toPrecision(3);
+    return String(near).replace("-", "\u2212");
   };
+  GS.isBound = (name) => name.endsWith("_bound");
 
   /** Measures that are listed at once; the others are switched on. */
   const FIRST = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound", "max_curvature",
@@ -47,7 +51,7 @@ const GS = {};
       const { label, unit, about } = GS.measures.get(name);
       const cell = (contour) => {
         const bad = (name === "converged" || name === "within_tolerance") && contour[name] === false;
-        return GS.element("td", bad ? { class: "bad" } : {}, GS.number(GS.shown(name, contour[name], em)));
+        return GS.element("td", bad ? { class: "bad" } : {}, GS.number(GS.shown(name, contour[name], em), GS.isBound(name)));
       };
       return GS.element("tr", { "data-measure": name, title: about }, GS.element("th", { scope: "row" }, label,
         ...(unit ? [" ", GS.element("small", { class: "unit" }, unit)] : [])), ...contours.map(cell));

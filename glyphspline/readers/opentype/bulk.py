@@ -119,7 +119,7 @@ def _functions() -> Any:
 @compiled
 def _contours(
     buffer: FloatArray, places: IntArray, expected: IntArray
-) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, BoolArray]:
+) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, BoolArray, FloatArray]:
     """Contours of glyphs from their drawing operations.
 
     Args:
@@ -129,13 +129,14 @@ def _contours(
     Returns:
         Points, degrees, offsets and starts as in :class:`ContourArrays`; offsets and starts count from 0 in each glyph,
         and are one more than contours in each. (k + 1, 3) the contours, segments and points before each glyph. (k,)
-        whether the careful reader has to read a glyph.
+        whether the careful reader has to read a glyph. (k,) how far points were snapped: see :class:`.Outline`.
     """
     count = len(expected)
     room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
     points, degrees = np.empty((room, 2)), np.empty(room, dtype=np.int64)
     offsets, starts = np.empty(room + count, dtype=np.int64), np.empty(room + count, dtype=np.int64)
     before, unusual = np.zeros((count + 1, 3), dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    snapped = np.zeros(count)
     for g in range(count):
         at, stop = places[g], places[g + 1]
         odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
@@ -152,6 +153,8 @@ def _contours(
                     if abs(x - sx) > COINCIDENT or abs(y - sy) > COINCIDENT:
                         points[p, 0], points[p, 1], degrees[m] = x, y, 1
                         m, p = m + 1, p + 1
+                    else:
+                        snapped[g] = max(snapped[g], np.hypot(x - sx, y - sy))
                     farthest, fx, fy = 0.0, 0.0, 0.0
                     for j in range(begin, p):
                         dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
@@ -183,6 +186,9 @@ def _contours(
                     points[p + k, 0], points[p + k, 1] = x, y
                     x, y = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
                 m, p = m + 1, p + kind
+            else:
+                for k in range(at + 1, at + 1 + 2 * kind, 2):
+                    snapped[g] = max(snapped[g], np.hypot(buffer[k] - x, buffer[k + 1] - y))
             at += 1 + 2 * kind
         found = c - g - first
         unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
@@ -190,7 +196,7 @@ def _contours(
             before[g + 1, k] = before[g, k]
         if not unusual[g]:
             before[g + 1, 0], before[g + 1, 1], before[g + 1, 2] = first + found, m, p
-    return points, degrees, offsets, starts, before, unusual
+    return points, degrees, offsets, starts, before, unusual, snapped
 
 
 @compiled
@@ -314,7 +320,7 @@ class BulkReader:
         advance = self._hb.font.get_glyph_h_advance
         with self._lock:
             places, expected = self._draw([gid for _, gid, _ in heads])
-            points, degrees, offsets, starts, before, unusual = _contours(self._buffer, places, expected)
+            points, degrees, offsets, starts, before, unusual, snapped = _contours(self._buffer, places, expected)
         found: list[OutlineOrError] = []
         spans = pairwise(before.tolist())
         for g, (head, odd, ((c, m, p), (d, n, q))) in enumerate(zip(heads, unusual.tolist(), spans, strict=False)):
@@ -323,7 +329,8 @@ class BulkReader:
                 found.append(self._read_carefully(Head(*head), metrics))
                 continue
             own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
-            found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics))
+            width, moved = float(advance(gid)), float(snapped[g])
+            found.append(Outline(name, gid, unicodes, width, Contours(own), metrics, snapped=moved))
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:

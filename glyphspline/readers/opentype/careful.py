@@ -35,4 +35,4 @@ class CarefulReader:
         pen, advance = self.hb.draw(head.gid, self._records), self.hb.advance(head.gid)
         if pen is None:
             pen, advance = self._fonttools.draw(head.name)
-        return Outline(*head, advance, pen.contours, metrics, pen.notes)
+        return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
