@@ -23,6 +23,9 @@ CUT = 0.125
 SEARCHED = 9.0
 """Mark of a vertex that took a full search, in the field ``BAD``."""
 
+GIVEN_UP = 10.0
+"""Mark of one whose search ended without a certificate."""
+
 
 @compiled(internal=True)
 def _least_distance(
@@ -81,11 +84,14 @@ def _second_look(S: FloatArray, j: int) -> bool:
 
 
 @compiled(internal=True)
-def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float) -> None:
-    """Search the main side, the other one, or both in full. D: the best so far, inf if that does not count."""
+def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float) -> bool:
+    """Search the main side, the other one, or both in full; whether the answer is certified there.
+
+    D: the best so far, inf if that does not count.
+    """
     c = np.empty((2, 4))
     work = np.empty(WORK)
-    side, x = S[SIDE + j], S[SIDE + j] * S[SY + j]
+    side, x, certified = S[SIDE + j], S[SIDE + j] * S[SY + j], True
     for turn in range(2):
         main = turn == 0
         if not (main_side if main else other_side):
@@ -97,20 +103,22 @@ def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: b
         c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
         c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
         c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
-        y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
+        y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
+        certified &= whole
         if D_new < D or y != sign * x:
             x, D = sign * y, D_new
             B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
             B[EY + j] = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
     B[X + j] = x
     B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
+    return certified
 
 
 @compiled(internal=True)
 def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
-    These are marked ``SEARCHED`` in the field BAD.
+    These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
     """
     searched = 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -127,6 +135,6 @@ def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
         if not (main_side or other_side):
             continue
         searched += 1
-        S[BAD + j] = SEARCHED
-        _search(B, S, j, main_side, other_side, np.inf if main_side else D)
+        certified = _search(B, S, j, main_side, other_side, np.inf if main_side else D)
+        S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
     return searched
