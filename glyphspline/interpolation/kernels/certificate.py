@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, select
+from ...compiled import compiled, inlined, select
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import DD, EX, EY, TWO, X
-from .footpoint import GUARD, WORK, search_piece
+from .footpoint import GUARD, ROUNDING, WORK, search_piece
 from .newton_simd import (
-    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein, expanded,
-    quartic,
+    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein,
+    expanded, quartic, rounding,
 )  # fmt: skip
 
 BEYOND = 1 + 1e-9
@@ -27,24 +27,30 @@ GIVEN_UP = 10.0
 """Mark of one whose search ended without a certificate."""
 
 
+@inlined
+def _less_rounding(x: float, y: float) -> float:
+    """x + y less what it may be too large by."""
+    return x + y - ROUNDING * (abs(x) + abs(y))
+
+
 @compiled(internal=True)
 def _least_distance(
     ex: float, ey: float, vx: float, vy: float, wx: float, wy: float, zx: float, zy: float, L: float
 ) -> float:
-    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L."""
+    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L, less its rounding error."""
     ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
     bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
     cx, cy = ex + ((zx * L + wx) * L + vx) * L, ey + ((zy * L + wy) * L + vy) * L
     least = ex * ex + ey * ey
-    d = ex * ax + ey * ay
+    d = _less_rounding(ex * ax, ey * ay)
     least = select(d < least, d, least)
-    d = (2.0 * (ex * bx + ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
+    d = (2.0 * _less_rounding(ex * bx, ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
     least = select(d < least, d, least)
-    d = (ex * cx + ey * cy + 9.0 * (ax * bx + ay * by)) * 0.1
+    d = (_less_rounding(ex * cx, ey * cy) + 9.0 * _less_rounding(ax * bx, ay * by)) * 0.1
     least = select(d < least, d, least)
-    d = (2.0 * (ax * cx + ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
+    d = (2.0 * _less_rounding(ax * cx, ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
     least = select(d < least, d, least)
-    d = bx * cx + by * cy
+    d = _less_rounding(bx * cx, by * cy)
     least = select(d < least, d, least)
     d = cx * cx + cy * cy
     return select(d < least, d, least)
@@ -77,7 +83,7 @@ def _second_look(S: FloatArray, j: int) -> bool:
     qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
     qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
     c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
-    guard = GUARD * max(speed, c0)
+    guard = GUARD * max(speed, c0) + rounding(ax, ay, c4, S[SHI + j] - S[SLO + j])
     return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard
     )

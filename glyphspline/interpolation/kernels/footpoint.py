@@ -21,14 +21,16 @@ the certificate holds for its own local minimum, or if its lower bound is below 
 the nearest point (p is the centre of curvature, D' has a triple zero), as D is flat there. The ends and the middle of
 each part are candidates too: there Newton's method may stop far from the minimum.
 
-**What is certified.** No point of the interval is nearer than the one returned by more than 1e-12 of their distance and
-of the size of the piece (its Bézier points about p). The shares of it: squared distances that differ by less than
-``TIE`` = 1e-12 of them, or by less than ``tie``, count as equal, and the parameter nearest the vertex's own, ``centre``,
-is taken; a part may be dropped with a point in it that is nearer by ``SLACK`` of the squared distance; both are 0.55e-12
-of the distance. Rounding of q, some 1e-15 of the size, is as good as another curve so near to this one. Rounding of
-products of q counts against the certificate: ``ROUNDING`` of the summands is taken from every lower bound. Where D is
-flat the parameter is only as good as the problem lets it be. A search that runs out of parts (``MOST_PARTS``), or halves
-one down to ``SHORTEST`` of the interval, returns the best of its candidates as not certified.
+**What is certified.** No point of the interval is nearer than the one returned by more than 1e-12 of the size of the
+piece, the largest distance of its Bézier points from p. The shares of it: squared distances that differ by less than
+``EQUAL`` of them, or by less than ``tie``, count as equal, and the parameter nearest the vertex's own, ``centre``, is
+taken; this may happen twice, to a nearer parameter and to a smaller distance. A part may be dropped with a point in it
+that is nearer by ``SLACK`` of the squared distance. Together that is 0.55e-12 of the distance. Rounding of q, some 1e-15
+of the size, is as good as another curve so near to this one. Rounding of products of q counts against the certificate:
+``ROUNDING`` of the summands is taken from every lower bound. ``scripts/adversarial_footpoints.py`` looks for cases in
+which this does not hold. Where D is flat the parameter is only as good as the problem lets it be. A search that runs out
+of parts (``MOST_PARTS``), or halves one down to ``SHORTEST`` of the interval, returns the best of its candidates as not
+certified.
 """
 
 from __future__ import annotations
@@ -46,6 +48,9 @@ GUARD = 1e-12
 
 ROUNDING = 1e-14
 """More than the rounding error of a Bernstein coefficient, as a share of the sum of its summands' sizes."""
+
+EQUAL = 0.5 * TIE
+"""Share by which squared distances that count as equal may differ, up or down."""
 
 SLACK = 0.1 * TIE
 """Share of the squared distance by which a point of a dropped part may be nearer."""
@@ -172,9 +177,9 @@ def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> f
 @compiled(internal=True)
 def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: float) -> tuple[float, float]:
     """The nearer of two candidates (parameter, squared distance); in a tie the one nearer ``centre``."""
-    if new_D < D * (1 - TIE) - tie:
+    if new_D < D * (1 - EQUAL) - tie:
         return new_x, new_D
-    if new_D <= D * (1 + TIE) + tie and abs(new_x - centre) < abs(x - centre):
+    if new_D <= D * (1 + EQUAL) + tie and abs(new_x - centre) < abs(x - centre):
         return new_x, min(D, new_D)
     return x, D
 
@@ -193,7 +198,7 @@ def search_piece(
     Returns:
         The best now, and whether it is certified (see the module).
     """
-    if D < np.inf and lower_bound(c, d, low, high, work)[0] > D * (1 + TIE) + tie:
+    if D < np.inf and lower_bound(c, d, low, high, work)[0] > D * (1 + EQUAL) + tie:
         return x, D, True
     start = min(max(x - origin, low), high)
     y = local_minimum(c, d, low, high, start)
@@ -217,7 +222,7 @@ def search_piece(
                 next_part = k
         a, b, bound = left[next_part], right[next_part], bounds[next_part]
         best = min(D, D_probe)
-        if bound > best * (1 + TIE) + tie:
+        if bound > best * (1 + EQUAL) + tie:
             break
         count -= 1
         left[next_part], right[next_part], bounds[next_part] = left[count], right[count], bounds[count]
@@ -244,6 +249,6 @@ def search_piece(
         left[count], right[count], bounds[count] = a, middle, first
         left[count + 1], right[count + 1], bounds[count + 1] = middle, b, second
         count += 2
-    if D_probe < D * (1 - TIE) - tie:
+    if D_probe < D * (1 - EQUAL) - tie:
         x, D = origin + probe, D_probe
     return x, D, certified

@@ -14,6 +14,11 @@ along it. Newton's method with Chebyshev's third-order term goes from the last f
 certificate of ``footpoint`` then has two parts: about y* over the main side, and about u_i over the other side, which
 shows D ≥ D(u_i) ≥ D(y*) there. A vertex that fails either is flagged, and left to ``flagged``.
 
+e_1 counts as 0 at y*: by the rule that ends Newton's method it is at most some 2e-14 of Q(y*) times the length L of the
+side. All Bernstein coefficients b_j of Q exceed ``GUARD`` of Q(y*), so that Q ≥ b_0 (1 - x/L)⁴ over the first half of L,
+and x² Q outgrows e_1 x over the rest: no point is nearer by more than the square root of 1e-27 of |C'|² L². Rounding of
+the b_j, some 1e-16 of the largest summands, is covered by ``ROUNDING`` of squares that these do not exceed by much.
+
 No value depends on another lane, and no floating-point reassociation is allowed, so results do not depend on the
 width of the vectors.
 """
@@ -35,6 +40,9 @@ DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER,
     np.uint64(k * STRIDE) for k in range(19)
 )
 SIXTH = 1 / 6
+
+ROUNDING = 4e-15
+"""Share of |a|² L² + |z|² L⁴, the squares of the higher terms of q, that every coefficient of Q has to exceed."""
 
 NEWTON_PASSES = 8
 SETTLED_STEP = 1e-6
@@ -111,6 +119,13 @@ def least_rise(slope: float, c0: float, c1: float, c2: float, c3: float, c4: flo
     least = select(least < rest, least, rest)
     least = select(least < b4, least, b4)
     return fma(L, least, slope)
+
+
+@inlined
+def rounding(ax: float, ay: float, c4: float, L: float) -> float:
+    """More than the rounding errors of Q over a length L that are not small beside q' and Q at its beginning."""
+    squared = L * L
+    return ROUNDING * squared * fma(squared, c4, dot(ax, ay, ax, ay))
 
 
 @compiled(internal=True)
@@ -211,13 +226,15 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
         size = select(speed > c0, speed, c0)
+        guard = fma(GUARD, size, rounding(ax, ay, c4, high - low))
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
         slope = -2.0 * dot(ex, ey, vx, vy)
-        o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
+        o0, o1, o2, o3, o4, start = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
+        rise -= L * fma(ROUNDING, start, rounding(wx, wy, o4, L))
         D = dot(qx, qy, qx, qy)
-        main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
+        main = (S[DONE + j] == 0.0) | ((least <= guard) & (high > low))
         other = (rise <= 0.0) & (L > 0.0)
         fails = main | other
         S[BAD + j] = select(main, 1.0, 0.0) + select(other, 2.0, 0.0)
