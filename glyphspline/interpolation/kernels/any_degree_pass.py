@@ -90,8 +90,8 @@ def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
 def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[float, int]:
     """Write the footpoints to t and update P_i += p_i - C(t_i).
 
-    With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed. Returns the largest
-    error before the update, and the number of footpoints that are not certified: all, if an error is not finite.
+    With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed. Returns the
+    largest error before the update, and the number of footpoints that are not certified: all, if one is not finite.
     """
     n, d, count = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape[0]
     c, work, e = np.empty((2, d + 1)), np.empty(WORK), np.empty((count, 2))

@@ -12,10 +12,10 @@ from ...compiled import compiled, inlined, select
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import DD, EX, EY, TWO, X
-from .footpoint import GUARD, ROUNDING, WORK, search_piece
+from .footpoint import ROUNDING, WORK, search_piece
 from .newton_simd import (
     BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein,
-    expanded, quartic, rounding,
+    expanded, quartic, squares,
 )  # fmt: skip
 
 BEYOND = 1 + 1e-9
@@ -83,20 +83,20 @@ def _second_look(S: FloatArray, j: int) -> bool:
     qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
     qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
     c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
-    guard = GUARD * max(speed, c0) + rounding(ax, ay, c4, S[SHI + j] - S[SLO + j])
+    guard = squares(speed, ax, ay, c4, S[SHI + j] - S[SLO + j])
     return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard
     )
 
 
 @compiled(internal=True)
-def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float) -> bool:
+def _search(
+    B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float, c: FloatArray, work: FloatArray
+) -> bool:
     """Search the main side, the other one, or both in full; whether the answer is certified there.
 
-    D: the best so far, inf if that does not count.
+    D: the best so far, inf if that does not count. c, work: scratch arrays.
     """
-    c = np.empty((2, 4))
-    work = np.empty(WORK)
     side, x, certified = S[SIDE + j], S[SIDE + j] * S[SY + j], True
     for turn in range(2):
         main = turn == 0
@@ -126,7 +126,7 @@ def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
 
     These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
     """
-    searched = 0
+    searched, c, work = 0, np.empty((2, 4)), np.empty(WORK)
     for j in range(TWO, np.uint64(m) + TWO):
         flag = S[BAD + j]
         if flag == 0.0:
@@ -141,6 +141,6 @@ def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
         if not (main_side or other_side):
             continue
         searched += 1
-        certified = _search(B, S, j, main_side, other_side, np.inf if main_side else D)
+        certified = _search(B, S, j, main_side, other_side, np.inf if main_side else D, c, work)
         S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
     return searched
