@@ -25,11 +25,11 @@ class Interpolation:
         fallbacks: number of vertices for which Lemma 2 has no interval (Remark 3).
         rate_bound: certified factor a step of the largest error (Theorem 2); 1 or more certifies nothing.
         merged: indices of the given vertices that were dropped as duplicates of the one before.
-        uncertified: number of footpoints, over all passes, that the search could not certify to be nearest in their
-            intervals (to within 1e-12 of the distance and of the extent); None where nothing certifies them. It is 0
-            but where the curve is not finite, or beside it is so flat that the search gives up. ``converged`` holds
-            all the same, as a footpoint is a point of the curve in its interval. ``rate_bound`` needs 0: Theorem 2
-            rests on the footpoint being no farther than the curve's point at the parameter of the pass before.
+        uncertified: number of footpoints, over all passes, that are not certified to be the nearest points of their
+            intervals (to within 1e-12 of the extent); None where no certificate is computed. It is 0 in ordinary runs:
+            the search gives up only where the curve is not finite, or after many parts of an interval. ``converged``
+            does not depend on it, as any footpoint is a point of the curve in its interval. ``rate_bound`` needs 0:
+            in Theorem 2 a footpoint is no farther from its vertex than the curve at the parameter of the pass before.
         history, rate_observed, spectral_radii: with ``diagnostics=True``, else None.
     """
 

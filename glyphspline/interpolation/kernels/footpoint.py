@@ -208,7 +208,7 @@ def search_piece(
     Returns:
         The best now, and whether it is certified (see the module).
     """
-    if D < np.inf and lower_bound(c, d, low, high, work)[0] > D * (1 + EQUAL) + tie:
+    if np.inf > D and lower_bound(c, d, low, high, work)[0] > D * (1 + EQUAL) + tie:
         return x, D, True
     start = min(max(x - origin, low), high)
     y = local_minimum(c, d, low, high, start)

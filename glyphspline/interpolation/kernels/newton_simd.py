@@ -14,10 +14,11 @@ along it. Newton's method with Chebyshev's third-order term goes from the last f
 certificate of ``footpoint`` then has two parts: about y* over the main side, and about u_i over the other side, which
 shows D ≥ D(u_i) ≥ D(y*) there. A vertex that fails either is flagged, and left to ``flagged``.
 
-e_1 counts as 0 at y*: by the rule that ends Newton's method it is at most some 2e-14 of Q(y*) times the length L of the
-side. All Bernstein coefficients b_j of Q are asked for ``GUARD`` of |C'|² and more, so that Q ≥ b_0 (1 - x/L)⁴ over the
-first half of L, and x² Q outgrows e_1 x over the rest: no point is nearer by more than some 1e-13 of |C'| L. That covers
-the rounding errors of the b_j too, some 1e-16 of their summands.
+The certificate takes e_1 for 0 at y*. By the rule that ends Newton's method e_1 is at most some 2e-14 Q(y*) L, with L
+the length of the side. Each Bernstein coefficient b_j of Q has to exceed ``GUARD`` of |C'|² and of the squares of the
+higher terms. Then Q ≥ b_0 (1 - x/L)⁴ over the first half of the side, and x² Q outgrows e_1 x over the rest: no point
+is nearer by more than some 1e-13 of the extent. ``GUARD`` also covers the rounding errors of the b_j, some 1e-16 of
+these squares; where Q(y*) is much larger than they are, so is D, and the same shares are shares of D.
 
 No value depends on another lane, and no floating-point reassociation is allowed, so results do not depend on the
 width of the vectors.
