@@ -154,9 +154,7 @@ def proven(work: FloatArray, d: int, L: float, allowed: float) -> bool:
         for k in range(1, j + 1):
             value += BERNSTEIN[m - 1, j, k] * scaled[k]
         least = min(least, value)
-        if rises and abs(slope) + (j + 1) / m * abs(L) * value <= 0.0:
-            return False
-        if value <= 0.0 and not rises:
+        if not (abs(slope) + (j + 1) / m * abs(L) * value if rises else value) > 0.0:
             return False
     return rises or slope * slope <= 4.0 * least * allowed
 
@@ -258,4 +256,4 @@ def search_piece(
         count += 2
     if D_probe < D * (1 - EQUAL) - tie:
         x, D = origin + probe, D_probe
-    return x, D, certified
+    return x, D, certified and np.inf > D
