@@ -28,7 +28,9 @@ paper: venv
 	$(BIN)/python -m scripts.paper
 
 # 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
+# Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
 check-reference: venv
+	$(BIN)/python scripts/adversarial_footpoints.py
 	$(BIN)/python scripts/check_reference.py
 
 # What written glyphs of five installed faces cross that their sources do not, and are not flagged for: four minutes or so.

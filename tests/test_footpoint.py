@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import glyphspline as gs
 from glyphspline.curves.bspline import Spline
 from glyphspline.interpolation.batched import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, prepare
+from scripts.adversarial_footpoints import BOUND, attack, attacks
 
 from .polygons import smooth, uniform
 
@@ -17,7 +21,9 @@ from .polygons import smooth, uniform
 def nearest(coefficients: np.ndarray, low: float, high: float, centre: float) -> tuple[float, float]:
     """The search on one piece from nothing."""
     degree = coefficients.shape[1] - 1
-    return search_piece(coefficients, degree, 0.0, low, high, centre, centre, np.inf, 0.0, np.empty(WORK))
+    y, D, certified = search_piece(coefficients, degree, 0.0, low, high, centre, centre, np.inf, 0.0, np.empty(WORK))
+    assert certified
+    return y, D
 
 
 @pytest.mark.parametrize("degree", [2, 3, 4, 5, 6])
@@ -36,6 +42,55 @@ def test_no_sampled_point_is_nearer(degree: int) -> None:
         inside = zeros.real[(abs(zeros.imag) < 1e-9) & (zeros.real > 0) & (zeros.real < 1)]
         values = [np.polyval(c[0, ::-1], z) ** 2 + np.polyval(c[1, ::-1], z) ** 2 for z in [0, 1, *inside]]
         assert min(values) * (1 + 1e-9) + 1e-24 >= D
+
+
+def test_an_end_beyond_a_flat_stretch_is_found() -> None:
+    """D' has nearly a triple zero inside, where Newton's method stops; the end of the piece is nearer by 5.4e-3."""
+    c = np.array(
+        [
+            [1.15354338, 4.65577381, 0.104907544, -0.459386038],
+            [7.23251355, -0.731768856, -1.62569386, -0.00154457925],
+        ]
+    )
+    x, D, certified = search_piece(c, 3, 0.0, 0.0, 1.0, 0.0, 0.385849890658987, np.inf, 1e-28, np.empty(WORK))
+    assert certified
+    assert x == 1.0
+    assert pytest.approx(np.hypot(*c.sum(axis=1)), rel=1e-14) == np.sqrt(D)
+
+
+def test_on_the_evolute_the_search_ends_at_once() -> None:
+    """p is the centre of curvature of a parabola's apex, y = x²: D = 1/4 + x⁴, and no certificate holds near 0."""
+    c = np.array([[0.0, 1.0, 0.0], [-0.5, 0.0, 1.0]])
+    for low, high in ((-1.0, 1.0), (-0.3, 1.0), (0.0, 1.0), (-1.0, 0.0)):
+        x, D = nearest(c, low, high, 0.9)
+        assert D <= 0.25 * (1 + 1e-12)
+        assert abs(x) < 2e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "degree"), [(name, degree) for name, degree, *_ in attacks(100, 100, 0)], ids=lambda value: str(value)
+)
+def test_adversarial_cases_are_within_the_bound(name: str, degree: int) -> None:
+    """A seeded share of what ``make check-reference`` tries."""
+    found = attack(name, degree, 40_000, 16, seed=7)
+    assert found.uncertified == 0
+    assert max(found.miss, found.sampled) <= BOUND, found
+
+
+def test_a_search_that_gives_up_says_so() -> None:
+    """Where the curve is not finite nothing is certified, and the result counts it."""
+    *_, certified = search_piece(np.full((2, 4), np.nan), 3, 0.0, 0.0, 1.0, 0.5, 0.5, np.inf, 0.0, np.empty(WORK))
+    assert not certified
+
+
+@pytest.mark.parametrize(
+    "options", [{"variant": 2}, {"variant": 1}, {"variant": 0, "max_iterations": 5}, {"variant": 4}]
+)
+def test_footpoints_of_a_result_are_certified(options: dict[str, int]) -> None:
+    result = gs.interpolate(uniform(np.random.default_rng(3), 20), **options)  # type: ignore[arg-type]
+    assert result.uncertified == 0
+    assert "uncertified" not in repr(result)
+    assert "2 uncertified footpoints" in repr(replace(result, uncertified=2))
 
 
 def test_a_tie_goes_to_the_centre() -> None:

@@ -66,7 +66,7 @@ def interpolate_any_degree(
     spline, converged = Spline(problem.points_of(controls), u, degree, closed), bool(residuals[-1] < tolerance)
     return Interpolation(
         spline, parameters, bounds, len(residuals) - 1, residuals, converged, intervals.fallbacks,
-        intervals.rate_bound, merged, **observed,
+        intervals.rate_bound, merged, problem.uncertified, **observed,
     )  # fmt: skip
 
 
@@ -88,7 +88,7 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
     controls[k] = problem.points_of(run.controls[k])
     return Interpolation(
         Spline(controls, u), run.footpoints / problem.knot_unit, intervals.bounds, len(residuals) - 1, residuals,
-        bool(residuals[-1] < tolerance), 0, rate_bound, merged,
+        bool(residuals[-1] < tolerance), 0, rate_bound, merged, problem.uncertified,
     )  # fmt: skip
 
 
@@ -106,6 +106,7 @@ class Scaled:
 
     Attributes:
         P: the first control points. unit, knot_unit: factors of lengths and of parameters, powers of two.
+        uncertified: number of footpoints, over all passes so far, that are not certified.
     """
 
     def __init__(
@@ -151,6 +152,7 @@ class Scaled:
             base=base,
         )
         self.t = self.layout.centres.copy()
+        self.uncertified = 0
 
     def points_of(self, controls: FloatArray) -> FloatArray:
         """Control points in the caller's units."""
@@ -161,7 +163,8 @@ class Scaled:
         from .kernels.any_degree_pass import one_pass
 
         updated = controls.copy()
-        largest = one_pass(updated, self.t, self.layout, self.at_once)
+        largest, uncertified = one_pass(updated, self.t, self.layout, self.at_once)
+        self.uncertified += uncertified
         return self.t.copy(), updated, largest
 
     def matrix(self, t: FloatArray) -> FloatArray:

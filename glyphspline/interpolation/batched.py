@@ -48,8 +48,8 @@ class BatchedInterpolation:
             control points at ``offsets[k] + 2 k``.
         knots, controls, parameters, bounds: as :class:`Interpolation` has them.
         kept: indices of the vertices that were not merged.
-        whole: (K, 5) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, and the
-            footpoints that took a full search.
+        whole: (K, 6) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, the
+            footpoints that took a full search, and those that are not certified.
         rates: (K,) rate bounds.
         residuals, residual_offsets: (iterations + 1) numbers a polygon, end to end.
         tolerances: (K,) residual tolerances.
@@ -93,7 +93,7 @@ class BatchedInterpolation:
     def _result(
         self, k: int, start: int, stop: int, whole: list[int], first: int, last: int, tolerance: float, rate: float
     ) -> Interpolation:
-        _, n, iterations, fallbacks, _ = whole
+        _, n, iterations, fallbacks, _, uncertified = whole
         if self.closed:
             knots, controls = self.knots[start + k : start + k + n + 1], self.controls[start : start + n]
         else:
@@ -105,7 +105,7 @@ class BatchedInterpolation:
         spline, vertices = Spline.trusted(controls, knots, 3, self.closed), slice(start, start + n)
         return Interpolation(
             spline, self.parameters[vertices], self.bounds[vertices], iterations, residuals,
-            float(residuals[-1]) < tolerance, fallbacks, rate, merged,
+            float(residuals[-1]) < tolerance, fallbacks, rate, merged, uncertified,
         )  # fmt: skip
 
 
@@ -187,7 +187,7 @@ def interpolate_one(
         NO_BLOCKS if n < LARGE else _blocks(np.array((0, n)), 0, 1), *out,
     )  # fmt: skip
     u, P, parameters, bounds, kept, whole, rates = out
-    status, left, iterations, fallbacks, _ = whole[0].tolist()
+    status, left, iterations, fallbacks, _, uncertified = whole[0].tolist()
     if status:
         return None
     merged = NOTHING_MERGED
@@ -196,7 +196,7 @@ def interpolate_one(
         u, P, parameters, bounds = u[: left + closed], P[: left + 2 * (not closed)], parameters[:left], bounds[:left]
     return Interpolation(
         Spline.trusted(P, u, 3, closed), parameters, bounds, iterations, residuals,
-        float(residuals[-1]) < float(tolerances[0]), fallbacks, float(rates[0]), merged,
+        float(residuals[-1]) < float(tolerances[0]), fallbacks, float(rates[0]), merged, uncertified,
     )  # fmt: skip
 
 
@@ -208,7 +208,7 @@ def _gathered(
     by_knot = replace(method, fallback="knot")
     out = _results(total, count, True)
     u, P, parameters, bounds, kept, whole, rates = out
-    whole[:] = np.array([1, 0, -1, 0, 0])
+    whole[:] = np.array([1, 0, -1, 0, 0, 0])
     tolerances, residuals = np.zeros(count), [np.empty(0)] * count
 
     def one(k: int) -> None:
@@ -221,7 +221,8 @@ def _gathered(
         u[a + k : a + k + n + 1], P[a : a + n] = r.spline.knots, r.spline.control_points
         parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
         kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
-        whole[k, :4], rates[k], residuals[k] = (0, n, r.iterations, r.fallbacks), r.rate_bound, r.residuals
+        whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified
+        rates[k], residuals[k] = r.rate_bound, r.residuals
         tolerances[k] = method.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
 
     over_threads(one, range(count), threads)
@@ -274,7 +275,7 @@ def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
         np.empty(total),
         np.empty((total, 2)),
         np.empty(total, dtype=np.int64),
-        np.empty((count, 5), dtype=np.int64),
+        np.empty((count, 6), dtype=np.int64),
         np.empty(count),
     )
 

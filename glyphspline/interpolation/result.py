@@ -25,6 +25,11 @@ class Interpolation:
         fallbacks: number of vertices for which Lemma 2 has no interval (Remark 3).
         rate_bound: certified factor a step of the largest error (Theorem 2); 1 or more certifies nothing.
         merged: indices of the given vertices that were dropped as duplicates of the one before.
+        uncertified: number of footpoints, over all passes, that are not certified to be the nearest points of their
+            intervals (to within 1e-12 of the extent); None where no certificate is computed. It is 0 in ordinary runs:
+            the search gives up only where the curve is not finite, or after many parts of an interval. ``converged``
+            does not depend on it, as any footpoint is a point of the curve in its interval. ``rate_bound`` needs 0:
+            in Theorem 2 a footpoint is no farther from its vertex than the curve at the parameter of the pass before.
         history, rate_observed, spectral_radii: with ``diagnostics=True``, else None.
     """
 
@@ -37,6 +42,7 @@ class Interpolation:
     fallbacks: int
     rate_bound: float
     merged: IntArray
+    uncertified: int | None = None
     history: tuple[tuple[FloatArray, FloatArray], ...] | None = None
     rate_observed: float | None = None
     spectral_radii: FloatArray | None = None
@@ -45,7 +51,8 @@ class Interpolation:
         kind, vertices = "closed" if self.spline.closed else "open", f"{len(self.parameters)} vertices"
         converged = "converged" if self.converged else "not converged"
         steps = counted(self.iterations, "iteration")
-        return f"<Interpolation: {kind}, {vertices}, {converged}, {steps}, residual {self.max_error:.2g}>"
+        doubt = f", {counted(self.uncertified, 'uncertified footpoint')}" if self.uncertified else ""
+        return f"<Interpolation: {kind}, {vertices}, {converged}, {steps}, residual {self.max_error:.2g}{doubt}>"
 
     @property
     def max_error(self) -> float:

@@ -156,6 +156,7 @@ def _single_span(controls: FloatArray) -> Interpolation:
         fallbacks=0,
         rate_bound=0.0,
         merged=np.empty(0, dtype=np.int64),
+        uncertified=0,
     )
 
 

@@ -87,19 +87,20 @@ def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
 
 
 @compiled
-def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
-    """Write the footpoints to t and update P_i += p_i - C(t_i); returns the largest error before the update.
+def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[float, int]:
+    """Write the footpoints to t and update P_i += p_i - C(t_i).
 
-    With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed.
+    With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed. Returns the
+    largest error before the update, and the number of footpoints that are not certified: all, if one is not finite.
     """
     n, d, count = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape[0]
     c, work, e = np.empty((2, d + 1)), np.empty(WORK), np.empty((count, 2))
-    largest = 0.0
+    largest, uncertified = 0.0, 0
     for i in range(count):
         px, py = v.points[i, 0], v.points[i, 1]
         low, high = v.bounds[i, 0], v.bounds[i, 1]
         before, D = min(max(t[i], low), high), np.inf
-        x = before
+        x, certified = before, True
         first, last = v.spans[i, 0], v.spans[i, 1]
         here = first
         for k in range(first, last + 1):
@@ -116,7 +117,9 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
             if b < a:
                 continue
             _coefficients(span, P, px, py, v, c)
-            x, D = search_piece(c, d, origin, a, b, v.centres[i], x, D, TIED, work)
+            x, D, whole = search_piece(c, d, origin, a, b, v.centres[i], x, D, TIED, work)
+            certified &= whole
+        uncertified += not certified
         for k in range(first, last + 1):
             if v.starts[k % n] + (k // n) * v.period <= x or k == first:
                 here = k
@@ -128,7 +131,7 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
         t[i], e[i, 0], e[i, 1] = x, -qx, -qy
         distance = np.hypot(qx, qy)
         if not np.isfinite(distance):
-            return np.inf
+            return np.inf, count
         largest = max(largest, distance)
         if at_once:
             P[v.first + i, 0] -= qx
@@ -139,7 +142,7 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> float:
             P[v.first + i, 0] += e[i, 0]
             P[v.first + i, 1] += e[i, 1]
         _follow_ends(P, count, v)
-    return largest
+    return largest, uncertified
 
 
 @compiled(internal=True)

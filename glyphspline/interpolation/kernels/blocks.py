@@ -40,9 +40,10 @@ SCRATCH = 21
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
 
-POLYGON, COUNT, LANE, INTERVALS, STATE, PASSES, SEARCHED, FALLBACKS, ORDER, TOTAL = range(10)
+POLYGON, COUNT, LANE, INTERVALS, STATE, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
 """Columns of ``Group.table``: index of the polygon, vertices, first lane, where in ``Group.h`` its intervals begin,
-state, passes, full searches, fallbacks, its first row; and the passes in all of the polygon that had this row at first.
+state, passes, full searches, those not certified, fallbacks, its first row; and the passes in all of the polygon that
+had this row at first.
 """
 
 UNIT, KNOT_UNIT, LIMIT, LEAST, LARGEST, NATURAL, BASE, END = 0, 1, 2, 3, 4, 5, 7, 11

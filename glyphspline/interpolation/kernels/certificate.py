@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, select
+from ...compiled import compiled, inlined, select
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import DD, EX, EY, TWO, X
-from .footpoint import GUARD, WORK, search_piece
+from .footpoint import ROUNDING, WORK, search_piece
 from .newton_simd import (
-    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein, expanded,
-    quartic,
+    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein,
+    expanded, quartic, squares,
 )  # fmt: skip
 
 BEYOND = 1 + 1e-9
@@ -23,25 +23,34 @@ CUT = 0.125
 SEARCHED = 9.0
 """Mark of a vertex that took a full search, in the field ``BAD``."""
 
+GIVEN_UP = 10.0
+"""Mark of one whose search ended without a certificate."""
+
+
+@inlined
+def _less_rounding(x: float, y: float) -> float:
+    """x + y less what it may be too large by."""
+    return x + y - ROUNDING * (abs(x) + abs(y))
+
 
 @compiled(internal=True)
 def _least_distance(
     ex: float, ey: float, vx: float, vy: float, wx: float, wy: float, zx: float, zy: float, L: float
 ) -> float:
-    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L."""
+    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L, less its rounding error."""
     ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
     bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
     cx, cy = ex + ((zx * L + wx) * L + vx) * L, ey + ((zy * L + wy) * L + vy) * L
     least = ex * ex + ey * ey
-    d = ex * ax + ey * ay
+    d = _less_rounding(ex * ax, ey * ay)
     least = select(d < least, d, least)
-    d = (2.0 * (ex * bx + ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
+    d = (2.0 * _less_rounding(ex * bx, ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
     least = select(d < least, d, least)
-    d = (ex * cx + ey * cy + 9.0 * (ax * bx + ay * by)) * 0.1
+    d = (_less_rounding(ex * cx, ey * cy) + 9.0 * _less_rounding(ax * bx, ay * by)) * 0.1
     least = select(d < least, d, least)
-    d = (2.0 * (ax * cx + ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
+    d = (2.0 * _less_rounding(ax * cx, ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
     least = select(d < least, d, least)
-    d = bx * cx + by * cy
+    d = _less_rounding(bx * cx, by * cy)
     least = select(d < least, d, least)
     d = cx * cx + cy * cy
     return select(d < least, d, least)
@@ -74,18 +83,21 @@ def _second_look(S: FloatArray, j: int) -> bool:
     qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
     qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
     c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
-    guard = GUARD * max(speed, c0)
+    guard = squares(speed, ax, ay, c4, S[SHI + j] - S[SLO + j])
     return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard
     )
 
 
 @compiled(internal=True)
-def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float) -> None:
-    """Search the main side, the other one, or both in full. D: the best so far, inf if that does not count."""
-    c = np.empty((2, 4))
-    work = np.empty(WORK)
-    side, x = S[SIDE + j], S[SIDE + j] * S[SY + j]
+def _search(
+    B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float, c: FloatArray, work: FloatArray
+) -> bool:
+    """Search the main side, the other one, or both in full; whether the answer is certified there.
+
+    D: the best so far, inf if that does not count. c, work: scratch arrays.
+    """
+    side, x, certified = S[SIDE + j], S[SIDE + j] * S[SY + j], True
     for turn in range(2):
         main = turn == 0
         if not (main_side if main else other_side):
@@ -97,22 +109,24 @@ def _search(B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: b
         c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
         c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
         c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
-        y, D_new = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
+        y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
+        certified &= whole
         if D_new < D or y != sign * x:
             x, D = sign * y, D_new
             B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
             B[EY + j] = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
     B[X + j] = x
     B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
+    return certified
 
 
 @compiled(internal=True)
 def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
-    These are marked ``SEARCHED`` in the field BAD.
+    These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
     """
-    searched = 0
+    searched, c, work = 0, np.empty((2, 4)), np.empty(WORK)
     for j in range(TWO, np.uint64(m) + TWO):
         flag = S[BAD + j]
         if flag == 0.0:
@@ -127,6 +141,6 @@ def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
         if not (main_side or other_side):
             continue
         searched += 1
-        S[BAD + j] = SEARCHED
-        _search(B, S, j, main_side, other_side, np.inf if main_side else D)
+        certified = _search(B, S, j, main_side, other_side, np.inf if main_side else D, c, work)
+        S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
     return searched

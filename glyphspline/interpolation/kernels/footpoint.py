@@ -6,25 +6,31 @@ distance. Expand it about any y0, with x = y - y0:
     D(y) = e_0 + e_1 x + e_2 x² + … + e_2d x^2d        e_0 = D(y0),  e_1 = 2 q·q',  e_2 = |q'|² + q·q'', …
          = D(y0) + e_1 x + x² Q(x)                     Q a polynomial of degree 2d - 2.
 
-**Certificate.** Let y0 be a zero of e_1 in an interval. If Q ≥ 0 there then D ≥ D(y0): y0 is the global minimum. A
-polynomial is not below its smallest Bernstein coefficient on an interval, so it is enough that those of Q are not
-negative, on the part to the left of y0 and on the part to its right. At an end of the interval e_1 need not vanish: it
-is enough that e_1 + x Q(x), whose Bernstein coefficients are e_1 + (j/m) L Q_{j-1} over a length L (m its degree),
-has the sign of x.
+**Certificate.** A polynomial is not below its smallest Bernstein coefficient on an interval. Let g be that of Q, on
+the part to the left of y0 and on the part to its right. If g > 0 then D ≥ D(y0) - e_1²/4g there: at a zero of e_1, y0
+is the global minimum. At an end of the interval e_1 need not vanish: it is enough that e_1 + x Q(x), whose Bernstein
+coefficients are e_1 + (j/m) L Q_{j-1} over a length L (m its degree), has the sign of x.
 
 Counting sign changes of e_1's own Bernstein form looks simpler, but fails where the method spends its time: near
 convergence D is almost 0 at y0, a nearly double zero, which D' then has almost twice in a row.
 
-**Search.** An interval of which that cannot be shown is halved. A part is dropped when the smallest Bernstein
-coefficient of D on it exceeds the best distance found, or when the certificate holds for its own local minimum.
+**Search.** An interval of which that cannot be shown is halved. Of all parts the one with the least lower bound, the
+smallest Bernstein coefficient of D, comes next. A part is dropped if its lower bound exceeds the best distance found,
+if the certificate holds for its own local minimum, or if its lower bound is below the best distance by less than
+``SLACK`` and ``tie``: then no point of it is nearer but for rounding. This is what ends the search where Q vanishes at
+the nearest point (p is the centre of curvature, D' has a triple zero), as D is flat there. The ends and the middle of
+each part are candidates too: there Newton's method may stop far from the minimum.
 
-**What floating point leaves open.** The coefficients carry rounding errors of some 1e-15 of the size of the summands,
-so the certificate asks Q for ``GUARD`` = 1e-12 of its size instead of 0. e_1 is not exactly 0 at a computed zero;
-what that can hide is a point nearer by e_1²/4 min Q, the square of a rounding error. Where q·q'' = -|q'|² at the
-nearest point (p is the centre of curvature) Q vanishes and nothing is certified; halving then ends at ``SHORTEST`` of
-the piece, or after ``MOST_PARTS`` of them, and distances are right to rounding while the parameter is only as good as
-the problem lets it be. Squared distances that differ by less than ``TIE`` of them, or by less than ``tie``, count as
-equal: the parameter nearest the vertex's own, ``centre``, is taken.
+**What is certified.** No point of the interval is nearer than the one returned by more than 1e-12 of the size of the
+piece, the largest distance of its Bézier points from p. Squared distances that differ by less than ``EQUAL`` of them,
+or by less than ``tie``, count as equal, and the parameter nearest the vertex's own, ``centre``, is taken: a nearer
+parameter may cost that much, and a smaller distance that is not taken as much again. A part may be dropped with a point
+in it that is nearer by ``SLACK`` of the squared distance. Together that is 0.55e-12 of the distance. Rounding of q,
+some 1e-15 of the size, is as good as another curve so near to this one. Rounding of products of q counts against the
+certificate: ``ROUNDING`` of the summands is taken from every lower bound. ``scripts/adversarial_footpoints.py`` looks
+for cases in which this does not hold. Where D is flat the parameter is only as good as the problem lets it be. A search
+that runs out of parts (``MOST_PARTS``), or halves one down to ``SHORTEST`` of the interval, returns the best of its
+candidates as not certified.
 """
 
 from __future__ import annotations
@@ -37,10 +43,18 @@ from ...compiled import compiled
 from ...types import FloatArray
 from ..method import TIE
 
-GUARD = 1e-12
+ROUNDING = 1e-14
+"""More than the rounding error of a Bernstein coefficient, as a share of the largest of its summands."""
+
+EQUAL = 0.5 * TIE
+"""Share by which squared distances that count as equal may differ, up or down."""
+
+SLACK = 0.1 * TIE
+"""Share of the squared distance by which a point of a dropped part may be nearer."""
+
 SHORTEST = 1e-12
 NEWTON_STEPS = 24
-MOST_PARTS = 4000
+MOST_PARTS = 128
 MAX_DEGREE = 6
 
 BERNSTEIN = np.zeros((2 * MAX_DEGREE + 1, 2 * MAX_DEGREE + 1, 2 * MAX_DEGREE + 1))
@@ -49,14 +63,20 @@ for _m in range(2 * MAX_DEGREE + 1):
     for _j in range(_m + 1):
         for _k in range(_j + 1):
             BERNSTEIN[_m, _j, _k] = comb(_j, _k) / comb(_m, _k)
+PRODUCTS = np.zeros((MAX_DEGREE + 1, MAX_DEGREE + 1, MAX_DEGREE + 1))
+"""[d, i, j]: weight of the products of Bézier points i ≤ j of degree d in a Bernstein coefficient of degree 2d."""
+for _d in range(MAX_DEGREE + 1):
+    for _j in range(_d + 1):
+        for _i in range(_j + 1):
+            PRODUCTS[_d, _i, _j] = (1 + (_i < _j)) * comb(_d, _i) * comb(_d, _j) / comb(2 * _d, _i + _j)
 
-WORK = (5, 64)
-"""Shape of the scratch array: shifted x and y, squared distance, and the two ends of the parts to do."""
+WORK = (8, MOST_PARTS + 2)
+"""Shape of the scratch array: shifted x and y, squared distance, Bézier points, and ends and lower bounds of parts."""
 
 
 @compiled(internal=True)
-def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
-    """Coefficients of q about y into work[0], work[1], and those of |q|² into work[2]."""
+def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
+    """Coefficients of q about y into work[0], work[1]."""
     for axis in range(2):
         s = work[axis]
         for k in range(d + 1):
@@ -64,46 +84,79 @@ def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
         for k in range(d):
             for i in range(d - 1, k - 1, -1):
                 s[i] += y * s[i + 1]
+
+
+@compiled(internal=True)
+def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
+    """Coefficients of q about y into work[0], work[1], and those of |q|² into work[2]."""
+    shift(c, d, y, work)
+    u, v = work[0], work[1]
     for k in range(2 * d + 1):
         total = 0.0
-        for i in range(max(0, k - d), min(k, d) + 1):
-            total += work[0, i] * work[0, k - i] + work[1, i] * work[1, k - i]
+        for i in range(max(0, k - d), (k + 1) // 2):
+            total += u[i] * u[k - i] + v[i] * v[k - i]
+        total *= 2.0
+        if k % 2 == 0:
+            total += u[k // 2] * u[k // 2] + v[k // 2] * v[k // 2]
         work[2, k] = total
 
 
 @compiled(internal=True)
-def bernstein_range(e: FloatArray, first: int, m: int, L: float) -> tuple[float, float]:
-    """Least and largest (absolute) Bernstein coefficient of Σ e[first + k] x^k, degree m, between 0 and L."""
-    least, most = np.inf, 0.0
-    for j in range(m + 1):
-        value, power = 0.0, 1.0
-        for k in range(j + 1):
-            value += BERNSTEIN[m, j, k] * e[first + k] * power
-            power *= L
+def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> tuple[float, float, float]:
+    """A lower bound of D on [a, b], and D at a and at b.
+
+    The Bernstein coefficients of D are sums of products of the Bézier points of q; those from powers of y would carry
+    the rounding errors of the largest power.
+    """
+    shift(c, d, a, work)
+    u, v, x, y, power = work[0], work[1], work[3], work[4], 1.0
+    for k in range(1, d + 1):
+        power *= b - a
+        u[k] *= power
+        v[k] *= power
+    largest = 0.0
+    for j in range(d + 1):
+        x[j], y[j] = u[0], v[0]
+        for k in range(1, j + 1):
+            x[j] += BERNSTEIN[d, j, k] * u[k]
+            y[j] += BERNSTEIN[d, j, k] * v[k]
+        largest = max(largest, x[j] * x[j] + y[j] * y[j])
+    least = np.inf
+    for k in range(2 * d + 1):
+        value = 0.0
+        for i in range(max(0, k - d), k // 2 + 1):
+            value += PRODUCTS[d, i, k - i] * (x[i] * x[k - i] + y[i] * y[k - i])
         least = min(least, value)
-        most = max(most, abs(value))
-    return least, most
+    return least - ROUNDING * largest, x[0] * x[0] + y[0] * y[0], x[d] * x[d] + y[d] * y[d]
 
 
 @compiled(internal=True)
-def proven(e: FloatArray, d: int, L: float, slope: float) -> bool:
-    """Whether D ≥ e[0] between 0 and L (either sign), where D = e[0] + slope x + x² Q(x)."""
+def proven(work: FloatArray, d: int, L: float, allowed: float) -> bool:
+    """Whether D ≥ D(y0) - allowed between 0 and L (either sign), for the expansion about y0 in ``work``.
+
+    Rounding errors of the coefficients of Q are a share of |q'|², |q''|² L², … or of D(y0)/L². The latter are as good
+    as equal distances.
+    """
     if L == 0.0:
         return True
-    if slope * L > 0.0:
-        m = 2 * d - 1
-        for j in range(1, m + 1):
-            value, power = 0.0, 1.0
-            for k in range(j):
-                value += BERNSTEIN[m - 1, j - 1, k] * e[2 + k] * power
-                power *= L
-            if abs(slope) + j / m * abs(L) * value <= 0.0:
-                return False
-        return True
-    if slope != 0.0:
-        return False
-    least, most = bernstein_range(e, 2, 2 * d - 2, L)
-    return least > GUARD * most
+    e, scaled, slope, m = work[2], work[3], work[2, 1], 2 * d - 1
+    power = 1.0
+    for k in range(m):
+        scaled[k] = e[2 + k] * power
+        power *= L
+    squares, power = 0.0, ROUNDING
+    for k in range(1, d + 1):
+        squares += (work[0, k] * work[0, k] + work[1, k] * work[1, k]) * power
+        power *= L * L
+    least, rises = np.inf, slope * L > 0.0
+    for j in range(m):
+        value = scaled[0] - squares
+        for k in range(1, j + 1):
+            value += BERNSTEIN[m - 1, j, k] * scaled[k]
+        least = min(least, value)
+        if not (abs(slope) + (j + 1) / m * abs(L) * value if rises else value) > 0.0:
+            return False
+    return rises or slope * slope <= 4.0 * least * allowed
 
 
 @compiled(internal=True)
@@ -132,9 +185,9 @@ def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> f
 @compiled(internal=True)
 def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: float) -> tuple[float, float]:
     """The nearer of two candidates (parameter, squared distance); in a tie the one nearer ``centre``."""
-    if new_D < D * (1 - TIE) - tie:
+    if new_D < D * (1 - EQUAL) - tie:
         return new_x, new_D
-    if new_D <= D * (1 + TIE) + tie and abs(new_x - centre) < abs(x - centre):
+    if new_D <= D * (1 + EQUAL) + tie and abs(new_x - centre) < abs(x - centre):
         return new_x, min(D, new_D)
     return x, D
 
@@ -143,35 +196,64 @@ def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: f
 def search_piece(
     c: FloatArray, d: int, origin: float, low: float, high: float, centre: float, x: float, D: float, tie: float,
     work: FloatArray,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float, bool]:  # fmt: skip
     """Improve the candidate (x, D) by all that the piece has on [low, high].
 
     Args:
         c: (2, d + 1) coefficients of q by ascending powers of y; parameters are ``origin + y``.
         x, D: the best so far, D = inf if there is none.
+
+    Returns:
+        The best now, and whether it is certified (see the module).
     """
-    shortest = SHORTEST * (high - low)
-    work[3, 0], work[4, 0] = low, high
-    top, parts = 1, 0
-    while top > 0:
-        top -= 1
-        a, b = work[3, top], work[4, top]
+    if np.inf > D and lower_bound(c, d, low, high, work)[0] > D * (1 + EQUAL) + tie:
+        return x, D, True
+    start = min(max(x - origin, low), high)
+    y = local_minimum(c, d, low, high, start)
+    expand(c, d, y, work)
+    x, D = better(x, D, origin + y, work[2, 0], centre, tie)
+    allowed = SLACK * work[2, 0] + tie
+    if proven(work, d, high - y, allowed) and proven(work, d, low - y, allowed):
+        return x, D, True
+    shift(c, d, start, work)
+    probe, D_probe = start, work[0, 0] * work[0, 0] + work[1, 0] * work[1, 0]  # not a local minimum: loses ties
+    left, right, bounds = work[5], work[6], work[7]
+    left[0], right[0], bounds[0] = low, high, -np.inf
+    count, parts, certified = 1, 0, True
+    while count > 0:
+        part = 0
+        for k in range(1, count):
+            if bounds[k] < bounds[part]:
+                part = k
+        a, b, bound = left[part], right[part], bounds[part]
+        if bound > min(D, D_probe) * (1 + EQUAL) + tie:
+            break
+        count -= 1
+        left[part], right[part], bounds[part] = left[count], right[count], bounds[count]
+        if parts > 0:
+            y = local_minimum(c, d, a, b, 0.5 * (a + b))
+            expand(c, d, y, work)
+            x, D = better(x, D, origin + y, work[2, 0], centre, tie)
+            if bound >= min(D, D_probe) * (1 - SLACK) - tie:
+                continue
+            allowed = SLACK * work[2, 0] + tie
+            if proven(work, d, b - y, allowed) and proven(work, d, a - y, allowed):
+                continue
         parts += 1
-        expand(c, d, a, work)
-        if bernstein_range(work[2], 0, 2 * d, b - a)[0] > D * (1 + TIE) + tie:
+        if parts > MOST_PARTS or not b - a > SHORTEST * (high - low):
+            certified &= min(D, D_probe) <= tie
             continue
-        y = local_minimum(c, d, a, b, min(max(x - origin, a), b) if parts == 1 else 0.5 * (a + b))
-        expand(c, d, y, work)
-        e = work[2]
-        x, D = better(x, D, origin + y, e[0], centre, tie)
-        slope = e[1]
-        if slope * slope <= 1e-24 * e[0] * e[2] or (a < y < b and abs(slope) <= 1e-12 * abs(e[2]) * (b - a)):
-            slope = 0.0
-        if proven(e, d, b - y, slope) and proven(e, d, a - y, slope):
-            continue
-        if b - a > shortest and parts < MOST_PARTS:
-            middle = 0.5 * (a + b)
-            work[3, top], work[4, top] = middle, b
-            work[3, top + 1], work[4, top + 1] = a, middle
-            top += 2
-    return x, D
+        middle = 0.5 * (a + b)
+        first, D_a, D_middle = lower_bound(c, d, a, middle, work)
+        second, _, D_b = lower_bound(c, d, middle, b, work)
+        if parts == 1:
+            x, D = better(x, D, origin + low, D_a, centre, tie)
+            x, D = better(x, D, origin + high, D_b, centre, tie)
+        if D_middle < D_probe:
+            probe, D_probe = middle, D_middle
+        left[count], right[count], bounds[count] = a, middle, first
+        left[count + 1], right[count + 1], bounds[count + 1] = middle, b, second
+        count += 2
+    if D_probe < D * (1 - EQUAL) - tie:
+        x, D = origin + probe, D_probe
+    return x, D, certified and np.inf > D

@@ -13,15 +13,16 @@ from ...compiled import compiled, select
 from ...types import FloatArray
 from .blocks import (
     BLOCK, COUNT, DD, FALLBACKS, FOUR, HALO, HIGH, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW, ONE, ORDER,
-    PASSES, POLYGON, PX, PY, SEARCHED, STATE, THREE, TOTAL, TWO, UNIT, Found, Given, Group, X, close_ranks, fill_halos,
-    lanes_used, move, whole_vectors,
+    PASSES, POLYGON, PX, PY, SEARCHED, STATE, THREE, TOTAL, TWO, UNCERTIFIED, UNIT, Found, Given, Group, X, close_ranks,
+    fill_halos, lanes_used, move, whole_vectors,
 )  # fmt: skip
+from .certificate import GIVEN_UP, flagged
 from .certificate import SEARCHED as MARK
-from .certificate import flagged
 from .collocation import solve
 from .newton_simd import BAD, seek
 from .vertices import FALLEN_BACK, ITERATIONS, OK, STATUS, knots_of
 from .vertices import SEARCHED as SEARCHES
+from .vertices import UNCERTIFIED as GIVEN_UP_ON
 
 RUNNING, SOLVED_ONCE, SOLVED, DONE = range(4)
 """States of a polygon."""
@@ -71,11 +72,14 @@ def _one_pass(given: Given, group: Group, slots: int) -> None:
             if numbers[q, LARGEST] == np.inf:  # not searched
                 for i in range(min(LANES, table[q, COUNT] - b * LANES)):
                     S[BAD + np.uint64(table[q, LANE] + HALO + i)] = 0.0
+                table[q, UNCERTIFIED] += min(LANES, table[q, COUNT] - b * LANES)
         searched = flagged(block, S, m) if bad > 0 else 0
         for q in range(slots):
             first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
             for i in range(n if searched > 0 else 0):
-                table[q, SEARCHED] += S[BAD + np.uint64(first + i)] == MARK
+                mark = S[BAD + np.uint64(first + i)]
+                table[q, SEARCHED] += mark >= MARK
+                table[q, UNCERTIFIED] += mark == GIVEN_UP
             open_end = 0 if given.closed else 1
             low = open_end if b == 0 else 0
             high = n - open_end if b + 1 == count else n
@@ -111,7 +115,8 @@ def _store(given: Given, found: Found, group: Group, q: int) -> None:
             found.controls[first + n, axis] = given.points[start + found.kept[start + n - 1], axis]
     out = found.whole[k]
     out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, group.table[q, PASSES] - 1, group.table[q, FALLBACKS]
-    out[SEARCHES], found.rates[k] = group.table[q, SEARCHED], 2.0 * (1.0 - row[LEAST])
+    out[SEARCHES], out[GIVEN_UP_ON] = group.table[q, SEARCHED], group.table[q, UNCERTIFIED]
+    found.rates[k] = 2.0 * (1.0 - row[LEAST])
 
 
 @compiled(internal=True)
@@ -166,6 +171,7 @@ def iterate(
     table, every, left = group.table, slots, slots
     for q in range(slots):
         table[q, STATE], table[q, PASSES], table[q, SEARCHED], table[q, ORDER] = RUNNING, 0, 0, q
+        table[q, UNCERTIFIED] = 0
     while left > 0:
         _one_pass(given, group, slots)
         lanes = 0

@@ -14,6 +14,12 @@ along it. Newton's method with Chebyshev's third-order term goes from the last f
 certificate of ``footpoint`` then has two parts: about y* over the main side, and about u_i over the other side, which
 shows D ≥ D(u_i) ≥ D(y*) there. A vertex that fails either is flagged, and left to ``flagged``.
 
+The certificate takes e_1 for 0 at y*. By the rule that ends Newton's method e_1 is at most some 2e-14 Q(y*) L, with L
+the length of the side. Each Bernstein coefficient b_j of Q has to exceed ``GUARD`` of |C'|² and of the squares of the
+higher terms. Then Q ≥ b_0 (1 - x/L)⁴ over the first half of the side, and x² Q outgrows e_1 x over the rest: no point
+is nearer by more than some 1e-13 of the extent. ``GUARD`` also covers the rounding errors of the b_j, some 1e-16 of
+these squares; where Q(y*) is much larger than they are, so is D, and the same shares are shares of D.
+
 No value depends on another lane, and no floating-point reassociation is allowed, so results do not depend on the
 width of the vectors.
 """
@@ -27,7 +33,6 @@ from ...types import FloatArray
 from .blocks import (
     DD, EX, EY, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PX, PY, QX, QY, RATE, STRIDE, THIRD, THREE, TWO, X,
 )  # fmt: skip
-from .footpoint import GUARD
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
 # Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
@@ -35,6 +40,9 @@ DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER,
     np.uint64(k * STRIDE) for k in range(19)
 )
 SIXTH = 1 / 6
+
+GUARD = 1e-13
+"""Share of |q'|² + |q''|² L²/4 + |q'''|² L⁴/36 that Q has to exceed, for rounding errors and the e_1 left at y*."""
 
 NEWTON_PASSES = 8
 SETTLED_STEP = 1e-6
@@ -111,6 +119,13 @@ def least_rise(slope: float, c0: float, c1: float, c2: float, c3: float, c4: flo
     least = select(least < rest, least, rest)
     least = select(least < b4, least, b4)
     return fma(L, least, slope)
+
+
+@inlined
+def squares(speed: float, ax: float, ay: float, c4: float, L: float) -> float:
+    """``GUARD`` of the squares of the terms of q over a length L, which the coefficients of Q do not exceed by much."""
+    squared = L * L
+    return GUARD * fma(squared, fma(squared, c4, dot(ax, ay, ax, ay)), speed)
 
 
 @compiled(internal=True)
@@ -210,15 +225,15 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
         ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
-        size = select(speed > c0, speed, c0)
+        guard = squares(speed, ax, ay, c4, high - low)
         # the other side, about the knot: 2 E·V outwards, then its Q
         L, ox, oy = S[OTHER + j], S[OZX + j], S[OZY + j]
         slope = -2.0 * dot(ex, ey, vx, vy)
-        o0, o1, o2, o3, o4, _ = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
+        o0, o1, o2, o3, o4, start = quartic(ex, ey, -vx, -vy, wx, wy, ox, oy)
         rise = least_rise(slope, o0, o1, o2, o3, o4, L)
         D = dot(qx, qy, qx, qy)
-        main = (S[DONE + j] == 0.0) | ((least <= GUARD * size) & (high > low))
-        other = (rise <= 0.0) & (L > 0.0)
+        main = (S[DONE + j] == 0.0) | ((least <= guard) & (high > low))
+        other = (rise <= L * squares(start, wx, wy, o4, L)) & (L > 0.0)
         fails = main | other
         S[BAD + j] = select(main, 1.0, 0.0) + select(other, 2.0, 0.0)
         bad += select(fails, 1, 0)

@@ -18,7 +18,7 @@ from .blocks import PAD, Found, Given
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """Status codes. A refused polygon is checked again in Python to build the error message."""
 
-STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHED = range(5)
+STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHED, UNCERTIFIED = range(6)
 """Columns of ``Found.whole``."""
 
 
@@ -124,7 +124,7 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
     start, stop, closed = given.offsets[k], given.offsets[k + 1], given.closed
     points, kept = given.points[start:stop], found.kept[start:stop]
     row = found.whole[k]
-    row[STATUS], row[ITERATIONS], row[FALLEN_BACK], row[SEARCHED] = BAD_POLYGON, -1, 0, 0
+    row[STATUS], row[ITERATIONS], row[FALLEN_BACK], row[SEARCHED], row[UNCERTIFIED] = BAD_POLYGON, -1, 0, 0, 0
     n, extent = _merge(points, closed, kept)
     row[KEPT] = n
     if n < 0:
