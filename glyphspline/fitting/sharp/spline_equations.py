@@ -22,9 +22,6 @@ from .spline_curve import Curve, empty_curve, inner_vertices, span_weights
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
 
-END_RATIO = 3.0
-"""The same for the first two and the last two pairs of chords of an arc, whose end controls take part of the peak."""
-
 RATIO_ROOM = 0.85
 """Ratios above this share of the bound are held back."""
 
@@ -168,16 +165,9 @@ def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
 
 
 @compiled(internal=True)
-def largest_ratio(curve: Curve, s: int) -> float:
-    """Bound on the ratio of intervals s and s - 1."""
-    at_end = not curve.size[1] and min(s, curve.size[0] - s) <= 2
-    return END_RATIO if at_end else LARGEST_RATIO
-
-
-@compiled(internal=True)
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
-    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * largest_ratio(curve, s))
+    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * LARGEST_RATIO)
     return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
 
 
