@@ -68,7 +68,7 @@ def test_every_variant_is_certified_and_gives_what_the_public_interpolation_give
             ends = arc.spline(arc.spline.knots[[0, -1]], derivative=1)
             again = gs.interpolate(
                 p, variant, closed=False, end_tangents=(ends[0], ends[1]), margin=chosen.margin,
-                fallback="peak" if k == 2 else "knot", residual_tolerance=chosen.solver_tolerance,
+                residual_tolerance=chosen.solver_tolerance,
             )  # fmt: skip
             np.testing.assert_allclose(arc.spline.control_points, again.spline.control_points, atol=1e-6)
             np.testing.assert_allclose(arc.intervals, again.intervals, atol=1e-9)
