@@ -117,8 +117,8 @@ def test_chords_of_any_ratio_at_the_ends_are_certified(kind: str, ratio: float) 
     for seed in range(6):
         p = uneven_ends(3 + 3 * seed, ratio, seed)
         r = gs.interpolate(
-            p, 2, closed=False, end_tangents=tangents(kind, seed), margin=0.02, max_iterations=400, diagnostics=seed < 2,
-        )  # fmt: skip
+            p, closed=False, end_tangents=tangents(kind, seed), margin=0.02, max_iterations=400, diagnostics=seed < 2
+        )
         assert r.fallbacks == 0
         assert r.rate_bound <= 0.96 + 1e-12
         assert r.converged

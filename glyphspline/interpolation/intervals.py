@@ -169,15 +169,19 @@ def search_intervals(
         bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
         bounds = np.where(low[:, None], centres[:, None], bounds)
     least = np.minimum(basis_function(windows, bounds[:, 0]), basis_function(windows, bounds[:, 1]))
-    for i in {*range(min(2, len(windows))), *range(max(len(windows) - 2, 0), len(windows))} if ends else ():
-        W = _Dominance(windows[i], ends, i, len(windows))
-        c = max(margin, END_MARGIN) if i in (0, len(windows) - 1) else margin
-        found = W.interval(0.5 + c, PEAK_SHARE if fallback == "peak" else 1.0) if variant in (2, 4) else None
-        if variant == 3:
-            least[i] = W(centres[i : i + 1])[0]
-        elif found is not None:
-            bounds[i], low[i] = found, False
-            least[i] = W(found).min()
+    if ends is not None:
+        last = len(windows) - 1
+        for i in range(len(windows)):
+            if min(i, last - i) > 1:  # no fixed function reaches the interval
+                continue
+            W = _Dominance(windows[i], ends, i, len(windows))
+            c = max(margin, END_MARGIN) if i in (0, last) else margin
+            found = W.interval(0.5 + c, PEAK_SHARE if fallback == "peak" else 1.0) if variant in (2, 4) else None
+            if variant == 3:
+                least[i] = W(centres[i : i + 1])[0]
+            elif found is not None:
+                bounds[i], low[i] = found, False
+                least[i] = W(found).min()
     fallbacks = int(low.sum()) if variant in (2, 4) else 0
     return Intervals(bounds, fallbacks, float(2 * (1 - least.min(initial=1.0))))
 

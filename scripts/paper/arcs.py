@@ -51,8 +51,8 @@ def arcs(run: Run) -> None:
         },
         "proven",
         "Random points with tangents at the ends turned by 0.5; proof below, which has 5/8 as the infimum of max W_1. "
-        f"Certified: arcs whose bound is below 1 with c = {MARGIN}; vertices without an interval (Remark 3) keep others "
-        "from it. A variant 3 that fails has no guarantee to break.",
+        f"Certified: arcs whose bound is below 1 with c = {MARGIN}; inner vertices without an interval (Remark 3) keep "
+        "others from it. A variant 3 that fails has no guarantee to break.",
         "arcs",
     )
     run.save(_picture(means), "arcs", svg=True)

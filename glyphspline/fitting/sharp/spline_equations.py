@@ -123,7 +123,7 @@ def shift_knot(curve: Curve, i: int, delta: float) -> None:
 def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
-    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny)."""
+    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny); of the matrix its lower half."""
     for u in range(8):
         J[u] = 0.0
     for r in range(4):
@@ -134,7 +134,7 @@ def _add_row(
         gram[8, u] += weight * e * J[u]
     for u in range(8):
         scaled = weight * J[u]
-        for v in range(8):
+        for v in range(u + 1):
             gram[u, v] += scaled * J[v]
 
 
@@ -162,6 +162,10 @@ def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
             nx, ny = middle_normal(curve.b[s])
             wanted = -third_along(curve.b, s, nx, ny)
             _add_row(gram[s], J, moves[s], B, nx, ny, wanted, wobble / curve.h[s + 2] ** 5)
+    for s in range(k):
+        for u in range(8):
+            for v in range(u):
+                gram[s, v, u] = gram[s, u, v]
 
 
 @compiled(internal=True)

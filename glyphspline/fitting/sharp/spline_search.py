@@ -26,11 +26,10 @@ SOME_MORE = 30.0
 STARTS = 3
 """First guesses, each with more vertices, before a stretch is given up."""
 
-PATIENCE, HASTE = 12, 8
-"""Insertions after a first guess from which on a share of 1 / ``HASTE`` of the spans is cut at least.
+PATIENCE = 12
+"""Insertions after a first guess from which on all spans that miss the tolerance are cut.
 
-On long stretches of fine detail many spans miss the tolerance by little, which asks for few vertices at a time. Nothing
-else of the search grows with the square of the spans; what is too much is taken out again.
+On long stretches of fine detail very many miss it by little, and would get two or three vertices at a time.
 """
 
 BEGIN, INSERT, REMOVE, RESTART = 0, 1, 2, 3
@@ -137,7 +136,7 @@ def find_spline(
             possible = place_vertices(curve, samples, directions, guess, len(fit.gram) - 1)
         elif what == INSERT:
             insertions += 1
-            possible = insert_vertices(fit, near, search, curve.size[0] // HASTE if insertions > PATIENCE else 1)
+            possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
         else:
             remove_vertex(curve, best, at)
         error = np.inf
@@ -228,16 +227,20 @@ def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: in
 
 
 @compiled(internal=True)
-def insert_vertices(fit: Fit, near: float, search: Search, least: int) -> bool:
-    """Cut the worst spans in two, ``least`` or more, no two adjacent ones; False if there is no room for more."""
+def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
+    """Cut the worst spans in two, no two adjacent ones; False if there is no room for more.
+
+    Args:
+        growth: power of a span's error with which vertices are added; with infinity all that miss the tolerance are.
+    """
     curve, trial = fit.curve, fit.trial
     k, closed = curve.size[0], curve.size[1]
     errors = span_errors(fit.rows, k)
     wanted = 0.0
     for s in range(k):
         if errors[s] > near:
-            wanted += min((errors[s] / near) ** search.growth - 1, 1.0)
-    count = min(max(int(np.rint(wanted)), least, 1), len(fit.gram) - 1 - k)
+            wanted += min((errors[s] / near) ** growth - 1, 1.0)
+    count = min(max(int(np.rint(wanted)), 1), len(fit.gram) - 1 - k)
     if count <= 0:
         return False
     cut = np.zeros(k, dtype=np.bool_)

@@ -157,9 +157,7 @@ def _end_interval(
     first, last = row[NATURAL], row[NATURAL + 1]
     if given.variant == 3:
         return low, high, value_at_knot(h, k + 1, i, n, first, last), missing
-    left, right, least, found = end_interval(
-        h, k + 1, i, n, first, last, given.margin, share if share > 0.0 else 1.0
-    )
+    left, right, least, found = end_interval(h, k + 1, i, n, first, last, given.margin, share if share > 0.0 else 1.0)
     if not found:
         return low, high, value, missing
     left *= h[k + 1] if left < 0.0 else h[k + 2]
