@@ -76,6 +76,27 @@ def test_every_variant_is_certified_and_gives_what_the_public_interpolation_give
     assert compared
 
 
+def test_fine_detail_of_very_many_lines_is_fitted_where_few_vertices_do_and_stays_lines_where_not() -> None:
+    """A circle rounded to units, of 1,499 noisy points: where the first guess misses by little it grows in large steps.
+    A staircase of as many lines needs more vertices than a spline may have.
+    """
+    angle = 2 * np.pi * np.arange(1499) / 1499
+    circle = np.array([500.0, 400.0]) + 400 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    noisy = np.round(circle + 0.3 * np.random.default_rng(1).standard_normal((1499, 2)))
+    corners = np.round(circle[::2])
+    stairs = np.stack([corners, np.stack([np.roll(corners[:, 0], -1), corners[:, 1]], axis=1)], axis=1).reshape(-1, 2)
+    most = {"noise": 120, "stairs": len(stairs)}
+    for name, points in (("noise", noisy), ("stairs", stairs)):
+        points = points[np.hypot(*(points - np.roll(points, 1, axis=0)).T) > 0]
+        lines = [np.stack(pair) for pair in zip(points, np.roll(points, -1, axis=0), strict=True)]
+        outline = gs.Outline(name, contours=(gs.Contour.from_segments(lines),))
+        (contour,) = gs.convert(outline, options(tolerance=1.0)).contours
+        assert contour.measures.within_tolerance
+        assert contour.measures.new_crossings == 0
+        assert 0 < contour.measures.segments < most[name]
+        assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01
+
+
 def test_a_contour_smaller_than_the_tolerance_keeps_a_curve_of_four_vertices() -> None:
     points = np.array([[509.0, 609.0], [510.0, 611.0], [511.0, 613.0], [509.0, 611.0]])
     lens = gs.Contour(points, np.array([2, 2]))
@@ -205,7 +226,7 @@ def test_curvature_is_continuous_inside_every_arc(character: str, effort: Effort
             inner += len(starts[joints])
         assert contour.measures.within_tolerance
         assert contour.measures.converged is not False
-        assert (contour.measures.iterations or 0) <= 30
+        assert (contour.measures.iterations or 0) <= 60
     assert inner >= 2
 
 
