@@ -94,6 +94,7 @@ def test_fine_detail_of_very_many_lines_is_fitted_where_few_vertices_do_and_stay
         assert contour.measures.within_tolerance
         assert contour.measures.new_crossings == 0
         assert 0 < contour.measures.segments < most[name]
+        assert contour.measures.deviation_bound is not None
         assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01
 
 
