@@ -11,7 +11,6 @@ import pytest
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.fitting.measures import certified_rate
 from glyphspline.outlines.overlaps import inked_area, remove_overlaps
 from glyphspline.types import FloatArray
 
@@ -114,7 +113,7 @@ def test_arcs_are_what_the_public_interpolation_makes_of_their_vertices() -> Non
         iterated = any(len(arc.parameters) > 2 for arc in contour.interpolations)
         assert contour.measures.converged is (True if iterated else None)
     for arc in arcs:
-        assert certified_rate(arc) < 1
+        assert arc.rate_bound < 1
         knots = arc.spline.knots
         inner = arc.spline(arc.parameters)
         np.testing.assert_allclose(np.hypot(*np.diff(inner, axis=0).T), np.diff(knots), atol=0.05)

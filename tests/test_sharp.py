@@ -68,12 +68,34 @@ def test_every_variant_is_certified_and_gives_what_the_public_interpolation_give
             ends = arc.spline(arc.spline.knots[[0, -1]], derivative=1)
             again = gs.interpolate(
                 p, variant, closed=False, end_tangents=(ends[0], ends[1]), margin=chosen.margin,
-                fallback="peak" if k == 2 else "knot", residual_tolerance=chosen.solver_tolerance,
+                residual_tolerance=chosen.solver_tolerance,
             )  # fmt: skip
             np.testing.assert_allclose(arc.spline.control_points, again.spline.control_points, atol=1e-6)
             np.testing.assert_allclose(arc.intervals, again.intervals, atol=1e-9)
             compared += k > 1
     assert compared
+
+
+def test_fine_detail_of_very_many_lines_is_fitted_where_few_vertices_do_and_stays_lines_where_not() -> None:
+    """A circle rounded to units, of 1,499 noisy points: where the first guess misses by little it grows in large steps.
+    A staircase of as many lines needs more vertices than a spline may have.
+    """
+    angle = 2 * np.pi * np.arange(1499) / 1499
+    circle = np.array([500.0, 400.0]) + 400 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    noisy = np.round(circle + 0.3 * np.random.default_rng(1).standard_normal((1499, 2)))
+    corners = np.round(circle[::2])
+    stairs = np.stack([corners, np.stack([np.roll(corners[:, 0], -1), corners[:, 1]], axis=1)], axis=1).reshape(-1, 2)
+    most = {"noise": 120, "stairs": len(stairs)}
+    for name, points in (("noise", noisy), ("stairs", stairs)):
+        points = points[np.hypot(*(points - np.roll(points, 1, axis=0)).T) > 0]
+        lines = [np.stack(pair) for pair in zip(points, np.roll(points, -1, axis=0), strict=True)]
+        outline = gs.Outline(name, contours=(gs.Contour.from_segments(lines),))
+        (contour,) = gs.convert(outline, options(tolerance=1.0)).contours
+        assert contour.measures.within_tolerance
+        assert contour.measures.new_crossings == 0
+        assert 0 < contour.measures.segments < most[name]
+        assert contour.measures.deviation_bound is not None
+        assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01
 
 
 def test_a_contour_smaller_than_the_tolerance_keeps_a_curve_of_four_vertices() -> None:
@@ -207,7 +229,7 @@ def test_curvature_is_continuous_inside_every_arc(character: str, effort: Effort
             inner += len(starts[joints])
         assert contour.measures.within_tolerance
         assert contour.measures.converged is not False
-        assert (contour.measures.iterations or 0) <= 30
+        assert (contour.measures.iterations or 0) <= 60
     assert inner >= 2
 
 

@@ -14,7 +14,6 @@ from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
 from ..interpolation.batched import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
-from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines
 from ..outlines.sampling import CORNER_ANGLE
 from ..outlines.segments import contour_cubics
@@ -71,12 +70,6 @@ def distance_columns(gaps: Sequence[float], bounds: Sequence[float], tolerance: 
     """Measured distances and their certified bounds, compared with the tolerance, all in font units."""
     within = [bound <= tolerance for bound in bounds]
     return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
-
-
-def certified_rate(arc: Interpolation) -> float:
-    """Contraction factor by Theorem 2, or by Theorem 1 for an arc of two spans, which has one free vertex."""
-    alone = not arc.spline.closed and len(arc.parameters) == 3
-    return arc.rate_bound / 2 if alone else arc.rate_bound
 
 
 def geometric_columns(curves: ContourArrays, precision: int, source: ContourArrays, polygons: Polylines) -> Columns:

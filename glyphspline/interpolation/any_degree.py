@@ -5,6 +5,7 @@ The passes are compiled (:mod:`.kernels.any_degree_pass`); the loop is in :mod:`
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from .intervals import Intervals
 from .method import SETTLED, Method, Tangents
 from .polygon import clean_polygon
 from .result import Interpolation
+
+NO_INTERVALS = np.empty(0)
 
 
 def interpolate_any_degree(
@@ -44,8 +47,9 @@ def interpolate_any_degree(
     free = np.arange(len(p)) if closed else np.arange(1, len(p) - 1)
     first = free - ((degree + 1) // 2 if closed else 2)
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
-    intervals = _intervals(windows, centres[free], method)
-    problem = Scaled(p, u, centres, free, intervals, method, end_tangents or (None, None))
+    tangents = end_tangents or (None, None)
+    intervals = _intervals(windows, centres[free], method, np.empty(0) if closed else np.diff(u), tangents)
+    problem = Scaled(p, u, centres, free, intervals, method, tangents)
     tolerance = method.tolerance_for(float(np.ptp(p, axis=0).max()))
     settled = SETTLED * float(np.diff(centres).mean()) if method.finish == "solve" else 0.0
     at_once = method.variant == 4
@@ -92,12 +96,21 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
     )  # fmt: skip
 
 
-def _intervals(windows: FloatArray, centres: FloatArray, method: Method) -> Intervals:
-    """The compiled equivalent of :func:`.intervals.search_intervals`."""
+def _intervals(
+    windows: FloatArray,
+    centres: FloatArray,
+    method: Method,
+    h: FloatArray = NO_INTERVALS,
+    tangents: Tangents = (None, None),
+) -> Intervals:
+    """The compiled equivalent of :func:`.intervals.search_intervals`; h are an arc's knot intervals."""
     from .kernels.any_degree_pass import search_bounds
 
     bounds = np.empty((len(centres), 2))
-    fallbacks, least = search_bounds(windows, centres, method.variant, float(method.margin), method.peak_share, bounds)
+    padded, natural = np.pad(h, 2) if len(h) else h, _natural_weights(h, tangents)
+    fallbacks, least = search_bounds(
+        windows, centres, method.variant, float(method.margin), method.peak_share, padded, natural, bounds
+    )
     return Intervals(bounds, fallbacks, 2 * (1 - least))
 
 
@@ -194,7 +207,7 @@ class Scaled:
 
 def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tuple[FloatArray, FloatArray]:
     """Weights and rests of the control points beside the ends: base + weight times the free one next to them."""
-    natural, base = np.zeros(2), np.zeros((2, 2))
+    natural, base = _natural_weights(h, tangents), np.zeros((2, 2))
     for end, (near, beyond, sign) in enumerate(((0, 1, 1.0), (-1, -2, -1.0))):
         tangent = tangents[end]
         if tangent is not None:
@@ -202,6 +215,17 @@ def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tu
         elif len(q) == 2:
             base[end] = q[near] + (q[beyond] - q[near]) / 3
         else:
-            natural[end] = h[near] / (2 * h[near] + h[beyond])
             base[end] = (1 - natural[end]) * q[near]
     return natural, base
+
+
+def _natural_weights(h: FloatArray, tangents: Sequence[Any]) -> FloatArray:
+    """(2,) weights of the first (last) free control point of an arc in the one beside it; 0 at ends with a tangent.
+
+    With them the curve has no curvature there.
+    """
+    weights = np.zeros(2)
+    for end, (near, beyond) in enumerate(((0, 1), (-1, -2)) if len(h) > 1 else ()):
+        if tangents[end] is None:
+            weights[end] = h[near] / (2 * h[near] + h[beyond])
+    return weights

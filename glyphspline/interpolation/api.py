@@ -48,7 +48,8 @@ def interpolate(
             once (Algorithm 3 instead of 2).
         degree: 2 to 6. An open arc is cubic.
         margin: c ≥ 0 of Lemma 2. With c > 0 the largest error shrinks at least by 1 - 2c a step (Theorem 2), unless a
-            basis function stays below 1/2 + c: see ``rate_bound`` of the result.
+            basis function stays below 1/2 + c: see ``rate_bound`` of the result. The first and the last inner vertex of
+            an arc have c = 1/16 at least, whatever the knots.
         knots: "chord" (length), "uniform", "centripetal", or the vertices' parameters: increasing, n + 1 of them
             if closed, the last one closing the period, and n if open.
         fallback: what to do where B_i nowhere exceeds 1/2. "knot" is the paper's Remark 3, t_i = u_i, and may not

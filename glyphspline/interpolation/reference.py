@@ -20,7 +20,7 @@ from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose
 from .driver import iterate
-from .intervals import Intervals, search_intervals
+from .intervals import Intervals, arc_ends, search_intervals
 from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Tangents
 from .polygon import clean_polygon
 from .result import Interpolation
@@ -171,13 +171,14 @@ def prepare(
     if closed:
         u, centres, vertices = closed_knots(s, degree), vertex_centres(s, degree), np.arange(len(p))
         first = vertices - (degree + 1) // 2
-        spread, fixed = np.eye(len(p)), np.zeros((len(p), 2))
+        spread, fixed, ends = np.eye(len(p)), np.zeros((len(p), 2)), None
     else:
         u, centres, vertices = s, s, np.arange(1, len(p) - 1)
         first = vertices - 2
         spread, fixed = _clamped_ends(p, u, end_tangents or (None, None))
+        ends = arc_ends(u, spread[[1, -2], [0, -1]] if len(vertices) else np.zeros(2))
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
-    intervals = search_intervals(windows, centres[vertices], variant, margin, fallback)
+    intervals = search_intervals(windows, centres[vertices], variant, margin, fallback, ends)
     return Problem(p, vertices, u, degree, closed, centres, intervals, spread, fixed, merged)
 
 

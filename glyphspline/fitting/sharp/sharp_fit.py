@@ -18,7 +18,7 @@ from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
-from ..measures import Columns, certified_rate, check_coordinates, distance_columns, geometric_columns
+from ..measures import Columns, check_coordinates, distance_columns, geometric_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
@@ -108,7 +108,7 @@ def _solved_columns(fit: SharpFit) -> Columns:
         "iterations": [max((arc.iterations for arc in own), default=None) for own in arcs],
         "residual": [max((arc.max_error for arc in own), default=None) for own in arcs],
         "converged": [all(arc.converged for arc in own) if own else None for own in arcs],
-        "rate_bound": [max((certified_rate(arc) for arc in own), default=None) for own in arcs],
+        "rate_bound": [max((arc.rate_bound for arc in own), default=None) for own in arcs],
         "fallbacks": [sum(arc.fallbacks for arc in own) if own else None for own in arcs],
     }
 
@@ -237,14 +237,11 @@ def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
 
 
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span, in order.
-
-    Lemma 2 has no interval for the one free vertex of two spans: see :data:`.spline_curve.PEAK_SHARE`.
-    """
+    """The splines of more than one span, in order. Lemma 2 has an interval for all of their vertices."""
     where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[:, :2], pieces.tangents
     spans, closed = where[:, SPANS], where[:, CLOSED] > 0
     arcs: dict[int, Interpolation] = {}
-    for fallback, which in (("knot", closed), ("knot", (spans > 2) & ~closed), ("peak", (spans == 2) & ~closed)):
+    for which in (closed, (spans > 1) & ~closed):
         chosen = np.flatnonzero(which).tolist()
         if not chosen:
             continue
@@ -253,7 +250,7 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
             found = interpolate_many(
                 [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
                 end_tangents=None if ring else [(t[0], t[1]) for t in tangents[chosen]], threads=1,
-                margin=options.margin, fallback=fallback, residual_tolerance=options.solver_tolerance,
+                margin=options.margin, residual_tolerance=options.solver_tolerance,
                 max_iterations=options.max_iterations, closed=ring,
             )  # fmt: skip
         except PolygonError as error:

@@ -17,13 +17,8 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, length, newton_step
+from ...interpolation.kernels.one_interval import add_fixed, margin_at, near_end, one_interval
 from ...types import FloatArray, IntArray
-
-PEAK_SHARE = 0.9
-"""Required share of a basis function's peak in arcs of two spans, whose one free vertex peaks at 1/2 at most.
-
-Lemma 2 has no interval there and needs none: each step multiplies the error of a single vertex by 1 - B_i < 1.
-"""
 
 SHORT = 0.01
 """Share of a span below which Newton's step to a footpoint, of a vertex or of a sample, is the last."""
@@ -167,12 +162,18 @@ def set_beziers(curve: Curve) -> None:
 @compiled(internal=True)
 def cold_start(curve: Curve, margin: float) -> None:
     """The vertices as control points, the intervals of Lemma 2, and footpoints at the knots where these allow it."""
-    k, (first, stop) = curve.size[0], inner_vertices(curve)
-    share = PEAK_SHARE if k == 2 and not curve.size[1] else 1.0
+    k, closed, (first, stop) = curve.size[0], curve.size[1], inner_vertices(curve)
+    before, after = np.empty(4), np.empty(4)
     for i in range(first, stop):
         curve.X[i + 1, 0], curve.X[i + 1, 1] = curve.p[i, 0], curve.p[i, 1]
-        before = i - 1 if i > 0 else k - 1
-        low, high = lemma2_interval(curve.W[before, :, 2], curve.W[i, :, 1], margin, share)
+        last = i - 1 if i > 0 else k - 1
+        for r in range(4):
+            before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
+        c = margin
+        if not closed and near_end(i, k + 1):
+            add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)
+            c = margin_at(i, k + 1, margin)
+        low, high, _, _ = one_interval(before, after, c, 1.0)
         curve.bounds[i, 0], curve.bounds[i, 1] = low, high
         curve.t[i] = min(max(0.0, low), high)
 
@@ -235,89 +236,3 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
         return np.inf
     cold_start(curve, margin)
     return iterate(curve, tolerance, MOST_PASSES)
-
-
-@compiled(internal=True)
-def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
-    y = 1 - x
-    return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
-
-
-@compiled(internal=True)
-def _within(x: float, f: float, slope: float, low: float, high: float) -> float:
-    """Newton's next estimate of a zero between ``low`` and ``high``, or their middle where that leads out of them."""
-    new = x - f / slope if slope != 0 else (low + high) / 2
-    return new if low < new < high else (low + high) / 2
-
-
-@compiled(internal=True)
-def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
-    """Where a cubic that is monotone on [low, high] takes a value between those at the ends."""
-    rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)
-    x = (low + high) / 2
-    for _ in range(60):
-        f = _bernstein(c0, c1, c2, c3, x) - level
-        if (f > 0) == rising:
-            high = x
-        else:
-            low = x
-        y = 1 - x
-        slope = 3 * (y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2))
-        new = _within(x, f, slope, low, high)
-        if abs(new - x) < 1e-12:
-            return new
-        x = new
-    return x
-
-
-@compiled(internal=True)
-def _top(c0: float, c1: float, c2: float, c3: float) -> float:
-    """Local parameter of the maximum of a cubic whose derivative changes sign once on [0, 1]."""
-    low, high = 0.0, 1.0
-    x = 0.5
-    for _ in range(40):
-        y = 1 - x
-        slope = y * y * (c1 - c0) + 2 * x * y * (c2 - c1) + x * x * (c3 - c2)
-        if slope > 0:
-            low = x
-        else:
-            high = x
-        bend = 2 * (y * ((c2 - c1) - (c1 - c0)) + x * ((c3 - c2) - (c2 - c1)))
-        new = _within(x, slope, bend, low, high)
-        if abs(new - x) < 1e-12:
-            return new
-        x = new
-    return x
-
-
-@compiled(internal=True)
-def lemma2_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float]:
-    """Lemma 2 for one vertex: where B_i ≥ 1/2 + c, or all of its peak if that is lower.
-
-    Args:
-        a, b: (4,) Bernstein coefficients of B_i on the span before u_i and on the span after it.
-        margin: c of the lemma.
-        share: below 1, limit the level to this share of the peak (``fallback="peak"``); 1 is ``fallback="knot"``.
-
-    Returns:
-        The interval's ends, each as a signed share of its span (-1 is u_{i-1}, +1 is u_{i+1}).
-    """
-    right = b[1] > b[0]
-    c = b if right else a
-    x = _top(c[0], c[1], c[2], c[3])
-    peak, top = x - (0.0 if right else 1.0), _bernstein(c[0], c[1], c[2], c[3], x)
-    if share == 1.0 and top <= 0.5:
-        return 0.0, 0.0
-    level = min(0.5 + margin, share * top)
-    low, high = -1.0, 1.0
-    if a[0] < level:
-        before = a[3] >= level or not right  # B_i rises to the level on the span before u_i
-        c = a if before else b
-        stop = 1.0 if a[3] >= level and right else (peak if right else peak + 1)
-        low = _crossing(c[0], c[1], c[2], c[3], level, 0.0, stop) - (1.0 if before else 0.0)
-    if b[3] < level:
-        after = b[0] >= level or right
-        c = b if after else a
-        start = 0.0 if b[0] >= level and not right else (peak if right else peak + 1)
-        high = _crossing(c[0], c[1], c[2], c[3], level, start, 1.0) - (0.0 if after else 1.0)
-    return low, high

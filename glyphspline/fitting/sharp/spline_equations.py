@@ -22,9 +22,6 @@ from .spline_curve import Curve, empty_curve, inner_vertices, span_weights
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
 
-END_RATIO = 3.0
-"""The same for the first two and the last two pairs of chords of an arc, whose end controls take part of the peak."""
-
 RATIO_ROOM = 0.85
 """Ratios above this share of the bound are held back."""
 
@@ -126,7 +123,7 @@ def shift_knot(curve: Curve, i: int, delta: float) -> None:
 def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
-    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny)."""
+    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny); of the matrix its lower half."""
     for u in range(8):
         J[u] = 0.0
     for r in range(4):
@@ -137,7 +134,7 @@ def _add_row(
         gram[8, u] += weight * e * J[u]
     for u in range(8):
         scaled = weight * J[u]
-        for v in range(8):
+        for v in range(u + 1):
             gram[u, v] += scaled * J[v]
 
 
@@ -165,19 +162,16 @@ def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
             nx, ny = middle_normal(curve.b[s])
             wanted = -third_along(curve.b, s, nx, ny)
             _add_row(gram[s], J, moves[s], B, nx, ny, wanted, wobble / curve.h[s + 2] ** 5)
-
-
-@compiled(internal=True)
-def largest_ratio(curve: Curve, s: int) -> float:
-    """Bound on the ratio of intervals s and s - 1."""
-    at_end = not curve.size[1] and min(s, curve.size[0] - s) <= 2
-    return END_RATIO if at_end else LARGEST_RATIO
+    for s in range(k):
+        for u in range(8):
+            for v in range(u):
+                gram[s, v, u] = gram[s, u, v]
 
 
 @compiled(internal=True)
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
-    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * largest_ratio(curve, s))
+    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * LARGEST_RATIO)
     return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
 
 

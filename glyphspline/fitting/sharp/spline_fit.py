@@ -14,7 +14,7 @@ from ...types import FloatArray
 from .cholesky import solve
 from .feet import Samples, copy_rows, measure, measure_afresh
 from .spline_curve import Curve, copy_curve, inner_vertices, interpolate_cold, iterate, set_knots
-from .spline_equations import Fit, add_all, differentiate, equations, largest_ratio, objective, place_of
+from .spline_equations import LARGEST_RATIO, Fit, add_all, differentiate, equations, objective, place_of
 
 WARM_PASSES, WARM = 12, 0.02
 """Passes of variant 2 after a step, and the share of the tolerance below which its error is small enough."""
@@ -92,8 +92,8 @@ def is_graded(curve: Curve) -> bool:
     first, stop = inner_vertices(curve)
     good = True
     for s in range(first, stop):
-        a, b, most = curve.h[s + 1], curve.h[s + 2], largest_ratio(curve, s)
-        good = good and a <= most * b and b <= most * a
+        a, b = curve.h[s + 1], curve.h[s + 2]
+        good = good and a <= LARGEST_RATIO * b and b <= LARGEST_RATIO * a
     return good
 
 

@@ -26,6 +26,12 @@ SOME_MORE = 30.0
 STARTS = 3
 """First guesses, each with more vertices, before a stretch is given up."""
 
+PATIENCE = 12
+"""Insertions after a first guess from which on all spans that miss the tolerance are cut.
+
+On long stretches of fine detail very many miss it by little, and would get two or three vertices at a time.
+"""
+
 BEGIN, INSERT, REMOVE, RESTART = 0, 1, 2, 3
 """What is tried: a first guess, more vertices, one vertex less, a new guess with one less."""
 
@@ -119,6 +125,7 @@ def find_spline(
         return 0, np.inf
     tried, costs = np.zeros(len(fit.gram) + 1, dtype=np.bool_), np.empty(len(fit.gram))
     what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
+    insertions = 0 * n
     best_error = last = np.inf
     while True:
         # What is tried, in ``curve``.
@@ -128,7 +135,8 @@ def find_spline(
         elif what in (BEGIN, RESTART):
             possible = place_vertices(curve, samples, directions, guess, len(fit.gram) - 1)
         elif what == INSERT:
-            possible = insert_vertices(fit, near, search)
+            insertions += 1
+            possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
         else:
             remove_vertex(curve, best, at)
         error = np.inf
@@ -151,7 +159,7 @@ def find_spline(
             if what == BEGIN:
                 if starts == STARTS or given > 1:
                     return 0, np.inf
-                guess, starts, slow = max(wanted, guess + 2) + starts - 1, starts + 1, 0
+                guess, starts, slow, insertions = max(wanted, guess + 2) + starts - 1, starts + 1, 0, 0 * n
             continue
         # What is tried next: to take out a vertex. After a pass over all of them another one, if it took out any; if
         # not, a new guess with one less.
@@ -216,15 +224,19 @@ def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: in
 
 
 @compiled(internal=True)
-def insert_vertices(fit: Fit, near: float, search: Search) -> bool:
-    """Cut the worst spans in two, no two adjacent ones; False if there is no room for more."""
+def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
+    """Cut the worst spans in two, no two adjacent ones; False if there is no room for more.
+
+    Args:
+        growth: power of a span's error with which vertices are added; with infinity all that miss the tolerance are.
+    """
     curve, trial = fit.curve, fit.trial
     k, closed = curve.size[0], curve.size[1]
     errors = span_errors(fit.rows, k)
     wanted = 0.0
     for s in range(k):
         if errors[s] > near:
-            wanted += min((errors[s] / near) ** search.growth - 1, 1.0)
+            wanted += min((errors[s] / near) ** growth - 1, 1.0)
     count = min(max(int(np.rint(wanted)), 1), len(fit.gram) - 1 - k)
     if count <= 0:
         return False

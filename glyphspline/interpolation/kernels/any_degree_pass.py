@@ -16,6 +16,7 @@ from ...types import FloatArray, IntArray
 from ..intervals import BISECTIONS
 from ..method import TIE_DISTANCE
 from .footpoint import MAX_DEGREE, WORK, search_piece
+from .one_interval import end_interval, near_end, value_at_knot
 
 KNOTS = MAX_DEGREE + 2
 """Maximum number of knots in the support of a basis function."""
@@ -196,8 +197,9 @@ def _bisected(w: FloatArray, spans: int, inside: float, outside: float, level: f
 
 @compiled
 def search_bounds(
-    windows: FloatArray, centres: FloatArray, variant: int, margin: float, peak_share: float, bounds: FloatArray
-) -> tuple[int, float]:
+    windows: FloatArray, centres: FloatArray, variant: int, margin: float, peak_share: float, h: FloatArray,
+    natural: FloatArray, bounds: FloatArray,
+) -> tuple[int, float]:  # fmt: skip
     """Write the search interval of each footpoint to ``bounds``, by the rules and bisections of ``intervals.py``.
 
     Returns the number of fallbacks and the least value of a B_i on its interval.
@@ -206,12 +208,25 @@ def search_bounds(
         windows: (n, degree + 2) the knots of each basis function.
         centres: (n,) the parameter of each vertex.
         peak_share: of ``fallback="peak"``, else 0.
+        h: knot intervals of an arc between two of no length at either end; () of a closed curve.
+        natural: (2,) weights of an arc's natural ends, 0 for end tangents.
     """
     N = np.empty(KNOTS)
-    spans = windows.shape[1] - 1
-    fallbacks, least = 0, 1.0
+    spans, n = windows.shape[1] - 1, windows.shape[0] + 2
+    fallbacks, least, share = 0, 1.0, peak_share if peak_share > 0.0 else 1.0
     for i in range(windows.shape[0]):
         w = windows[i]
+        if len(h) > 0 and variant > 1 and near_end(i + 1, n):
+            if variant == 3:
+                bounds[i, 0] = bounds[i, 1] = centres[i]
+                least = min(least, value_at_knot(h, i + 2, i + 1, n, natural[0], natural[1]))
+                continue
+            left, right, value, found = end_interval(h, i + 2, i + 1, n, natural[0], natural[1], margin, share)
+            if found:
+                bounds[i, 0] = w[2] + left * (w[2] - w[1] if left < 0.0 else w[3] - w[2])
+                bounds[i, 1] = w[2] + right * (w[2] - w[1] if right < 0.0 else w[3] - w[2])
+                least = min(least, value)
+                continue
         if variant == 0:
             low, high = w[0], w[spans]
         elif variant == 1:

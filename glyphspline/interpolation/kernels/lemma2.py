@@ -13,10 +13,11 @@ import numpy as np
 from ...compiled import compiled, fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
-    BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, ONE, PAD, POLYGON, STRIDE, THREE, TWO,
-    WIDTH, Given, Group, X, lanes_used, whole_vectors,
+    BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, NATURAL, ONE, PAD, POLYGON, STRIDE, THREE,
+    TWO, WIDTH, Given, Group, X, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
+from .one_interval import end_interval, near_end, value_at_knot
 
 # Fields of the scratch block: top, right, left side; the two problems: coefficients, bracket and estimate of each.
 TOP, R1, R2, R3, L1, L2, L3, PEAK, HIGHEST, LEVEL, RISING = (np.uint64(k * STRIDE) for k in range(11))
@@ -144,6 +145,27 @@ def _interval(
 
 
 @compiled(internal=True)
+def _end_interval(
+    given: Given, group: Group, q: int, h: FloatArray, k: int, i: int, low: float, high: float, value: float,
+    missing: bool,
+) -> tuple[float, float, float, bool]:  # fmt: skip
+    """What :func:`_interval` has, for vertex i of an arc near its end; low, …, missing are what B_i alone gives.
+
+    h[k] is the knot interval two before u_i.
+    """
+    n, row, share = group.table[q, COUNT], group.numbers[q], given.peak_shares[group.table[q, POLYGON]]
+    first, last = row[NATURAL], row[NATURAL + 1]
+    if given.variant == 3:
+        return low, high, value_at_knot(h, k + 1, i, n, first, last), missing
+    left, right, least, found = end_interval(h, k + 1, i, n, first, last, given.margin, share if share > 0.0 else 1.0)
+    if not found:
+        return low, high, value, missing
+    left *= h[k + 1] if left < 0.0 else h[k + 2]
+    right *= h[k + 1] if right < 0.0 else h[k + 2]
+    return left, right, least, False
+
+
+@compiled(internal=True)
 def fill_intervals(given: Given, group: Group, slots: int) -> None:
     """Write search intervals, relative to their knots, to the blocks; fallbacks and least values of B_i to the group.
 
@@ -175,6 +197,10 @@ def fill_intervals(given: Given, group: Group, slots: int) -> None:
                     low, high, value, missing = _interval(
                         S, lane, h[i], h[i + 1], h[i + 2], h[i + 3], given.variant, given.peak_shares[k]
                     )
+                    if not given.closed and given.variant > 1 and near_end(at + i, n):
+                        low, high, value, missing = _end_interval(
+                            given, group, q, h, i, at + i, low, high, value, missing
+                        )
                     group.table[q, FALLBACKS] += missing
                     group.numbers[q, LEAST] = min(group.numbers[q, LEAST], value)
                 block[LOW + lane], block[HIGH + lane], block[X + lane] = low, high, 0.0
