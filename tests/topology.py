@@ -181,7 +181,9 @@ def defects(written: Drawing | str, source: Drawing) -> tuple[dict[tuple[int, in
     if len(result.contours) != len(source.contours):
         raise ValueError(f"{len(result.contours)} contours are written, of {len(source.contours)}")
     given = crossings(source)
-    more = {pair: count - given.get(pair, 0) for pair, count in crossings(result).items()}
+    # Two closed curves cross an even number of times. If it is odd, they change sides along a stretch they share.
+    whole = {pair: count + (count % 2 if pair[0] != pair[1] else 0) for pair, count in given.items()}
+    more = {pair: count - whole.get(pair, 0) for pair, count in crossings(result).items()}
     areas = [(area(result, k), area(source, k)) for k in range(len(source.contours))]
     collapsed = [k for k, (own, its) in enumerate(areas) if its and own * its <= 0 and (k, k) not in given]
     return {pair: count for pair, count in more.items() if count > 0}, collapsed

@@ -9,6 +9,7 @@ the strands cross a small circle around the end.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -17,11 +18,17 @@ from ..types import FloatArray, IntArray
 RADIUS = 2e-5
 """Radius of that circle, as a share of the extent: far above the chord errors, far below what a contour draws."""
 
+POINT = 1e-2
+"""A contact shorter than this share of the radius is a point."""
+
 TIED = 1e-8
 """Directions nearer to each other than this, in radians, are the same."""
 
 RECENT = 8
 """Ends of chords at the end of a contact that the next pair of chords may hang on."""
+
+STEPS = 32
+"""Points of a piece that are looked at for where it leaves the circle first."""
 
 HALVINGS = 50
 """Of an interval of parameters, for the point at which a strand crosses the circle."""
@@ -41,23 +48,32 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
     radius = RADIUS * float(np.abs(cubics).max())
     found = []
     for c, d in sorted({(int(c), int(d)) for c, d in touching[:, :2]}):
-        one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]], radius) for k in (c, d))
+        one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
         for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
-            if c == d and contact.is_fold(one, radius):
-                continue
             (a, b), (a_end, b_end) = contact.begin, contact.end
+            small = radius
+            if c == d:  # the strands may be the two sides of a fold, or of a small loop
+                small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
+                if small < radius and abs(one.way(a, a_end)) > POINT * radius:
+                    continue
             along = other.way(b, b_end) >= 0
-            sides = _is_left(one, a, other, b, not along), _is_left(one, a_end, other, b_end, along)
+            sides = _is_left(one, a, other, b, not along, small), _is_left(one, a_end, other, b_end, along, small)
             if None not in sides and sides[0] != sides[1]:
                 found.append((c, d, a, b))
     return np.array(found, dtype=np.float64).reshape(-1, 4)
 
 
+def _weights(x: FloatArray) -> FloatArray:
+    """(k, 4) the cubic Bernstein polynomials at parameters (k,)."""
+    y = 1 - x
+    return np.stack([y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x], axis=1)
+
+
 class _Strand:
     """A contour along which one walks."""
 
-    def __init__(self, cubics: FloatArray, radius: float) -> None:
-        self.cubics, self.radius = cubics, radius
+    def __init__(self, cubics: FloatArray) -> None:
+        self.cubics = cubics
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
         self.lengths = np.concatenate([[0.0], np.cumsum(legs)])
 
@@ -70,27 +86,36 @@ class _Strand:
         total = self.lengths[-1]
         return float((self.position(to) - self.position(place) + total / 2) % total - total / 2)
 
+    def reach(self, place: float, to: float) -> float:
+        """How far the contour goes from a place on the shorter way to another one."""
+        m = len(self.cubics)
+        low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
+        high += m * (high < low)
+        ends = [low, *range(int(low) + 1, int(np.ceil(high))), high]
+        places = np.concatenate([np.linspace(a, b, STEPS) for a, b in pairwise(ends)])
+        points = np.array([self.at(p % m) for p in places.tolist()])
+        return float(np.hypot(*(points - self.at(place)).T).max())
+
     def at(self, place: float) -> FloatArray:
         s = min(int(place), len(self.cubics) - 1)
-        x = place - s
-        weights = np.array([(1 - x) ** 3, 3 * (1 - x) ** 2 * x, 3 * (1 - x) * x * x, x**3])
-        point: FloatArray = weights @ self.cubics[s]
+        point: FloatArray = _weights(np.array([place - s]))[0] @ self.cubics[s]
         return point
 
-    def direction(self, centre: FloatArray, place: float, forward: bool) -> float:
-        """Angle, seen from ``centre``, at which the contour leaves the circle around it, from a place on."""
+    def direction(self, centre: FloatArray, place: float, forward: bool, radius: float) -> float:
+        """Angle, seen from ``centre``, at which the contour leaves a circle around it, from a place on."""
         m, s = len(self.cubics), min(int(place), len(self.cubics) - 1)
-        x = place - s
+        inside = place - s
         for _ in range(m + 1):
-            end = 1.0 if forward else 0.0
-            if np.hypot(*(self.at(s + end) - centre)) >= self.radius:
+            steps = np.linspace(inside, 1.0 if forward else 0.0, STEPS + 1)[1:]
+            away = np.hypot(*(_weights(steps) @ self.cubics[s] - centre).T) >= radius
+            if away.any():
+                first = int(away.argmax())
+                inside, outside = steps[first - 1] if first else inside, steps[first]
                 break
-            s = (s + (1 if forward else -1)) % m
-            x = 0.0 if forward else 1.0
-        inside, outside = x, end
+            s, inside, outside = (s + (1 if forward else -1)) % m, 0.0 if forward else 1.0, inside
         for _ in range(HALVINGS):
             middle = (inside + outside) / 2
-            if np.hypot(*(self.at(s + middle) - centre)) < self.radius:
+            if np.hypot(*(self.at(s + middle) - centre)) < radius:
                 inside = middle
             else:
                 outside = middle
@@ -104,10 +129,6 @@ class _Contact:
     begin: tuple[float, float]
     end: tuple[float, float]
     covered: list[float]
-
-    def is_fold(self, strand: _Strand, radius: float) -> bool:
-        """Whether the contour goes from the one strand to the other within the contact."""
-        return any(abs(strand.way(a, b)) <= 4 * radius for a, b in (self.begin, self.end))
 
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
@@ -132,11 +153,11 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     return found
 
 
-def _is_left(one: _Strand, a: float, other: _Strand, b: float, forward: bool) -> bool | None:
+def _is_left(one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float) -> bool | None:
     """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
     centre = one.at(a)
-    ahead, back = (one.direction(centre, a, way) for way in (True, False))
-    leaves = other.direction(centre, b, forward)
+    ahead, back = (one.direction(centre, a, way, radius) for way in (True, False))
+    leaves = other.direction(centre, b, forward, radius)
     whole = 2 * np.pi
     if any(abs((leaves - x + np.pi) % whole - np.pi) <= TIED for x in (ahead, back)):
         return None
