@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Literal
 
 import numpy as np
+from scipy.optimize import brentq
 
 from glyphspline.interpolation.intervals import basis_function, peaks
 from glyphspline.types import BoolArray, FloatArray, IntArray
@@ -291,13 +292,8 @@ def corners_of(degree: int, ratio: float, constraint: Constraint) -> tuple[Float
 
 
 def crossing(degree: int, constraint: Constraint) -> float:
-    """The ratio at which the smallest peak at a corner is 1/2, by bisection to the last digit."""
-    low, high = 1.0, 1e6
-    while True:
-        middle = float(np.sqrt(low * high))
-        if not low < middle < high:
-            return middle
-        low, high = (middle, high) if worst_corner(degree, middle, constraint)[0] > 0.5 else (low, middle)
+    """The ratio at which the smallest peak at a corner is 1/2, to double precision."""
+    return float(brentq(lambda ratio: worst_corner(degree, ratio, constraint)[0] - 0.5, 1, 100, xtol=1e-15, rtol=1e-15))
 
 
 POLYNOMIALS: dict[tuple[int, Constraint], tuple[int, ...]] = {
@@ -348,7 +344,7 @@ def threshold(degree: int, constraint: Constraint) -> Threshold | None:
     The ratio is found at the corners. The whole box, a little enlarged, is then examined at that ratio: its boxes have
     peaks above 1/2, or values that grow from a corner of peak 1/2.
     """
-    if worst_corner(degree, 1e6, constraint)[0] > 0.5:
+    if worst_corner(degree, 100, constraint)[0] > 0.5:
         return None
     ratio = crossing(degree, constraint)
     boxes = certify(degree, ratio * (1 + ISOLATED), constraint, corners=True)

@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from glyphspline.curves.bspline import DEGREES
-
 from glyphspline.types import FloatArray
 
 from .certified import crossing

@@ -1,4 +1,4 @@
-"""Algorithms 2 and 3 in the paper's plain way: ``numpy.roots`` on the few pieces that an interval meets, vertex by vertex.
+"""Algorithms 2 and 3 in the paper's plain way: ``numpy.roots`` on the pieces that an interval meets, vertex by vertex.
 
 One routine finds the footpoint of one vertex, whatever the variant and the order of updates, so that the times of the
 variants can be compared (Fig. 4), and so that control points can be moved in any order.
@@ -65,8 +65,12 @@ class LocalMethod:
                     found.append(Piece(self._controls[k], self._to_powers[k], start, h, *x.tolist()))
         return found
 
-    def footpoint(self, P: FloatArray, i: int) -> tuple[float, FloatArray]:
-        """The parameter of vertex i's footpoint on the curve with control points P, and the deviation there."""
+    def candidates(self, P: FloatArray, i: int) -> tuple[FloatArray, FloatArray]:
+        """Parameters where vertex i may have its footpoint on the curve of P, and the squared distances there."""
+        parameters, deviations = self._candidates(P, i)
+        return np.array(parameters), np.square(deviations).sum(axis=1)
+
+    def _candidates(self, P: FloatArray, i: int) -> tuple[list[float], list[FloatArray]]:
         parameters, deviations = [], []
         for piece in self._pieces[i]:
             c = piece.to_powers @ P[piece.controls]
@@ -79,6 +83,11 @@ class LocalMethod:
             for y in x:
                 parameters.append(piece.start + piece.length * y)
                 deviations.append(-(((c[0] * y + c[1]) * y + c[2]) * y + c[3]))
+        return parameters, deviations
+
+    def footpoint(self, P: FloatArray, i: int) -> tuple[float, FloatArray]:
+        """The parameter of vertex i's footpoint on the curve of P, and the deviation of the vertex there."""
+        parameters, deviations = self._candidates(P, i)
         squared = np.square(deviations).sum(axis=1)
         tied = np.flatnonzero(squared <= squared.min() * (1 + TIE))
         best = min(tied.tolist(), key=lambda k: abs(parameters[k] - float(self.centres[i])))
@@ -127,6 +136,6 @@ def order_of(variant: int, n: int) -> list[list[int]]:
 
 
 def _slope(c: FloatArray) -> list[float]:
-    """Half the derivative of the squared length of a cubic with vector coefficients c (descending powers): a quintic."""
+    """Half the derivative of the squared length of a cubic with vector coefficients c (descending powers)."""
     (aa, ab, ac, ad), (_, bb, bc, bd), (_, _, cc, cd), _ = (c @ c.T).tolist()
     return [3 * aa, 5 * ab, 4 * ac + 2 * bb, 3 * (ad + bc), 2 * bd + cc, cd]

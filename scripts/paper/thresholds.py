@@ -98,8 +98,8 @@ def _least_peaks(run: Run) -> None:
             },
         },
         "proven for cubics with simple knots",
-        "Peaks are rounded down and factors up: what is written is what is proven. The factor is the one that Theorem 2 "
-        "gives with that margin. Without a bound on the ratio peaks exceed 4/9, and no larger number will do: in the "
+        "Peaks are rounded down and factors up: what is written is what is proven. The factor is the one that Theorem "
+        "2 gives with that margin. Without a bound on the ratio peaks exceed 4/9, and no larger number will do: in the "
         "worst case both outer intervals vanish, and the peak on the knots 0, 0, s, 1, 1 is 4s/(1 + 2s)² for s ≥ 1/2, "
         "never above 1/2. The last entries compare with nearly such knots.",
         "thresholds",
