@@ -51,14 +51,15 @@ def predicted_rate(r: gs.Interpolation, in_turn: bool) -> float:
     n = len(B)
     N = unit_normals(r.spline, r.parameters)
     onto = np.where(at_an_end(r)[:, None, None], np.eye(2), N[:, :, None] * N[:, None, :])
-    Q = np.zeros((n, 2, n, 2))
-    Q[np.arange(n), :, np.arange(n), :] = onto
-    Q = Q.reshape(2 * n, 2 * n)
+    blocks = np.zeros((n, 2, n, 2))
+    blocks[np.arange(n), :, np.arange(n), :] = onto
+    Q = blocks.reshape(2 * n, 2 * n)
     A = Q @ np.kron(B, np.eye(2)) @ Q
     if not in_turn:
         return spectral_radius(Q - A)
     before = np.kron(np.tri(n, n, -1), np.ones((2, 2))) * A
-    return spectral_radius(np.linalg.solve(np.eye(2 * n) + before, Q - (A - before)))
+    sweep = np.linalg.solve(np.eye(2 * n) + before, Q - (A - before))
+    return spectral_radius(np.asarray(sweep, dtype=np.float64))
 
 
 def observed_rate(r: gs.Interpolation) -> float:
@@ -190,7 +191,7 @@ def _rate_of_random_limit(rng: np.random.Generator, reach: float, n: int = 6) ->
     B = Spline(np.zeros((n, 2)), knots).basis(t)
     if np.linalg.cond(B) > 1e6:
         return 0.0
-    spline = Spline(np.linalg.solve(B, rng.uniform(0, 5, (n, 2))), knots)
+    spline = Spline(np.asarray(np.linalg.solve(B, rng.uniform(0, 5, (n, 2))), dtype=np.float64), knots)
     N = unit_normals(spline, t)
     return spectral_radius(np.eye(n) - B * (N @ N.T))
 
