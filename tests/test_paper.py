@@ -15,7 +15,7 @@ import glyphspline as gs
 from glyphspline.interpolation.intervals import basis_function
 from scripts.paper.certified import certify, enclose, family, peak_values, threshold, windows_of, worst_corner
 from scripts.paper.clicking import CHARACTERS, DATA, FONTS, clicked_character
-from scripts.paper.common import VERDICTS, Run, random_polygons
+from scripts.paper.common import Run, is_verdict, random_polygons
 from scripts.paper.fairness import curves_of, quality, self_crossings
 from scripts.paper.report import numbers_missing, show
 from scripts.paper.steps import STEPS, reproduce
@@ -40,7 +40,7 @@ def test_every_claim_has_the_schema(quick: Path) -> None:
     assert {"corollary-1", "fig-1-failures", "fig-2-variant-0-share", "fig-3-mean-iterations"} <= set(claims)
     for c in claims.values():
         assert set(c) == {"id", "source", "claim", "paper", "measured", "verdict", "note", "command"}
-        assert c["verdict"] in VERDICTS
+        assert is_verdict(c["verdict"])
         assert c["command"].rsplit(" ", 1)[1] in STEPS
         for number in _numbers(c["measured"]):
             assert math.isfinite(number), c["id"]
@@ -105,19 +105,6 @@ def test_running_one_step_keeps_the_claims_of_the_others(quick: Path, tmp_path: 
     (tmp_path / "claims.json").write_bytes((quick / "claims.json").read_bytes())
     reproduce(Run(tmp_path, quick=True), ["fig1"])
     assert list(claims_of(tmp_path)) == list(claims_of(quick))
-
-
-@pytest.mark.parametrize(("constraint", "expected"), [("box", 10.258), ("adjacent", 6.159)])
-def test_thresholds_of_cubics(constraint: Any, expected: float) -> None:
-    found = threshold(3, constraint)
-    assert found is not None
-    assert found.low < found.high < found.low * (1 + 1e-6)
-    assert found.low == pytest.approx(expected, abs=1e-3)
-    # Just above, a whole neighbourhood cannot be proven: here a counter-example with a plain, independent evaluation.
-    h = np.array([found.intervals])
-    t = np.linspace(0, h.sum(), 200_001)
-    values = basis_function(np.repeat(windows_of(h), len(t), axis=0), t)
-    assert values.max() < 0.5
 
 
 @pytest.mark.parametrize("degree", [3, 4, 5])

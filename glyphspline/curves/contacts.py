@@ -18,7 +18,7 @@ from ..types import FloatArray, IntArray
 RADIUS = 2e-5
 """Radius of that circle, as a share of the extent: far above the chord errors, far below what a contour draws."""
 
-POINT = 1e-2
+POINT = 0.1
 """A contact shorter than this share of the radius is a point."""
 
 TIED = 1e-8

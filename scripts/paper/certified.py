@@ -9,12 +9,14 @@ lengths, so that it and its gradient can be enclosed by interval arithmetic.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal
 
 import numpy as np
+from scipy.optimize import brentq
 
 from glyphspline.interpolation.intervals import basis_function, peaks
-from glyphspline.types import FloatArray, IntArray
+from glyphspline.types import BoolArray, FloatArray, IntArray
 
 Constraint = Literal["box", "adjacent"]
 
@@ -22,6 +24,15 @@ SLACK = 1e-11
 """Rounding allowance on every bound: some 50 additions and products of numbers in [0, 1] err by less than 1e-13."""
 
 MAX_BOXES = 4_000_000
+
+AT_TARGET = 1e-9
+"""How near a corner's peak has to be to the target for its box to be examined as the worst one."""
+
+STRICT = 1e-6
+"""Slopes beyond it have a sign whatever rounding does: to the slopes, by ``SLACK``, or to the place of the peak."""
+
+ISOLATED = 1e-12
+"""Relative half width of the interval around a threshold: its rounding is some 1e-15."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,14 +184,29 @@ def _bounds_at(
     h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
     h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
     box = enclose(h_low, h_high, span, fraction)
-    slope_low = box.slope_low @ positive + box.slope_high @ negative
-    slope_high = box.slope_high @ positive + box.slope_low @ negative
+    slope_low, slope_high = _along_box(f, box)
     at = np.where(slope_low >= 0, low, np.where(slope_high <= 0, high, (low + high) / 2))
     mixed = (slope_low < 0) & (slope_high > 0)
     loss = np.where(mixed, np.maximum(-slope_low, slope_high), 0.0) * (high - low) / 2
     h = np.exp(at @ f.A.T + f.offset)
     value = enclose(h, h, span, fraction).low - loss.sum(axis=1)
     return np.maximum(value, box.low) - SLACK, np.argmax((slope_high - slope_low) * (high - low), axis=1)
+
+
+def _along_box(f: Family, box: Enclosure) -> tuple[FloatArray, FloatArray]:
+    """Bounds of the slopes along the directions of the family's box, from those by the intervals' logarithms."""
+    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
+    return box.slope_low @ positive + box.slope_high @ negative, box.slope_high @ positive + box.slope_low @ negative
+
+
+def _slope_bounds(
+    f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Bounds of the slopes, on each box, of the value at ``fraction`` of ``span``."""
+    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
+    h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
+    h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
+    return _along_box(f, enclose(h_low, h_high, span, fraction))
 
 
 def _slopes(f: Family, y: FloatArray) -> FloatArray:
@@ -195,8 +221,15 @@ def _slopes(f: Family, y: FloatArray) -> FloatArray:
     return slopes
 
 
-def certify(degree: int, ratio: float, constraint: Constraint, target: float = 0.5) -> int | None:
+def certify(
+    degree: int, ratio: float, constraint: Constraint, target: float = 0.5, corners: bool = False
+) -> int | None:
     """Prove that every basis function allowed by the ratio peaks above ``target``.
+
+    Args:
+        corners: settle also the boxes at whose worst corner the peak is the target within ``AT_TARGET``, if the value
+            of the basis function grows strictly from there along every direction. What is proven then: no peak is
+            lower than that of such a corner, and a peak as low is found at the corner only.
 
     Returns:
         The number of boxes it took, or None if no proof was found with ``MAX_BOXES``.
@@ -211,6 +244,9 @@ def certify(degree: int, ratio: float, constraint: Constraint, target: float = 0
         bound, direction = lower_bounds(f, low, high)
         left = ~(bound > target)
         low, high, direction = low[left], high[left], direction[left]
+        if corners and len(low):
+            left = ~_grows_from_corner(f, low, high, target)
+            low, high, direction = low[left], high[left], direction[left]
         rows = np.arange(len(low))
         cut = (low[rows, direction] + high[rows, direction]) / 2
         low2, high2 = low.copy(), high.copy()
@@ -219,42 +255,105 @@ def certify(degree: int, ratio: float, constraint: Constraint, target: float = 0
     return count
 
 
+def _grows_from_corner(f: Family, low: FloatArray, high: FloatArray, target: float) -> BoolArray:
+    """(m,) whether a box has a corner of the family whose peak is the target, and the value grows away from it.
+
+    The value is that at the parameter of the corner's peak, in proportion to the intervals: its growth along every
+    direction, over the whole box, leaves no lower peak in the box.
+    """
+    slope = _slopes(f, (low + high) / 2)
+    y = np.where(slope > 0, low, high)
+    outside = ((y == f.low) | (y == f.high)).all(axis=1)
+    h = np.exp(y @ f.A.T + f.offset)
+    candidates = np.flatnonzero(outside & (np.abs(peak_values(h) - target) < AT_TARGET))
+    settled = np.zeros(len(low), dtype=np.bool_)
+    span, fraction = peak_positions(h)
+    for k in candidates:
+        slope_low, slope_high = _slope_bounds(f, low[k : k + 1], high[k : k + 1], int(span[k]), fraction[k : k + 1])
+        upward = np.where(y[k] == low[k], slope_low[0], -slope_high[0])
+        settled[k] = (upward > STRICT).all()
+    return settled
+
+
 def worst_corner(degree: int, ratio: float, constraint: Constraint) -> tuple[float, FloatArray]:
-    """The smallest peak at the corners of the family's box, and the intervals there."""
+    """The smallest peak at the corners of the family's box, and the intervals there, the shortest being 1."""
+    h, values = corners_of(degree, ratio, constraint)
+    worst = h[np.argmin(values)]
+    return float(values.min()), worst / worst.min()
+
+
+def corners_of(degree: int, ratio: float, constraint: Constraint) -> tuple[FloatArray, FloatArray]:
+    """(corners, degree + 1) intervals at the corners of the family's box, and (corners,) the peaks there."""
     f = family(degree, ratio, constraint)
     k = len(f.low)
     choice = (np.arange(2**k)[:, None] >> np.arange(k)) & 1
     h = np.exp(np.where(choice == 1, f.high, f.low) @ f.A.T + f.offset)
-    values = peak_values(h)
-    return float(values.min()), h[np.argmin(values)] / h.min()
+    return h, peak_values(h)
+
+
+def crossing(degree: int, constraint: Constraint) -> float:
+    """The ratio at which the smallest peak at a corner is 1/2, to double precision."""
+    return float(brentq(lambda ratio: worst_corner(degree, ratio, constraint)[0] - 0.5, 1, 100, xtol=1e-15, rtol=1e-15))
+
+
+POLYNOMIALS: dict[tuple[int, Constraint], tuple[int, ...]] = {
+    (3, "box"): (1, -6, -39, -48),
+    (3, "adjacent"): (1, -4, -12, -8),
+    (4, "box"): (1, 0, -12, -8),
+    (4, "adjacent"): (1, 2, -2, -8, -8, -4),
+    (5, "box"): (1, 0, -3, -1),
+    (6, "box"): (945, 1539, -492, -1920, -960, -128),
+    (6, "adjacent"): (6, 43, 145, 304, 428, 390, 144, -208, -480, -544, -416, -224, -80, -16),
+}
+"""Factors, by descending powers, of 1/2 less the peak of the worst corner; docs/proofs.md says how they come about."""
+
+
+def root(coefficients: tuple[int, ...], near: float) -> tuple[float, float]:
+    """Two numbers between which a polynomial with integer coefficients changes its sign, which is decided exactly."""
+    low, high = near * (1 - ISOLATED), near * (1 + ISOLATED)
+
+    def value(x: float) -> Fraction:
+        total = Fraction(0)
+        for c in coefficients:
+            total = total * Fraction(x) + c
+        return total
+
+    if value(low) * value(high) >= 0:
+        raise ArithmeticError(f"no zero of {coefficients} between {low} and {high}")
+    return low, high
 
 
 @dataclass(frozen=True)
 class Threshold:
-    """The largest ratio with every peak above 1/2 lies in (low, high): proven below, with a counter-example above."""
+    """Every peak exceeds 1/2 exactly if the ratio is less than ``ratio``, at which the worst corner has the peak 1/2.
 
-    low: float
-    high: float
+    Attributes:
+        ratio: to double precision.
+        intervals: the worst corner.
+        boxes: examined in the proof.
+    """
+
+    ratio: float
     intervals: tuple[float, ...]
     boxes: int
 
 
-def threshold(degree: int, constraint: Constraint, digits: int = 7) -> Threshold | None:
-    """Where the smallest peak reaches 1/2, to ``digits`` digits; None if corners never sink to it.
+def threshold(degree: int, constraint: Constraint) -> Threshold | None:
+    """Where the smallest peak reaches 1/2; None if corners never sink to it.
 
-    Found by bisection on the corners, then proven for the whole box just below; just above, a corner is the
-    counter-example.
+    The ratio is found at the corners. The whole box, a little enlarged, is then examined at that ratio: its boxes have
+    peaks above 1/2, or values that grow from a corner of peak 1/2.
     """
-    low, high = 1.0, 1e6
-    if worst_corner(degree, high, constraint)[0] > 0.5:
+    if worst_corner(degree, 100, constraint)[0] > 0.5:
         return None
-    for _ in range(100):
-        middle = np.sqrt(low * high)
-        low, high = (middle, high) if worst_corner(degree, middle, constraint)[0] > 0.5 else (low, middle)
-    step = 10.0 ** (1 - digits) * low / 4
-    below, above = low - step, high + step
-    boxes = certify(degree, below, constraint)
-    value, intervals = worst_corner(degree, above, constraint)
-    if boxes is None or value >= 0.5 - SLACK:
-        raise ArithmeticError(f"degree {degree}: no proof for intervals within {below}")
-    return Threshold(float(below), float(above), tuple(float(f"{x:.9g}") for x in intervals), boxes)
+    ratio = crossing(degree, constraint)
+    boxes = certify(degree, ratio * (1 + ISOLATED), constraint, corners=True)
+    if boxes is None:
+        raise ArithmeticError(f"degree {degree}: no proof for intervals within {ratio}")
+    intervals = worst_corner(degree, ratio, constraint)[1]
+    h, peaks_there = corners_of(degree, ratio, constraint)
+    for row in h[peaks_there < 0.5 + AT_TARGET]:
+        row = row / row.min()
+        if not (np.allclose(row, intervals) or np.allclose(row[::-1], intervals)):
+            raise ArithmeticError(f"degree {degree}: another corner at the target, {row}")
+    return Threshold(ratio, tuple(float(f"{x:.9g}") for x in intervals), boxes)

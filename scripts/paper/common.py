@@ -91,7 +91,7 @@ class Claim:
         id, source: a stable name, and where the paper says it.
         claim, paper: in our words, and what the paper reports.
         measured: a number, or a mapping that ends in numbers.
-        verdict: "reproduced", "differs", "not decidable"; or "proven", "measured" for what goes beyond the paper.
+        verdict: one of ``VERDICTS``; or "proven for …" with the hypothesis of the proof.
         note: why it differs, or how it was measured.
         command: what makes it again.
     """
@@ -107,6 +107,12 @@ class Claim:
 
 
 VERDICTS = ("reproduced", "differs", "not decidable", "proven", "measured")
+"""The last two are for what goes beyond the paper; "proven for …" names what a proof supposes."""
+
+
+def is_verdict(text: str) -> bool:
+    """Whether a claim may end with these words."""
+    return text in VERDICTS or text.startswith("proven for ")
 
 
 @dataclass
@@ -153,7 +159,7 @@ class Run:
         digits: int = 6,
     ) -> None:
         """Record a claim; numbers are rounded to ``digits``, so that the last bits of a machine do not show."""
-        if verdict not in VERDICTS:
+        if not is_verdict(verdict):
             raise ValueError(f"verdict {verdict!r} of {id}")
         command = f"python -m scripts.paper --only {module}"
         self.claims.append(Claim(id, source, claim, paper, rounded(measured, digits), verdict, note, command))

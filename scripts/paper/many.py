@@ -35,9 +35,9 @@ def many_vertices(run: Run) -> None:
         measured,
         verdict(max(medians) < 1e-2) if medians else "not decidable",
         f"Medians are over the last {LAST} errors of a run that fails. The paper gives no count, and nothing rules "
-        "such runs out: where a footpoint may lie at B_i below 1/2 the row-sum bound exceeds 1, and it may jump "
-        "between two places. A search that misses a nearly double root, as a test for real roots of roots() can, would "
-        "fluctuate as well.",
+        "such runs out: where a footpoint may lie at B_i below 1/2 the row-sum bound exceeds 1, and some limits repel "
+        "(beyond-fixed-points). A search that misses a nearly double root, as a test for real roots of roots() can, "
+        "would fluctuate as well.",
         "many",
     )
 

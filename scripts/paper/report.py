@@ -38,10 +38,15 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f'| {c["source"]} | <a href="#{c["id"]}">{c["id"]}</a> | {SIGN[c["verdict"]]} {c["verdict"]} |'
+        f'| {c["source"]} | <a href="#{c["id"]}">{c["id"]}</a> | {SIGN[_kind(c["verdict"])]} {c["verdict"]} |'
         for c in claims.values()
     ]
     return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
+
+
+def _kind(verdict: str) -> str:
+    """The verdict without the hypothesis."""
+    return "proven" if verdict.startswith("proven for ") else verdict
 
 
 def block(claim: dict[str, Any]) -> str:

@@ -21,8 +21,10 @@ from . import (
     fig5,
     fig6,
     fig8,
+    lemmas,
     many,
     quality,
+    rates,
     remark3,
     theorems,
     thresholds,
@@ -32,6 +34,7 @@ from .report import write_report
 
 STEPS: dict[str, Callable[[Run], None]] = {
     "theorems": theorems.theorems,
+    "lemmas": lemmas.lemmas,
     "fig1": fig1.figure_1,
     "fig2": fig2.figure_2,
     "many": many.many_vertices,
@@ -43,6 +46,7 @@ STEPS: dict[str, Callable[[Run], None]] = {
     "quality": quality.quality_study,
     "thresholds": thresholds.thresholds,
     "convergence": convergence.convergence,
+    "rates": rates.rates,
     "remark3": remark3.remark_3,
     "degrees": degrees.degrees,
     "arcs": arcs.arcs,

@@ -22,15 +22,20 @@ class Group:
 
     Attributes:
         iterations, converged, error: (polygons,) updates made, whether below the tolerance, the last error.
-        fallbacks: vertices for which Lemma 2 has no interval.
+        without_interval: (polygons,) vertices for which Lemma 2 has no interval.
         control_points: of every result, to tell whether two variants came to the same curve.
     """
 
     iterations: IntArray
     converged: BoolArray
     error: FloatArray
-    fallbacks: int
+    without_interval: IntArray
     control_points: list[FloatArray]
+
+    @property
+    def fallbacks(self) -> int:
+        """Vertices of all polygons for which Lemma 2 has no interval."""
+        return int(self.without_interval.sum())
 
 
 def study_group(polygons: list[FloatArray], variant: int, **options: Any) -> Group:
@@ -42,7 +47,7 @@ def study_group(polygons: list[FloatArray], variant: int, **options: Any) -> Gro
         np.array([r.iterations for r in results]),
         np.array([r.converged for r in results]),
         np.array([r.max_error for r in results]),
-        sum(r.fallbacks for r in results),
+        np.array([r.fallbacks for r in results]),
         [r.spline.control_points for r in results],
     )
 
