@@ -32,10 +32,8 @@ def dimensions(run: Run) -> None:
     for d in tried:
         polygons = np.random.default_rng([SEED, n, d]).uniform(0, SIDE, (count, n, d))
         for v in VARIANTS:
-            results = [
-                interpolate_reference(p, v, residual_tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS)
-                for p in polygons
-            ]
+            limits = {"residual_tolerance": TOLERANCE, "max_iterations": MAX_ITERATIONS}
+            results = [interpolate_reference(p, v, **limits) for p in polygons]
             iterations[f"variant {v}"][str(d)] = float(np.mean([r.iterations for r in results]))
             failures += sum(not r.converged for r in results)
             if v == 2:
@@ -58,9 +56,9 @@ def dimensions(run: Run) -> None:
             "mean ratio of the longest chord to the shortest by d": ratios,
         },
         "proven",
-        f"Vertices uniform in [0, {SIDE:g}]^d, by the plain reference, which takes points of any dimension. Lemma 2 is about "
-        "knots; Theorem 2 uses row sums, and that a nearest point is nearest. Iterations of variant 2 hardly depend on d; "
-        "those of variant 3 become fewer, as chords become more even.",
+        f"Vertices uniform in [0, {SIDE:g}]^d, by the plain reference, which takes points of any dimension. Lemma 2 "
+        "is about knots; Theorem 2 uses row sums, and that a nearest point is nearest. Iterations of variant 2 "
+        "hardly depend on d; those of variant 3 become fewer, as chords become more even.",
         "dimension",
     )
     run.claim(
@@ -71,8 +69,8 @@ def dimensions(run: Run) -> None:
         _masters(run),
         "measured",
         f"The longest contour of a glyph of {FACE}, sampled by {STEP:g} units, with masters made from it by smooth "
-        "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the blended "
-        "vertices; of masters interpolated one by one the blend passes them by.",
+        "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the "
+        "blended vertices; of masters interpolated one by one the blend passes them by.",
         "dimension",
     )
     run.save(_picture(iterations), "dimension", svg=True)

@@ -53,9 +53,9 @@ def approximation_order(run: Run) -> None:
             f"max |t - u| / h at {ends} vertices": {k: o[-1] for k, o in offsets.items()},
         },
         "measured",
-        "Two-sided distance from the curve, sampled. Ellipse: half axes 2 and 1; trefoil: r = 1 + 0.2 cos 3θ. Even: equal "
-        "distances along the curve; graded: between 0.5 and 1.5 of the mean, along a cosine; alternating: 1, 2, 1, 2, …, "
-        "where all variants but variant 3 are of the order h² only.",
+        "Two-sided distance from the curve, sampled. Ellipse: half axes 2 and 1; trefoil: r = 1 + 0.2 cos 3θ. Even: "
+        "equal distances along the curve; graded: between 0.5 and 1.5 of the mean, along a cosine; alternating: 1, "
+        "2, 1, 2, …, where all variants but variant 3 are of the order h² only.",
         "order",
     )
     model = [local_error((1.0, 2.0))]
@@ -75,8 +75,8 @@ def approximation_order(run: Run) -> None:
             },
         },
         "proven",
-        "Proof below: the distance is κ E a² + O(h³) where the curvature is κ and the shorter chord a. The numbers are for "
-        "chords 1:2; κ is the largest curvature of the curve.",
+        "Proof below: the distance is κ E a² + O(h³) where the curvature is κ and the shorter chord a. The numbers "
+        "are for chords 1:2; κ is the largest curvature of the curve.",
         "order",
     )
     run.claim(
@@ -98,7 +98,7 @@ def approximation_order(run: Run) -> None:
     run.claim(
         "beyond-order-greville",
         "Section 4.4",
-        "Another start restores it: control points at the polygon's points of the Greville abscissae, not at the vertices.",
+        "Another start restores it: control points at the polygon's points of the Greville abscissae.",
         "not treated",
         {
             "order": {c: {k: orders[f"{c}, alternating"][k] for k in ("variant 3", GREVILLE)} for c in CURVES},
@@ -107,8 +107,9 @@ def approximation_order(run: Run) -> None:
             },
         },
         "measured",
-        "Variant 2, chords 1:2, beside variant 3. The footpoints then are at the knots up to h³; the reason is below. It is "
-        "measured only, and no option of the package: there the polygon is the first control polygon, as in the paper.",
+        "Variant 2, chords 1:2, beside variant 3. The footpoints then are at the knots up to h³; the reason is "
+        "below. It is measured only, and no option of the package: there the polygon is the first control polygon, "
+        "as in the paper.",
         "order",
     )
     run.save(_picture(counts, errors), "order", svg=True)
