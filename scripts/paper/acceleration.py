@@ -18,11 +18,13 @@ from .common import COLOURS, Run, random_polygons
 from .study import TOLERANCE
 
 FINISHES: tuple[Finish, ...] = ("iterate", "accelerate", "solve")
-SHADES = dict(zip(FINISHES, (COLOURS["variant 2"], COLOURS["variant 0"], COLOURS["variant 1"]), strict=True))
+SHADES: dict[str, str] = dict(
+    zip(FINISHES, (COLOURS["variant 2"], COLOURS["variant 0"], COLOURS["variant 1"]), strict=True)
+)
 FACES = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf")
 STEP = 20.0
 REPEATS = 7
-Results = dict[str, list[gs.Interpolation]]
+Results = dict[Finish, list[gs.Interpolation]]
 
 
 def acceleration(run: Run) -> None:
@@ -104,7 +106,7 @@ def _mean_passes(results: list[gs.Interpolation]) -> float:
 def _apart(results: Results) -> dict[str, float]:
     """Distances of the limits, in mean chords: the median and the largest over polygons of the largest of each."""
     found = {}
-    for f in ("accelerate", "solve"):
+    for f in FINISHES[1:]:
         far = [
             np.abs(a.spline.control_points - b.spline.control_points).max() / (a.spline.period / len(a.parameters))
             for a, b in zip(results["iterate"], results[f], strict=True)
@@ -115,8 +117,8 @@ def _apart(results: Results) -> dict[str, float]:
 
 def _any_variant(polygons: list[FloatArray], variant: int) -> dict[str, float]:
     """Mean passes, and the runs that do not converge, of another variant."""
-    found = {}
-    for f in ("iterate", "accelerate"):
+    found: dict[str, float] = {}
+    for f in FINISHES[:2]:
         results = gs.interpolate_many(polygons, variant, finish=f, residual_tolerance=TOLERANCE)
         found[f] = float(np.mean([r.iterations for r in results]))
         found[f"{f}, not converged"] = sum(not r.converged for r in results)
@@ -125,18 +127,19 @@ def _any_variant(polygons: list[FloatArray], variant: int) -> dict[str, float]:
 
 def _times(polygons: list[FloatArray], run: Run) -> dict[str, float]:
     """The least of several times, taken in turns, as other work disturbs each."""
-    best = dict.fromkeys(FINISHES, np.inf)
+    best: dict[str, float] = dict.fromkeys(FINISHES, np.inf)
     for _ in range(run.size(REPEATS, 1)):
         for f in FINISHES:
             start = time.perf_counter()
             gs.interpolate_many(polygons, finish=f, threads=1)
             best[f] = min(best[f], (time.perf_counter() - start) / len(polygons) * 1e6)
-    return dict(best)
+    return best
 
 
 def _picture(passes: dict[str, dict[str, float]], polygon: FloatArray) -> Figure:
     figure, axes = plt.subplots(1, 2, figsize=(7.4, 2.9), layout="constrained")
-    for f, series in passes.items():
+    for f in FINISHES:
+        series = passes[f]
         axes[0].plot([int(n) for n in series], list(series.values()), color=SHADES[f], marker="o", label=f)
         r = gs.interpolate(polygon, finish=f, residual_tolerance=TOLERANCE)
         axes[1].semilogy(np.maximum(r.residuals, 1e-16), color=SHADES[f], marker="o", ms=2.5, label=f)

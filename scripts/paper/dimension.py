@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
@@ -20,7 +22,7 @@ DIMENSIONS = (2, 3, 4, 6, 18)
 VARIANTS = (2, 3)
 VERTICES, COUNT = 30, 6
 MASTERS = (1, 2, 3, 9)
-FACE, STEP = "kouzan-gyosho.ttf", 120.0
+FACE, SAMPLED = "kouzan-gyosho.ttf", 60
 
 
 def dimensions(run: Run) -> None:
@@ -32,7 +34,7 @@ def dimensions(run: Run) -> None:
     for d in tried:
         polygons = np.random.default_rng([SEED, n, d]).uniform(0, SIDE, (count, n, d))
         for v in VARIANTS:
-            limits = {"residual_tolerance": TOLERANCE, "max_iterations": MAX_ITERATIONS}
+            limits: dict[str, Any] = {"residual_tolerance": TOLERANCE, "max_iterations": MAX_ITERATIONS}
             results = [interpolate_reference(p, v, **limits) for p in polygons]
             iterations[f"variant {v}"][str(d)] = float(np.mean([r.iterations for r in results]))
             failures += sum(not r.converged for r in results)
@@ -68,7 +70,7 @@ def dimensions(run: Run) -> None:
         "not treated",
         _masters(run),
         "measured",
-        f"The longest contour of a glyph of {FACE}, sampled by {STEP:g} units, with masters made from it by smooth "
+        f"The longest contour of a glyph of {FACE}, at {SAMPLED} vertices, with masters made from it by smooth "
         "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the "
         "blended vertices; of masters interpolated one by one the blend passes them by.",
         "dimension",
@@ -91,7 +93,7 @@ def stacked_masters(polygon: FloatArray, count: int) -> FloatArray:
 def _masters(run: Run) -> dict[str, dict[str, float]]:
     font = gs.open_font(FONTS / FACE)
     contours = font.outline(font.select(text="龍")[0]).contours
-    polygon = max((gs.sample(c, step=run.size(1, 4) * STEP) for c in contours), key=len)
+    polygon = gs.sample(max(contours, key=lambda c: len(c.points)), count=run.size(SAMPLED, 20))
     tolerance = 1e-6 * float(np.ptp(polygon, axis=0).max())
     found = {}
     for count in MASTERS if not run.quick else MASTERS[:2]:

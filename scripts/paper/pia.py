@@ -55,13 +55,13 @@ class Linear:
 
 def family(A: FloatArray, p: FloatArray, name: str, most: int = MAX_ITERATIONS) -> Linear:
     """Iterate from the data, as many as there are control points, until the curve is within the tolerance of them."""
-    M = np.eye(len(A))
+    M: FloatArray = np.eye(len(A))
     if name == "WPIA":
         M *= 2 / (1 + np.linalg.eigvals(A).real.min())  # the best weight, as the largest eigenvalue is 1
     elif name == "Jacobi-PIA":
         M = np.diag(1 / np.diag(A))
     elif name == "Gauss-Seidel-PIA":
-        M = np.linalg.inv(np.tril(A))
+        M = np.asarray(np.linalg.inv(np.tril(A)), dtype=np.float64)
     elif name == "LSPIA":
         M = least_squares_weight(A) * A.T
     P, errors = p.copy(), []
