@@ -90,15 +90,21 @@ def distance(curve: Waves, spline: gs.Spline) -> float:
 
 
 def nearest(curve: Callable[[FloatArray, int], FloatArray], samples: FloatArray, points: FloatArray) -> FloatArray:
-    """Distance of each point from the curve: from the nearest sample by Newton's method, where that is nearer still."""
-    near, k = cKDTree(curve(samples, 0)).query(points)
-    t = samples[k]
-    for _ in range(NEWTON_STEPS):
-        e, first = curve(t, 0) - points, curve(t, 1)
-        slope, square = (e * first).sum(axis=1), (first**2).sum(axis=1)
-        bend = square + (e * curve(t, 2)).sum(axis=1)
-        t = t - slope / np.where(bend > 0.1 * square, bend, square)
-    return np.asarray(np.minimum(near, np.hypot(*(curve(t, 0) - points).T)))
+    """Distance of each point from the curve, by Newton's method from the four nearest samples.
+
+    Where the curve crosses itself the very nearest may belong to the other strand.
+    """
+    distances, found = cKDTree(curve(samples, 0)).query(points, k=4)
+    best = distances[:, 0]
+    for k in found.T:
+        t = samples[k]
+        for _ in range(NEWTON_STEPS):
+            e, first = curve(t, 0) - points, curve(t, 1)
+            slope, square = (e * first).sum(axis=1), (first**2).sum(axis=1)
+            bend = square + (e * curve(t, 2)).sum(axis=1)
+            t = t - slope / np.where(bend > 0.1 * square, bend, square)
+        best = np.minimum(best, np.hypot(*(curve(t, 0) - points).T))
+    return np.asarray(best)
 
 
 def order(counts: Sequence[int], errors: Sequence[float], from_count: int) -> float:
