@@ -72,7 +72,7 @@ def dimensions(run: Run) -> None:
         "measured",
         f"The longest contour of a glyph of {FACE}, at {SAMPLED} vertices, with masters made from it by smooth "
         "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the "
-        "blended vertices; of masters interpolated one by one the blend passes them by.",
+        "blended vertices; of masters interpolated one by one the mean of control points and knots does not.",
         "dimension",
     )
     run.save(_picture(iterations), "dimension", svg=True)
