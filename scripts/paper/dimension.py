@@ -46,7 +46,7 @@ def dimensions(run: Run) -> None:
     run.claim(
         "beyond-dimension",
         "Section 3",
-        "Nothing in the method or its proofs needs the plane: variant 2 converges in R^d, d ≥ 2.",
+        "Nothing in the method or its proofs needs the plane: variant 2 converges in R^d as in the plane.",
         "the plane",
         {
             "polygons a dimension": count,
