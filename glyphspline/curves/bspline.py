@@ -109,10 +109,10 @@ class Spline:
         """
         t = np.asarray(t, dtype=np.float64)
         if derivative > self.degree:
-            return np.zeros((*t.shape, 2))
+            return np.zeros((*t.shape, self.control_points.shape[1]))
         span, x, h = self._locate(t.ravel())
         values = evaluate(derivative_points(self._bezier, derivative)[span], x) / h[:, None] ** derivative
-        return values.reshape(*t.shape, 2)
+        return values.reshape(*t.shape, self.control_points.shape[1])
 
     def curvature(self, t: ArrayLike) -> FloatArray:
         """Signed curvature at t, in 1/unit: positive where the curve turns left, infinite where the speed is zero.

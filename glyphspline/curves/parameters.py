@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from functools import reduce
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,13 +16,18 @@ Parametrisation: TypeAlias = Literal["chord", "uniform", "centripetal"]
 CHORD_EXPONENT = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
 
 
+def lengths(vectors: FloatArray) -> Any:
+    """Euclidean lengths of vectors (..., d), d ≥ 2: (...,). Squares of the coordinates may overflow."""
+    return reduce(np.hypot, np.moveaxis(vectors, -1, 0))
+
+
 def vertex_parameters(
     points: FloatArray, knots: Parametrisation | ArrayLike = "chord", closed: bool = True
 ) -> FloatArray:
     """The parameter s_i of every vertex; the first is 0.
 
     Args:
-        points: (n, 2) vertices, consecutive ones distinct. closed: whether the polygon returns to its first vertex.
+        points: (n, d) vertices, consecutive ones distinct. closed: whether the polygon returns to its first vertex.
         knots: "chord", "uniform", "centripetal", or the parameters themselves, increasing.
 
     Returns:
@@ -35,7 +41,7 @@ def vertex_parameters(
         if knots not in CHORD_EXPONENT:
             raise PolygonError(f"knots are {', '.join(CHORD_EXPONENT)} or an array, not {knots!r}")
         ends = np.concatenate([points, points[:1]]) if closed else points
-        chords = np.hypot(*np.diff(ends, axis=0).T)
+        chords = lengths(np.diff(ends, axis=0))
         return np.concatenate([[0.0], np.cumsum(chords ** CHORD_EXPONENT[knots])])
     given, expected = np.asarray(knots, dtype=np.float64), n + closed
     if given.shape != (expected,):

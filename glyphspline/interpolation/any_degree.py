@@ -16,7 +16,7 @@ from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose
-from .driver import iterate
+from .driver import Anderson, iterate
 from .intervals import Intervals
 from .method import SETTLED, Method, Tangents
 from .polygon import clean_polygon
@@ -54,7 +54,9 @@ def interpolate_any_degree(
     settled = SETTLED * float(np.diff(centres).mean()) if method.finish == "solve" else 0.0
     at_once = method.variant == 4
     limit = max(tolerance, settled) * problem.unit
-    run = iterate(problem.one_pass, problem.P, limit, method.max_iterations, at_once, keep_history)
+    rows = slice(problem.layout.first, problem.layout.first + len(free))
+    anderson = Anderson(rows) if method.finish == "accelerate" else None
+    run = iterate(problem.one_pass, problem.P, limit, method.max_iterations, at_once, keep_history, anderson)
     controls, t, residuals = run.controls, run.footpoints, np.array(run.residuals) / problem.unit
     if method.finish == "solve" and len(free):
         controls, left = problem.solve(controls, t)

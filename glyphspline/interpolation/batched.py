@@ -154,7 +154,7 @@ def interpolate_batch(
         return run(
             part[0], part[1], points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
             float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, method.finish == "solve",
-            _blocks(offsets, *part), *out,
+            method.finish == "accelerate", _blocks(offsets, *part), *out,
         )  # fmt: skip
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
@@ -184,7 +184,7 @@ def interpolate_one(
         0, 1, points, np.array((0, n)), NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
         float(method.margin), GIVEN if method.knots is None else CHORD_EXPONENT[method.knots],
         np.array((method.peak_share,)), tolerances, method.max_iterations, method.finish == "solve",
-        NO_BLOCKS if n < LARGE else _blocks(np.array((0, n)), 0, 1), *out,
+        method.finish == "accelerate", NO_BLOCKS if n < LARGE else _blocks(np.array((0, n)), 0, 1), *out,
     )  # fmt: skip
     u, P, parameters, bounds, kept, whole, rates = out
     status, left, iterations, fallbacks, _, uncertified = whole[0].tolist()

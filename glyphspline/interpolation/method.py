@@ -13,7 +13,7 @@ from ..curves.parameters import CHORD_EXPONENT, Parametrisation
 from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
 
 Fallback: TypeAlias = Literal["knot", "peak"]
-Finish: TypeAlias = Literal["iterate", "solve"]
+Finish: TypeAlias = Literal["iterate", "solve", "accelerate"]
 Tangents: TypeAlias = tuple[ArrayLike | None, ArrayLike | None]
 
 STEPWISE = (0, 4)
@@ -85,6 +85,8 @@ class Method:
         require_choice("diagnostics", self.diagnostics)
         if not self.closed and self.degree != 3:
             raise OptionError("an open arc is cubic (degree=3)")
+        if self.diagnostics and self.finish == "accelerate":
+            raise OptionError("diagnostics are of plain steps, not of finish='accelerate'")
 
     @property
     def stepwise(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..curves.parameters import lengths
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 
@@ -15,23 +16,27 @@ With a much smaller value, sums of chords in floating point would give them the 
 """
 
 
-def as_points(points: ArrayLike) -> FloatArray:
-    """Vertices as (n, 2) float64, contiguous; a PolygonError if they are not numbers or of another shape."""
+def as_points(points: ArrayLike, planar: bool = True) -> FloatArray:
+    """Vertices as (n, 2) float64, contiguous; a PolygonError if they are not numbers or of another shape.
+
+    If not ``planar``, (n, d) with d ≥ 2.
+    """
     try:
         p = np.ascontiguousarray(points, dtype=np.float64)
     except (TypeError, ValueError) as cause:
         raise PolygonError("a polygon is an array of numbers of shape (n, 2)") from cause
-    if p.ndim != 2 or p.shape[1] != 2:
+    if p.ndim != 2 or (p.shape[1] != 2 if planar else p.shape[1] < 2):
         raise PolygonError(f"a polygon has shape (n, 2), not {p.shape}")
     return p
 
 
-def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, IntArray]:
+def clean_polygon(points: ArrayLike, closed: bool = True, planar: bool = True) -> tuple[FloatArray, IntArray]:
     """Check a polygon and merge consecutive duplicates.
 
     Args:
         points: (n, 2) vertices in order, the first not repeated at the end.
         closed: whether the last vertex is followed by the first.
+        planar: whether vertices have two coordinates; otherwise two or more, (n, d).
 
     Returns:
         The vertices kept, (n', 2) float64, and the indices of those dropped, each a duplicate of a kept one before it.
@@ -40,10 +45,10 @@ def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, I
         PolygonError: not of shape (n, 2); a coordinate is NaN or infinite, or so large that distances overflow;
             fewer than three distinct vertices (two for an open arc).
     """
-    p = as_points(points)
+    p = as_points(points, planar)
     bad = np.flatnonzero(~np.isfinite(p).all(axis=1))
     if len(bad):
-        raise PolygonError(f"vertex {bad[0]} is not finite: ({p[bad[0], 0]}, {p[bad[0], 1]})")
+        raise PolygonError(f"vertex {bad[0]} is not finite: ({', '.join(map(str, p[bad[0]]))})")
     needed = 3 if closed else 2
     extent = float(np.ptp(p, axis=0).max()) if len(p) else 0.0
     if not extent <= LARGEST:
@@ -63,13 +68,13 @@ LARGEST, SMALLEST = 1e100, 1e-100
 
 def _distinct(p: FloatArray, closed: bool, apart: float) -> IntArray:
     """Indices of the vertices that lie farther than ``apart`` from the kept one before them."""
-    if (np.hypot(*np.diff(p, axis=0).T) > apart).all():
+    if (lengths(np.diff(p, axis=0)) > apart).all():
         kept = list(range(len(p)))
     else:
         kept = [0]
         for i in range(1, len(p)):
-            if np.hypot(*(p[i] - p[kept[-1]])) > apart:
+            if lengths(p[i] - p[kept[-1]]) > apart:
                 kept.append(i)
-    while closed and len(kept) > 1 and np.hypot(*(p[kept[-1]] - p[0])) <= apart:
+    while closed and len(kept) > 1 and lengths(p[kept[-1]] - p[0]) <= apart:
         kept.pop()
     return np.array(kept, dtype=np.int64)

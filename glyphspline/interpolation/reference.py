@@ -1,13 +1,15 @@
 """The method in its plainest form: NumPy, ``numpy.roots`` for the footpoints as in the paper, one vertex at a time.
 
-The compiled code has to agree with it. It is for reading the algorithms, and slow: some 0.3 ms a footpoint.
+The compiled code has to agree with it. It is for reading the algorithms, and slow: some 0.3 ms a footpoint. Nothing in
+the algorithms or their proofs needs the plane: vertices may have d ≥ 2 coordinates here, and are then (n, d) instead of
+(n, 2).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, reduce
 from typing import Any
 
 import numpy as np
@@ -15,11 +17,11 @@ from numpy.typing import ArrayLike
 
 from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
-from ..curves.parameters import Parametrisation, closed_knots, vertex_centres, vertex_parameters
+from ..curves.parameters import Parametrisation, closed_knots, lengths, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose
-from .driver import iterate
+from .driver import Anderson, iterate
 from .intervals import Intervals, arc_ends, search_intervals
 from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Tangents
 from .polygon import clean_polygon
@@ -58,12 +60,12 @@ def _stationary(spline: Spline, point: FloatArray, low: float, high: float) -> l
     for k in range(first, last + 1):
         lap, piece = divmod(k, spans)
         start, h = u[piece] + lap * T, u[piece + 1] - u[piece]
-        x, y = (_power_basis(spline.degree) @ (spline._bezier[piece] - point)).T
+        axes = (_power_basis(spline.degree) @ (spline._bezier[piece] - point)).T
         powers = np.arange(spline.degree, 0, -1)
-        slope = np.convolve(x, powers * x[:-1]) + np.convolve(y, powers * y[:-1])
+        slope = reduce(np.add, [np.convolve(x, powers * x[:-1]) for x in axes])
         zeros = np.roots(slope)
         likely = (np.abs(zeros.imag) < NEARLY_REAL) & (np.abs(zeros.real - 0.5) < 0.5 + NEARLY_REAL)
-        polished = [_newton(x.tolist(), y.tolist(), t) for t in zeros.real[likely].tolist()]
+        polished = [_newton(axes.tolist(), t) for t in zeros.real[likely].tolist()]
         found += [start, *(start + h * t for t in polished if 0 <= t <= 1)]
     return found
 
@@ -89,28 +91,28 @@ def _power_basis(degree: int) -> FloatArray:
     return np.array(rows[::-1])
 
 
-def _newton(x: list[float], y: list[float], t: float, steps: int = 12) -> float:
-    """Polish a zero of x x' + y y' that ``numpy.roots`` leaves a few digits short, until nothing improves.
+def _newton(axes: list[list[float]], t: float, steps: int = 12) -> float:
+    """Polish a zero of x x' + y y' + … that ``numpy.roots`` leaves a few digits short, until nothing improves.
 
     It evaluates the coordinates, as the product's coefficients lose half of the digits where the curve is near its
     vertex and slow. A start near a zero that is not polished would tie with it.
     """
-    value, slope = _product(x, y, t)
+    value, slope = _product(axes, t)
     for _ in range(steps):
         if slope == 0:
             break
         better = t - value / slope
-        left, slope = _product(x, y, better)
+        left, slope = _product(axes, better)
         if not abs(left) < abs(value):
             break
         t, value = better, left
     return t
 
 
-def _product(x: list[float], y: list[float], t: float) -> tuple[float, float]:
-    """x x' + y y' at t and its derivative, for polynomials (coefficients by descending powers)."""
+def _product(axes: list[list[float]], t: float) -> tuple[float, float]:
+    """x x' + y y' + … at t and its derivative, for polynomials (coefficients by descending powers)."""
     value = slope = 0.0
-    for polynomial in (x, y):
+    for polynomial in axes:
         a = b = c = 0.0
         for coefficient in polynomial:
             a, b, c = a * t + coefficient, b * t + a, c * t + b  # the value, its derivative, half of the second
@@ -123,7 +125,7 @@ class Problem:
     """A prepared polygon: free control points, and search intervals of footpoints.
 
     Attributes:
-        points: (n, 2) the vertices, duplicates merged.
+        points: (n, d) the vertices, duplicates merged.
         vertices: (f,) indices of the vertices with a free control point of their own.
         knots, degree, closed: of the spline.
         centres: (n,) parameters s_i of the vertices.
@@ -144,12 +146,12 @@ class Problem:
     merged: IntArray
 
     def spline(self, free: FloatArray) -> Spline:
-        """The curve for given free control points (f, 2)."""
-        return Spline(self.spread @ free + self.fixed, self.knots, self.degree, self.closed)
+        """The curve for given free control points (f, d)."""
+        return Spline.trusted(self.spread @ free + self.fixed, self.knots, self.degree, self.closed)
 
     def matrix(self, t: FloatArray) -> FloatArray:
         """(f, f) B: how the curve at the footpoints (f,) depends on the free control points."""
-        return self.spline(np.zeros((len(self.vertices), 2))).basis(t) @ self.spread
+        return self.spline(np.zeros((len(self.vertices), self.fixed.shape[1]))).basis(t) @ self.spread
 
 
 def prepare(
@@ -164,14 +166,14 @@ def prepare(
     end_tangents: Tangents | None = None,
 ) -> Problem:
     """Check the input and lay out knots, intervals and free control points."""
-    p, merged = clean_polygon(points, closed)
+    p, merged = clean_polygon(points, closed, planar=False)
     if len(merged) and not isinstance(knots, str):
         knots = np.delete(np.asarray(knots, dtype=np.float64), merged)
     s = vertex_parameters(p, knots, closed)
     if closed:
         u, centres, vertices = closed_knots(s, degree), vertex_centres(s, degree), np.arange(len(p))
         first = vertices - (degree + 1) // 2
-        spread, fixed, ends = np.eye(len(p)), np.zeros((len(p), 2)), None
+        spread, fixed, ends = np.eye(len(p)), np.zeros(p.shape), None
     else:
         u, centres, vertices = s, s, np.arange(1, len(p) - 1)
         first = vertices - 2
@@ -189,7 +191,7 @@ def _clamped_ends(p: FloatArray, u: FloatArray, tangents: Tangents) -> tuple[Flo
     line from p_0 to the first free point, at h_1/(2 h_1 + h_2) of the way, as clamped knots have it.
     """
     m = len(p)
-    spread, fixed = np.zeros((m + 2, max(m - 2, 0))), np.zeros((m + 2, 2))
+    spread, fixed = np.zeros((m + 2, max(m - 2, 0))), np.zeros((m + 2, p.shape[1]))
     np.fill_diagonal(spread[2:-2], 1.0)
     h = np.diff(u)
     for end, second, free, near, beyond, sign in ((0, 1, 0, 0, 1, 1.0), (m + 1, m, m - 3, -1, -2, -1.0)):
@@ -217,6 +219,8 @@ def interpolate_reference(
 ) -> Interpolation:
     """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`.
 
+    ``points`` may be (n, d), d ≥ 2. The spline of the result then has control points (n, d), and no curvature.
+
     ``disturb`` may change the free control points before each pass, to see how far rounding errors carry.
     """
     rule: Any = knots if isinstance(knots, str) else None
@@ -234,7 +238,10 @@ def interpolate_reference(
         return (_sweep if at_once else _step)(problem, disturb(free) if disturb else free)
 
     first = problem.points[problem.vertices].copy()
-    run = iterate(one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics)
+    run = iterate(
+        one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics,
+        Anderson() if method.finish == "accelerate" else None,
+    )  # fmt: skip
     free, t, residuals = run.controls, run.footpoints, run.residuals
     if method.finish == "solve" and len(free):
         free = _solve(problem, t)
@@ -265,7 +272,7 @@ def _step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, f
     p = problem.points[problem.vertices]
     t = np.array([footpoint(spline, *args) for args in _searches(problem)])
     e = p - spline(t)
-    return t, free + e, float(np.hypot(*e.T).max(initial=0.0))
+    return t, free + e, float(lengths(e).max(initial=0.0))
 
 
 def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
@@ -278,7 +285,7 @@ def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, 
         t[j] = footpoint(spline, point, interval, centre)
         e = point - spline(t[j])
         free[j] += e
-        error = max(error, float(np.hypot(*e)))
+        error = max(error, float(lengths(e)))
     return t, free, error
 
 
@@ -289,14 +296,14 @@ def _searches(problem: Problem) -> list[tuple[FloatArray, FloatArray, float]]:
 
 def _solve(problem: Problem, t: FloatArray) -> FloatArray:
     """The free control points whose curve passes through every vertex at the given parameters."""
-    spline = problem.spline(np.zeros((len(t), 2)))
+    spline = problem.spline(np.zeros((len(t), problem.fixed.shape[1])))
     data = problem.points[problem.vertices] - spline(t)
     return np.asarray(np.linalg.solve(problem.matrix(t), data), dtype=np.float64)
 
 
 def _error_at(problem: Problem, free: FloatArray, t: FloatArray) -> float:
     e = problem.points[problem.vertices] - problem.spline(free)(t)
-    return float(np.hypot(*e.T).max())
+    return float(lengths(e).max())
 
 
 def interpolate_vertex_reference(
@@ -322,7 +329,7 @@ def interpolate_vertex_reference(
         t = footpoint(spline, problem.points[k], interval, centre)
         e = problem.points[k] - spline(t)
         updated[k] += e
-        return np.array([t]), updated, float(np.hypot(*e))
+        return np.array([t]), updated, float(lengths(e))
 
     tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
     run = iterate(one_pass, problem.points.copy(), tolerance, max_iterations)

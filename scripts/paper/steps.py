@@ -11,9 +11,11 @@ from itertools import repeat
 from multiprocessing import get_context
 
 from . import (
+    acceleration,
     arcs,
     convergence,
     degrees,
+    dimension,
     fig1,
     fig2,
     fig3,
@@ -23,6 +25,8 @@ from . import (
     fig8,
     lemmas,
     many,
+    order,
+    pia,
     quality,
     rates,
     remark3,
@@ -50,6 +54,10 @@ STEPS: dict[str, Callable[[Run], None]] = {
     "remark3": remark3.remark_3,
     "degrees": degrees.degrees,
     "arcs": arcs.arcs,
+    "order": order.approximation_order,
+    "acceleration": acceleration.acceleration,
+    "pia": pia.pia,
+    "dimension": dimension.dimensions,
 }
 """In the order of the paper, then what goes beyond it."""
 

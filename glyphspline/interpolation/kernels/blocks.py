@@ -70,6 +70,7 @@ class Given(NamedTuple):
     tolerances: FloatArray
     max_iterations: int
     solve: bool
+    accelerate: bool
 
 
 class Found(NamedTuple):
@@ -90,6 +91,7 @@ class Group(NamedTuple):
     Attributes:
         blocks, scratch: see the module. h: knot intervals of all of them, each with PAD more at either end.
         rows: (n, ...) the frozen system. table, numbers: a row for each polygon; columns as above.
+        memory, mixing: of :mod:`.anderson`; empty if nothing is accelerated.
     """
 
     blocks: FloatArray
@@ -98,6 +100,8 @@ class Group(NamedTuple):
     rows: FloatArray
     table: IntArray
     numbers: FloatArray
+    memory: FloatArray
+    mixing: FloatArray
 
 
 @inlined

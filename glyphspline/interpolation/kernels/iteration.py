@@ -11,6 +11,7 @@ import numpy as np
 
 from ...compiled import compiled, select
 from ...types import FloatArray
+from .anderson import accelerate
 from .blocks import (
     BLOCK, COUNT, DD, FALLBACKS, FOUR, HALO, HIGH, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW, ONE, ORDER,
     PASSES, POLYGON, PX, PY, SEARCHED, STATE, THREE, TOTAL, TWO, UNCERTIFIED, UNIT, Found, Given, Group, X, close_ranks,
@@ -143,6 +144,8 @@ def _after_pass(given: Given, found: Found, group: Group, q: int, history: Float
     if state == RUNNING:
         finite = np.inf > error
         if finite and not error < group.numbers[q, LIMIT] and table[q, PASSES] <= given.max_iterations:
+            if given.accelerate:
+                accelerate(group, q, given.closed, error, table[q, PASSES] == 1)
             return False
         again = given.solve and finite and n > (0 if given.closed else 2)
     if not again or state == RUNNING:

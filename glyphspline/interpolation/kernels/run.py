@@ -10,6 +10,7 @@ import numpy as np
 from ...compiled import borrowed, compiled, keep_alive
 from ...types import FloatArray, IntArray
 from ..method import SETTLED
+from .anderson import NUMBERS, ROWS
 from .blocks import (
     BLOCK, COUNT, END, HALO, INTERVALS, KNOT_UNIT, LANE, LANES, LIMIT, PAD, POLYGON, SCRATCH, SLOTS, STRIDE, TOTAL,
     UNIT, WIDTH, Found, Given, Group, place,
@@ -24,7 +25,7 @@ from .vertices import knots_of, pad_intervals, prepare
 def run(
     k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
     variant: int, margin: float, exponent: float, peak_shares: FloatArray, tolerances: FloatArray, max_iterations: int,
-    solve: bool, blocks: FloatArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray,
+    solve: bool, accelerate: bool, blocks: FloatArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray,
     bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """Interpolate polygons k0 to k1 - 1.
@@ -46,6 +47,7 @@ def run(
     given = Given(
         borrowed(points), borrowed(offsets), borrowed(own_knots), borrowed(tangents), closed, variant, margin, exponent,
         borrowed(peak_shares), borrowed(tolerances), max_iterations, solve,
+        accelerate,
     )  # fmt: skip
     found = Found(
         borrowed(knots), borrowed(controls), borrowed(parameters), borrowed(bounds), borrowed(kept), borrowed(whole),
@@ -61,7 +63,11 @@ def run(
         scratch[j] = 0.0
     rows, numbers = np.empty((most + WIDTH if solve else 0, ROW)), np.empty((SLOTS, END + 4))
     table = np.empty((SLOTS, TOTAL + 1), dtype=np.int64)
-    group = Group(borrowed(blocks), borrowed(scratch), borrowed(h), borrowed(rows), borrowed(table), borrowed(numbers))
+    memory, mixing = np.empty((ROWS if accelerate else 0, 2 * most)), np.empty((SLOTS, NUMBERS))
+    group = Group(
+        borrowed(blocks), borrowed(scratch), borrowed(h), borrowed(rows), borrowed(table), borrowed(numbers),
+        borrowed(memory), borrowed(mixing),
+    )  # fmt: skip
     history, residuals = np.empty(64), np.empty(64)
     zero = k0 - k0  # of the type of a variable: functions would be compiled for the constant 0, and again for others
     used = slots = lane = at = zero
@@ -83,5 +89,5 @@ def run(
         settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
         numbers[slots, LIMIT] = max(given.tolerances[k], settled) * unit
         slots, lane, at = slots + 1, lane + n + 2 * HALO, at + n + 2 * PAD
-    keep_alive((blocks, scratch, h, rows, table, numbers))
+    keep_alive((blocks, scratch, h, rows, table, numbers, memory, mixing))
     return residuals[:used]
