@@ -48,10 +48,10 @@ def arcs(run: Run) -> None:
             "smallest maximum of W_1 seen, random knots": _least_peak(run),
             "quarter circle, radius 100, largest deviation by points": circle_deviations(),
         },
-        "proven",
-        "Random points with tangents at the ends turned by 0.5; proof below, which has 5/8 as the infimum of max W_1. "
+        "proven for arcs of which every inner vertex has an interval",
+        "Random points with tangents at the ends turned by 0.5. The infimum of max W_1 is 5/8. "
         f"Certified: arcs whose bound is below 1 with c = {MARGIN}; inner vertices without an interval (Remark 3) keep "
-        "others from it. A variant 3 that fails has no guarantee to break.",
+        "others from it. Variant 3 is proven to converge on closed curves only.",
         "arcs",
     )
     run.save(_picture(means), "arcs", svg=True)
