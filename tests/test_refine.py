@@ -76,7 +76,7 @@ def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
 def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
     arrays = Contours(contours).arrays
     each = np.arange(len(contours) + 1)  # a glyph each
-    return faithful(arrays, each, smooth_fits(arrays, options, tolerance), options, tolerance).contour_results()
+    return faithful(arrays, each, smooth_fits(options, tolerance), options, tolerance).contour_results()
 
 
 def test_measures_are_those_that_look_at_every_piece() -> None:

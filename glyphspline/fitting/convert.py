@@ -162,20 +162,22 @@ def _convert_contours(
     if contours.num_contours == 0:
         return NOTHING
     from .fixed_sampling import convert_fixed, fixed_fits
+    from .measures import check_coordinates
     from .refit import faithful
 
+    check_coordinates(contours)
     if options.is_fixed and not options.measure:
         return convert_fixed(contours, options, tolerance)
     if options.is_fixed:
-        fits = fixed_fits(contours, options, tolerance)
+        fits = fixed_fits(options, tolerance)
     elif options.corners == "sharp":
         from .sharp.sharp_fit import sharp_fits
 
-        fits = sharp_fits(contours, options, tolerance, em)
+        fits = sharp_fits(options, tolerance, em)
     else:
         from .smooth.smooth_fit import smooth_fits
 
-        fits = smooth_fits(contours, options, tolerance)
+        fits = smooth_fits(options, tolerance)
     return faithful(contours, glyphs, fits, options, tolerance)
 
 

@@ -16,16 +16,15 @@ from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
 from .certified_distance import SHARPNESS, pair_stretches
 from .closed_curves import beziers, interpolated
-from .measures import check_coordinates, distance_columns, geometric_columns, solved_columns
+from .measures import distance_columns, geometric_columns, solved_columns
 from .options import Options
 from .refit import Fits
 from .results import ConvertedContours
 
 
-def fixed_fits(contours: ContourArrays, options: Options, tolerance: float) -> Fits:
+def fixed_fits(options: Options, tolerance: float) -> Fits:
     """The one fit of :func:`convert_fixed`: vertices are where the options put them, whatever comes of it."""
-    fitted = convert_fixed(contours, options, tolerance)
-    return Fits(1, lambda which, attempt: fitted, keeps_collapsed=False)
+    return Fits(1, lambda contours, attempt: convert_fixed(contours, options, tolerance), keeps_collapsed=False)
 
 
 def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
@@ -38,7 +37,6 @@ def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -
     Raises:
         GlyphsplineError: a contour that cannot be interpolated; its ``contour`` is the index.
     """
-    check_coordinates(contours)
     cubics = all_cubics(contours)
     points, places, offsets, refused = sampled(
         cubics, contours.offsets, options.step or 0.0, options.count or 0, options.max_ratio,

@@ -4,31 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, offsets_of
+from ..errors import GlyphsplineError
+from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, joined, offsets_of
 from ..outlines.segments import all_cubics
-from ..types import IntArray
+from ..types import BoolArray, IntArray
+from .apart import drawn_apart
 from .measures import distance_columns, geometric_columns
 from .options import Options
 from .results import ConvertedContours, assembled
 from .topology import Changes, changes
 
+APART = (0.35, 0.7)
+"""Shares of the tolerance by which contours are drawn apart, if closer fits do not help."""
+
 
 class Fits(NamedTuple):
-    """What a mode tries for a contour.
+    """What a mode tries for contours.
 
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
-        fit: from the numbers of contours, and that of a fit, to their results.
+        fit: from contours, and the number of a fit, to their results.
+        apart: whether contours that cross in every fit are drawn apart.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
             the source.
     """
 
     tries: int
-    fit: Callable[[Sequence[int], int], ConvertedContours]
+    fit: Callable[[ContourArrays, int], ConvertedContours]
+    apart: bool = False
     keeps_collapsed: bool = True
     keeps_crossing: bool = False
 
@@ -42,11 +50,9 @@ class _State:
     def copy(self) -> _State:
         return _State(self.chosen, self.found.copy())
 
-    def take(self, a: int, b: int, other: _State) -> None:
-        """Replace the contours from a up to b by those of another state."""
-        self.chosen[a:b] = other.chosen[a:b]
-        for mine, values in zip(self.found, other.found, strict=True):
-            mine[a:b] = values[a:b]
+    def written(self, a: int, b: int, precision: int) -> ContourArrays:
+        """The contours from a up to b as they are written."""
+        return assembled(self.chosen[a:b]).curves.rounded(precision)
 
     def rank(self, a: int, b: int) -> tuple[int, int]:
         """Lower is better: contours from a up to b that are outside the tolerance, then changes."""
@@ -57,11 +63,11 @@ class _State:
 def faithful(
     contours: ContourArrays, glyphs: IntArray, fits: Fits, options: Options, tolerance: float
 ) -> ConvertedContours:
-    """Fit contours; those that cross or collapse where their source does not are fitted again more closely.
+    """Fit contours; those that cross or collapse where their source does not are fitted again.
 
-    Of what is tried for a glyph, the first with the fewest contours outside the tolerance counts, and among these the
-    first with the fewest changes. Contours that collapse in it are kept as they are in the source. What still crosses
-    is flagged.
+    They are fitted more closely, then drawn apart, and in the end kept as they are in the source, as far as the mode
+    has it. Of what is tried for a glyph, the first with the fewest contours outside the tolerance counts, and among
+    these the first with the fewest changes. What still crosses in it is flagged.
 
     Args:
         contours: of all glyphs. glyphs: (G + 1,) where the contours of each glyph begin.
@@ -69,36 +75,101 @@ def faithful(
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
-    first = fits.fit(range(contours.num_contours), 0)
+    first = fits.fit(contours, 0)
     found = changes(contours, first.curves.rounded(options.precision), glyphs)
-    best = _State([(first, c) for c in range(contours.num_contours)], found)
-    state = best.copy() if found.number else best
-    kept = np.zeros(contours.num_contours, dtype=np.bool_)
-    for attempt in range(1, fits.tries + 1):
-        last = attempt == fits.tries
-        if last:
-            state = best.copy()
-        collapsed = state.found.collapsed & (fits.keeps_collapsed or not last)
-        wrong = collapsed | ((state.found.new_crossings > 0) & (fits.keeps_crossing or not last))
+    state = _State([(first, c) for c in range(contours.num_contours)], found)
+    search = _Search(contours, glyphs, fits, options, tolerance, state)
+    if found.number:
+        search.run()
+    crossings = [None if count < 0 else count for count in search.best.found.new_crossings.tolist()]
+    columns = {
+        "new_crossings": crossings,
+        "collapsed": search.best.found.collapsed.tolist(),
+        "source_kept": search.kept.tolist(),
+    }
+    result = assembled(search.best.chosen)
+    return replace(result, measures={**result.measures, **columns})
+
+
+class _Search:
+    """The search for results that enclose what their sources do.
+
+    Attributes:
+        state: what was tried last. best: what counts so far. kept: (C,) which of its contours are the source's.
+    """
+
+    def __init__(
+        self, contours: ContourArrays, glyphs: IntArray, fits: Fits, options: Options, tolerance: float, state: _State
+    ) -> None:
+        self.contours, self.glyphs, self.fits = contours, glyphs, fits
+        self.options, self.tolerance = options, tolerance
+        self.state, self.best = state, state.copy()
+        self.kept = np.zeros(contours.num_contours, dtype=np.bool_)
+
+    def run(self) -> None:
+        """Try what the mode has, as long as there are changes."""
+        for turn in range(1, self.fits.tries):
+            self.attempt(self.state.found.any, partial(self.fit_closer, turn))
+        near = self.state.copy()
+        for share in APART if self.fits.apart else ():
+            self.attempt(self.state.found.new_crossings > 0, partial(self.fit_apart, near, share))
+        self.state = self.best.copy()
+        found = self.state.found
+        wrong = (found.collapsed & self.fits.keeps_collapsed) | ((found.new_crossings > 0) & self.fits.keeps_crossing)
+        self.attempt(wrong, self.keep, keeps=True)
+
+    def attempt(self, wrong: BoolArray, fit: Callable[[list[int]], ConvertedContours], keeps: bool = False) -> None:
+        """Put other results in the place of some contours', and keep what is better for their glyphs."""
         which = np.flatnonzero(wrong).tolist()
         if not which:
-            continue
-        own = as_source(contours.chosen(which), options, tolerance) if last else fits.fit(which, attempt)
+            return
+        own = fit(which)
         for k, c in enumerate(which):
-            state.chosen[c] = own, k
-        for g in np.unique(np.searchsorted(glyphs, which, side="right") - 1).tolist():
-            a, b = glyphs[g : g + 2].tolist()
-            written = assembled(state.chosen[a:b]).curves.rounded(options.precision)
-            now = changes(contours.part(a, b), written, np.array([0, b - a]))
-            for values, new in zip(state.found, now, strict=True):
-                values[a:b] = new
-            if state.rank(a, b) < best.rank(a, b):
-                best.take(a, b, state)
-                kept[a:b] = wrong[a:b] & last
-    crossings = [None if count < 0 else count for count in best.found.new_crossings.tolist()]
-    columns = {"new_crossings": crossings, "collapsed": best.found.collapsed.tolist(), "source_kept": kept.tolist()}
-    result = assembled(best.chosen)
-    return replace(result, measures={**result.measures, **columns})
+            self.state.chosen[c] = own, k
+        for a, b in self.ranges(which):
+            written = self.state.written(a, b, self.options.precision)
+            self.state.found.put(a, b, changes(self.contours.part(a, b), written, np.array([0, b - a])))
+            if self.state.rank(a, b) < self.best.rank(a, b):
+                self.best.chosen[a:b] = self.state.chosen[a:b]
+                self.best.found.put(a, b, self.state.found.part(a, b))
+                self.kept[a:b] = wrong[a:b] & keeps
+
+    def ranges(self, which: list[int]) -> list[tuple[int, int]]:
+        """The contours of each glyph that has one of some contours: the first, and the one after the last."""
+        those = np.unique(np.searchsorted(self.glyphs, which, side="right") - 1)
+        return [(int(self.glyphs[g]), int(self.glyphs[g + 1])) for g in those]
+
+    def keep(self, which: list[int]) -> ConvertedContours:
+        """Contours as they are in the source."""
+        return as_source(self.contours.chosen(which), self.options, self.tolerance)
+
+    def fit_closer(self, turn: int, which: list[int]) -> ConvertedContours:
+        """Contours by a later fit."""
+        return self.fit(self.contours.chosen(which), which, turn)
+
+    def fit(self, contours: ContourArrays, which: list[int], turn: int) -> ConvertedContours:
+        """A fit of contours that are those numbered ``which``, or stand for them."""
+        try:
+            return self.fits.fit(contours, turn)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else which[error.contour]
+            raise
+
+    def fit_apart(self, near: _State, share: float, which: list[int]) -> ConvertedContours:
+        """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
+        shift, moved = share * self.tolerance, []
+        for a, b in self.ranges(which):
+            written = near.written(a, b, self.options.precision)
+            apart = drawn_apart(self.contours.part(a, b), written, shift, self.tolerance)
+            moved.append(apart.chosen([c - a for c in which if a <= c < b]))
+        found, source = self.fit(joined(moved), which, self.fits.tries - 1), self.contours.chosen(which)
+        bounds = [bound + shift for bound in found.measures["deviation_bound"]]
+        measures = {
+            **found.measures,
+            **distance_columns([None] * len(bounds), bounds, self.tolerance),
+            **geometric_columns(found.curves, self.options.precision, source, found.polygons),
+        }
+        return replace(found, source=source, measures=measures)
 
 
 def as_source(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:

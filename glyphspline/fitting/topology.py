@@ -43,6 +43,11 @@ class Changes(NamedTuple):
         """Number of changes: a crossing of two contours counts twice, and crossings that are not counted as many."""
         return int(np.where(self.new_crossings < 0, UNCOUNTED, self.new_crossings).sum() + self.collapsed.sum())
 
+    @property
+    def any(self) -> BoolArray:
+        """(C,) whether there is a change that a closer fit may undo."""
+        return (self.new_crossings > 0) | self.collapsed
+
     def copy(self) -> Changes:
         """The same in arrays of their own."""
         return Changes(self.new_crossings.copy(), self.collapsed.copy())
@@ -50,6 +55,11 @@ class Changes(NamedTuple):
     def part(self, first: int, last: int) -> Changes:
         """Those of the contours from ``first`` up to ``last``, as views."""
         return Changes(self.new_crossings[first:last], self.collapsed[first:last])
+
+    def put(self, first: int, last: int, found: Changes) -> None:
+        """Replace those of the contours from ``first`` up to ``last``."""
+        for values, new in zip(self, found, strict=True):
+            values[first:last] = new
 
 
 def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> Changes:

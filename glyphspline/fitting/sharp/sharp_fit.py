@@ -18,7 +18,7 @@ from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
-from ..measures import Columns, check_coordinates, distance_columns, geometric_columns
+from ..measures import Columns, distance_columns, geometric_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
@@ -50,20 +50,11 @@ corners. In the end the source's own segments take their place.
 """
 
 
-def sharp_fits(contours: ContourArrays, options: Options, tolerance: float, em: float) -> Fits:
-    """Fits within ``tolerance``, and then closer; it and ``em`` are in font units.
+def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:
+    """Fits within ``tolerance``, and then closer; it and ``em`` are in font units."""
 
-    Raises:
-        GlyphsplineError: a contour that cannot be fitted, now or in a fit; its ``contour`` is the index.
-    """
-    check_coordinates(contours)
-
-    def fit(which: Sequence[int], attempt: int) -> ConvertedContours:
-        try:
-            return _converted(contours.chosen(which), options, tolerance, TRIES[attempt], em)
-        except PolygonError as error:
-            error.contour = None if error.contour is None else which[error.contour]
-            raise
+    def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
+        return _converted(contours, options, tolerance, TRIES[attempt], em)
 
     return Fits(len(TRIES), fit, keeps_crossing=True)
 

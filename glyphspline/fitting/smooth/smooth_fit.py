@@ -10,53 +10,48 @@ from ...interpolation.result import Interpolation, reversed_interpolation, turne
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...types import Views
 from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
-from ..measures import check_coordinates, distance_columns, geometric_columns, solved_columns
+from ..measures import distance_columns, geometric_columns, solved_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
 
-TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3), (0.1, 3), (0.04, 3))
+TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3))
 """Shares of the tolerance, and rounds in which vertices are taken out as well: a number of its own, or None.
 
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
 """
 
 
-def smooth_fits(contours: ContourArrays, options: Options, tolerance: float) -> Fits:
-    """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer.
+def smooth_fits(options: Options, tolerance: float) -> Fits:
+    """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer."""
 
-    Raises:
-        GlyphsplineError: a contour that cannot be fitted, now or in a fit; its ``contour`` is the index.
-    """
-    check_coordinates(contours)
-    canonical = canonical_contours(contours)
-
-    def fit(which: Sequence[int], attempt: int) -> ConvertedContours:
+    def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = TRIES[attempt]
+        canonical = canonical_contours(contours)
         near = np.full(contours.num_contours, share * tolerance)
-        kept = refined(canonical, np.array(which), options, near, early)
-        return _converted(contours, canonical, list(which), [kept[k] for k in which], options.precision, tolerance)
+        kept = refined(canonical, np.arange(contours.num_contours), options, near, early)
+        fits = [kept[k] for k in range(contours.num_contours)]
+        return _converted(contours, canonical, fits, options.precision, tolerance)
 
-    return Fits(len(TRIES), fit)
+    return Fits(len(TRIES), fit, apart=True)
 
 
 def _converted(
     contours: ContourArrays,
     canonical: CanonicalContours,
-    which: list[int],
     kept: Sequence[tuple[Round, int]],
     precision: int,
     tolerance: float,
 ) -> ConvertedContours:
-    """Results for some contours from their rounds: measured in the fitted direction, returned in the given one."""
-    flipped = canonical.flipped[which].tolist()
+    """Results from rounds: measured in the fitted direction, returned in the given one."""
+    flipped = canonical.flipped.tolist()
     points = [found.part(found.trial.points, i) for found, i in kept]
     pieces = [found.part(found.pieces, i) for found, i in kept]
     controls = [found.part(found.found.controls, i) for found, i in kept]
     offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
-    distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in zip(which, kept, strict=True)]
+    distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in enumerate(kept)]
     bounds, gaps = [bound for bound, _ in distances], [gap for _, gap in distances]
     for n in [n for n, back in enumerate(flipped) if back]:
         points[n], controls[n], pieces[n] = turned(points[n]), turned(controls[n]), pieces[n][::-1, ::-1]
@@ -65,18 +60,18 @@ def _converted(
         each = zip(kept, flipped, strict=True)
         return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
 
-    source, curves = contours.chosen(which), cubic_contours(np.concatenate(pieces), offsets)
+    curves = cubic_contours(np.concatenate(pieces), offsets)
     polygons = Polylines(np.concatenate(points), offsets, closed)
     return ConvertedContours(
-        source,
+        contours,
         curves,
         polygons,
-        Views(len(which), arcs),
+        Views(len(kept), arcs),
         Polylines(np.concatenate(controls), offsets, closed),
-        np.arange(len(which) + 1),
+        np.arange(len(kept) + 1),
         solved_columns([(found.found, np.array([i])) for found, i in kept])
         | distance_columns(gaps, bounds, tolerance)
-        | geometric_columns(curves, precision, source, polygons),
+        | geometric_columns(curves, precision, contours, polygons),
     )
 
 

@@ -1,0 +1,125 @@
+"""Contours drawn apart where their curves cross: strands that touch in the source, or nearly.
+
+A curve within the tolerance goes a little to both sides of its source, so that of two strands that touch each other
+some crossing is left however closely they are fitted. Each is fitted instead to a source that steps back from the other
+one near the crossing, by a share of the tolerance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..curves.crossings import crossings
+from ..curves.cubics import bernstein
+from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
+from ..outlines.segments import all_cubics
+from ..types import FloatArray
+
+REACH = 40.0
+"""Length along the outline over which it steps back to each side of a crossing, in tolerances."""
+
+PARTS = 8
+"""Pieces into which a strand of that length is cut at least: each control point steps back by its own amount."""
+
+MOST_PARTS = 64
+"""Pieces into which a segment is cut at most."""
+
+
+def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tolerance: float) -> ContourArrays:
+    """The contours of a glyph as cubics, moved by up to ``shift`` where the written curves cross.
+
+    No point of a contour is farther than ``shift`` from its source, as a piece is within the largest distance of its
+    Bézier points.
+    """
+    reach = REACH * tolerance
+    found, _ = crossings(all_cubics(written), written.offsets, np.array([0, written.num_contours]))
+    given, results = all_cubics(source), all_cubics(written)
+    strands = [_Strand(given[a:b], reach) for a, b in zip(source.offsets, source.offsets[1:], strict=False)]
+    moves: list[list[tuple[float, FloatArray]]] = [[] for _ in strands]
+    for c, d, a, _ in found.tolist():
+        own, other = strands[int(c)], strands[int(d)]
+        point = _point(results[written.offsets[int(c)] + int(a)], a % 1)
+        one, two = own.nearest(point), other.nearest(point)
+        if own is other:
+            one, two = own.two_nearest(point, reach)
+        v = own.middle(one, reach) - other.middle(two, reach)
+        moves[int(c)].append((one, own.away(one, v, reach)))
+        moves[int(d)].append((two, other.away(two, -v, reach)))
+    cubics = [strand.moved(each, reach, shift) for strand, each in zip(strands, moves, strict=True)]
+    return cubic_contours(np.concatenate(cubics), offsets_of([len(part) for part in cubics]))
+
+
+def _point(cubic: FloatArray, x: float) -> FloatArray:
+    point: FloatArray = np.array([(1 - x) ** 3, 3 * (1 - x) ** 2 * x, 3 * (1 - x) * x * x, x**3]) @ cubic
+    return point
+
+
+class _Strand:
+    """A contour cut into short pieces, by the length along it."""
+
+    def __init__(self, cubics: FloatArray, reach: float) -> None:
+        legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
+        counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(int)
+        self.pieces = np.concatenate([_cut(cubic, count) for cubic, count in zip(cubics, counts, strict=True)])
+        chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
+        ends = np.concatenate([[0.0], np.cumsum(chords)])
+        self.lengths = ends[:-1].reshape(-1, 3)  # of all control points but the last of each piece
+        self.total = ends[-1]
+        self.points = np.einsum("kt,mkc->mtc", bernstein(3)[:, :3], self.pieces).reshape(-1, 2)
+        self.places = self.lengths.ravel()
+        self.outward = np.sign((self.points[:, 0] * (np.roll(self.points[:, 1], -1) - self.points[:, 1])).sum())
+
+    def way(self, place: float) -> FloatArray:
+        """Distance along the contour from a place to all points."""
+        away: FloatArray = np.abs((self.places - place + self.total / 2) % self.total - self.total / 2)
+        return away
+
+    def nearest(self, point: FloatArray) -> float:
+        """Where the contour is nearest to a point."""
+        return float(self.places[np.hypot(*(self.points - point).T).argmin()])
+
+    def two_nearest(self, point: FloatArray, reach: float) -> tuple[float, float]:
+        """Where it is nearest, and where another strand of it is."""
+        first = self.nearest(point)
+        distances = np.hypot(*(self.points - point).T)
+        distances[self.way(first) < min(reach, self.total) / 8] = np.inf
+        return first, float(self.places[distances.argmin()])
+
+    def middle(self, place: float, reach: float) -> FloatArray:
+        """The mean of the points around a place."""
+        mean: FloatArray = self.points[self.way(place) <= reach / 2].mean(axis=0)
+        return mean
+
+    def away(self, place: float, v: FloatArray, reach: float) -> FloatArray:
+        """Unit vector by which the contour steps back at a place, if the other strand lies opposite to v."""
+        size = float(np.hypot(*v))
+        if size > reach / 20:
+            return v / size
+        k = int(self.way(place).argmin())
+        tangent = self.points[(k + 1) % len(self.points)] - self.points[k - 1]
+        normal = np.array([tangent[1], -tangent[0]]) / max(float(np.hypot(*tangent)), 1e-300) * self.outward
+        return normal if normal @ v >= -1e-9 * reach else -normal
+
+    def moved(self, moves: list[tuple[float, FloatArray]], reach: float, shift: float) -> FloatArray:
+        """The pieces, stepped back at some places."""
+        if not moves:
+            return self.pieces
+        weights = np.stack([np.maximum(1 - (self.way(place) / reach) ** 2, 0) ** 2 for place, _ in moves])
+        steps = weights.T @ np.array([direction for _, direction in moves])
+        steps *= shift / np.maximum(np.hypot(*steps.T), 1)[:, None]
+        points = self.pieces[:, :3].reshape(-1, 2) + steps
+        return np.stack([points[0::3], points[1::3], points[2::3], np.roll(points[0::3], -1, axis=0)], axis=1)
+
+
+def _cut(cubic: FloatArray, count: int) -> FloatArray:
+    """(count, 4, 2) equal parts of a cubic, by the polar form."""
+    low = np.arange(count) / count
+    high = (np.arange(count) + 1) / count
+    parts = []
+    for arguments in ((low, low, low), (low, low, high), (low, high, high), (high, high, high)):
+        points = np.repeat(cubic[None], count, axis=0)
+        for t in arguments:
+            points = points[:, :-1] + t[:, None, None] * np.diff(points, axis=1)
+        parts.append(points[:, 0])
+    cut: FloatArray = np.stack(parts, axis=1)
+    return cut
