@@ -9,11 +9,12 @@ the strands cross a small circle around the end.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
+from ..compiled import compiled
 from ..types import FloatArray, IntArray
+from .cubics import jet, length
 
 RADIUS = 2e-5
 """Radius of that circle, as a share of the extent: far above the chord errors, far below what a contour draws."""
@@ -63,12 +64,6 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
     return np.array(found, dtype=np.float64).reshape(-1, 4)
 
 
-def _weights(x: FloatArray) -> FloatArray:
-    """(k, 4) the cubic Bernstein polynomials at parameters (k,)."""
-    y = 1 - x
-    return np.stack([y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x], axis=1)
-
-
 class _Strand:
     """A contour along which one walks."""
 
@@ -88,38 +83,61 @@ class _Strand:
 
     def reach(self, place: float, to: float) -> float:
         """How far the contour goes from a place on the shorter way to another one."""
-        m = len(self.cubics)
         low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
-        high += m * (high < low)
-        ends = [low, *range(int(low) + 1, int(np.ceil(high))), high]
-        places = np.concatenate([np.linspace(a, b, STEPS) for a, b in pairwise(ends)])
-        points = np.array([self.at(p % m) for p in places.tolist()])
-        return float(np.hypot(*(points - self.at(place)).T).max())
+        return float(farthest(self.cubics, low, high + len(self.cubics) * (high < low)))
 
-    def at(self, place: float) -> FloatArray:
-        s = min(int(place), len(self.cubics) - 1)
-        point: FloatArray = _weights(np.array([place - s]))[0] @ self.cubics[s]
-        return point
 
-    def direction(self, centre: FloatArray, place: float, forward: bool, radius: float) -> float:
-        """Angle, seen from ``centre``, at which the contour leaves a circle around it, from a place on."""
-        m, s = len(self.cubics), min(int(place), len(self.cubics) - 1)
-        inside = place - s
-        for _ in range(m + 1):
-            steps = np.linspace(inside, 1.0 if forward else 0.0, STEPS + 1)[1:]
-            away = np.hypot(*(_weights(steps) @ self.cubics[s] - centre).T) >= radius
-            if away.any():
-                first = int(away.argmax())
-                inside, outside = steps[first - 1] if first else inside, steps[first]
+@compiled
+def farthest(cubics: FloatArray, low: float, high: float) -> float:
+    """Largest distance of points of a closed chain between two places from its point at the first one."""
+    m, most, place = len(cubics), 0.0, low
+    s = int(low)
+    x0, y0, _, _, _, _ = jet(cubics, s % m, low - s)
+    while place < high:
+        end = min(high, np.floor(place) + 1.0)
+        s = int(place)
+        for k in range(1, STEPS + 1):
+            x, y, _, _, _, _ = jet(cubics, s % m, place - s + (end - place) * k / STEPS)
+            most = max(most, length(x - x0, y - y0))
+        place = end
+    return most
+
+
+@compiled
+def leaving_angle(
+    cubics: FloatArray, centre: float, place: float, forward: bool, radius: float, other: FloatArray
+) -> float:
+    """The angle at which a closed chain leaves a circle, from a place on.
+
+    Args:
+        centre: the circle's, as a place of the chain ``other``.
+    """
+    s = min(int(centre), len(other) - 1)
+    cx, cy, _, _, _, _ = jet(other, s, centre - s)
+    m, s = len(cubics), min(int(place), len(cubics) - 1)
+    inside, end, step = place - s, 1.0 if forward else 0.0, 1 if forward else -1
+    outside = end
+    for _ in range(m + 1):
+        begin, found = inside, False
+        for k in range(1, STEPS + 1):
+            outside = begin + (end - begin) * k / STEPS
+            x, y, _, _, _, _ = jet(cubics, s, outside)
+            if length(x - cx, y - cy) >= radius:
+                found = True
                 break
-            s, inside, outside = (s + (1 if forward else -1)) % m, 0.0 if forward else 1.0, inside
-        for _ in range(HALVINGS):
-            middle = (inside + outside) / 2
-            if np.hypot(*(self.at(s + middle) - centre)) < radius:
-                inside = middle
-            else:
-                outside = middle
-        return float(np.arctan2(*(self.at(s + outside) - centre)[::-1]))
+            inside = outside
+        if found:
+            break
+        s, inside = (s + step) % m, 1.0 - end
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        x, y, _, _, _, _ = jet(cubics, s, middle)
+        if length(x - cx, y - cy) < radius:
+            inside = middle
+        else:
+            outside = middle
+    x, y, _, _, _, _ = jet(cubics, s, outside)
+    return np.arctan2(y - cy, x - cx)
 
 
 @dataclass
@@ -155,9 +173,8 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
 
 def _is_left(one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float) -> bool | None:
     """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
-    centre = one.at(a)
-    ahead, back = (one.direction(centre, a, way, radius) for way in (True, False))
-    leaves = other.direction(centre, b, forward, radius)
+    ahead, back = (leaving_angle(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
+    leaves = leaving_angle(other.cubics, a, b, forward, radius, one.cubics)
     whole = 2 * np.pi
     if any(abs((leaves - x + np.pi) % whole - np.pi) <= TIED for x in (ahead, back)):
         return None

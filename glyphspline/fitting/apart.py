@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiled import compiled
 from ..curves.crossings import crossings
-from ..curves.cubics import bernstein
+from ..curves.cubics import bernstein, section
 from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
 from ..outlines.segments import all_cubics
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 REACH = 40.0
 """Length along the outline over which it steps back to each side of a crossing, in tolerances."""
@@ -59,8 +60,8 @@ class _Strand:
 
     def __init__(self, cubics: FloatArray, reach: float) -> None:
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
-        counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(int)
-        self.pieces = np.concatenate([_cut(cubic, count) for cubic, count in zip(cubics, counts, strict=True)])
+        counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(np.int64)
+        self.pieces = _cut(cubics, counts)
         chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
         ends = np.concatenate([[0.0], np.cumsum(chords)])
         self.lengths = ends[:-1].reshape(-1, 3)  # of all control points but the last of each piece
@@ -111,15 +112,12 @@ class _Strand:
         return np.stack([points[0::3], points[1::3], points[2::3], np.roll(points[0::3], -1, axis=0)], axis=1)
 
 
-def _cut(cubic: FloatArray, count: int) -> FloatArray:
-    """(count, 4, 2) equal parts of a cubic, by the polar form."""
-    low = np.arange(count) / count
-    high = (np.arange(count) + 1) / count
-    parts = []
-    for arguments in ((low, low, low), (low, low, high), (low, high, high), (high, high, high)):
-        points = np.repeat(cubic[None], count, axis=0)
-        for t in arguments:
-            points = points[:, :-1] + t[:, None, None] * np.diff(points, axis=1)
-        parts.append(points[:, 0])
-    cut: FloatArray = np.stack(parts, axis=1)
-    return cut
+@compiled
+def _cut(cubics: FloatArray, counts: IntArray) -> FloatArray:
+    """The cubics (m, 4, 2), each cut into so many equal parts."""
+    parts, at = np.empty((counts.sum(), 4, 2)), 0
+    for s in range(len(cubics)):
+        for k in range(counts[s]):
+            section(cubics[s], k / counts[s], (k + 1) / counts[s], parts[at])
+            at += 1
+    return parts

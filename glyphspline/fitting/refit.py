@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..curves.crossings import meetings
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, joined, offsets_of
 from ..outlines.segments import all_cubics
@@ -29,14 +30,15 @@ class Fits(NamedTuple):
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
         fit: from contours, and the number of a fit, to their results.
-        apart: whether contours that cross in every fit are drawn apart.
+        apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
+            Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
             the source.
     """
 
     tries: int
     fit: Callable[[ContourArrays, int], ConvertedContours]
-    apart: bool = False
+    apart: int = 0
     keeps_collapsed: bool = True
     keeps_crossing: bool = False
 
@@ -108,15 +110,25 @@ class _Search:
 
     def run(self) -> None:
         """Try what the mode has, as long as there are changes."""
+        touching = self.touching() if self.fits.apart else np.zeros_like(self.kept)
         for turn in range(1, self.fits.tries):
-            self.attempt(self.state.found.any, partial(self.fit_closer, turn))
-        near = self.state.copy()
-        for share in APART if self.fits.apart else ():
-            self.attempt(self.state.found.new_crossings > 0, partial(self.fit_apart, near, share))
+            self.attempt(self.state.found.any & (~touching | (turn == 1)), partial(self.fit_closer, turn))
+            near = self.state.copy()
+            for share in APART if turn == self.fits.apart else ():
+                self.attempt(self.state.found.new_crossings > 0, partial(self.fit_apart, near, share))
         self.state = self.best.copy()
         found = self.state.found
         wrong = (found.collapsed & self.fits.keeps_collapsed) | ((found.new_crossings > 0) & self.fits.keeps_crossing)
         self.attempt(wrong, self.keep, keeps=True)
+
+    def touching(self) -> BoolArray:
+        """(C,) whether a contour that crosses touches itself or others in the source."""
+        found = np.zeros_like(self.kept)
+        for a, b in self.ranges(np.flatnonzero(self.state.found.new_crossings > 0).tolist()):
+            source = self.contours.part(a, b)
+            met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
+            found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True
+        return found
 
     def attempt(self, wrong: BoolArray, fit: Callable[[list[int]], ConvertedContours], keeps: bool = False) -> None:
         """Put other results in the place of some contours', and keep what is better for their glyphs."""
@@ -162,7 +174,7 @@ class _Search:
             written = near.written(a, b, self.options.precision)
             apart = drawn_apart(self.contours.part(a, b), written, shift, self.tolerance)
             moved.append(apart.chosen([c - a for c in which if a <= c < b]))
-        found, source = self.fit(joined(moved), which, self.fits.tries - 1), self.contours.chosen(which)
+        found, source = self.fit(joined(moved), which, self.fits.apart), self.contours.chosen(which)
         bounds = [bound + shift for bound in found.measures["deviation_bound"]]
         measures = {
             **found.measures,

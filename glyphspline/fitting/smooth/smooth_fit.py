@@ -17,11 +17,14 @@ from ..results import ConvertedContours
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
 
-TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3))
+TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3), (0.1, 3), (0.04, 3))
 """Shares of the tolerance, and rounds in which vertices are taken out as well: a number of its own, or None.
 
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
 """
+
+APART = 3
+"""Which of them fits contours that are drawn apart."""
 
 
 def smooth_fits(options: Options, tolerance: float) -> Fits:
@@ -35,7 +38,7 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
         fits = [kept[k] for k in range(contours.num_contours)]
         return _converted(contours, canonical, fits, options.precision, tolerance)
 
-    return Fits(len(TRIES), fit, apart=True)
+    return Fits(len(TRIES), fit, apart=APART)
 
 
 def _converted(
