@@ -112,7 +112,7 @@ class _Search:
         """Try what the mode has, as long as there are changes."""
         touching = self.touching() if self.fits.apart else np.zeros_like(self.kept)
         for turn in range(1, self.fits.tries):
-            self.attempt(self.state.found.any & (~touching | (turn == 1)), partial(self.fit_closer, turn))
+            self.attempt(self.state.found.any & ~touching, partial(self.fit_closer, turn))
             near = self.state.copy()
             for share in APART if turn == self.fits.apart else ():
                 self.attempt(self.state.found.new_crossings > 0, partial(self.fit_apart, near, share))

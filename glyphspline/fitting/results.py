@@ -170,10 +170,13 @@ class ConvertedContours:
 
 def assembled(chosen: Sequence[tuple[ConvertedContours, int]]) -> ConvertedContours:
     """Results that take contour c from number ``chosen[c][1]`` of ``chosen[c][0]``."""
-    first = chosen[0][0] if chosen else NOTHING
-    if all(found is first and k == c for c, (found, k) in enumerate(chosen)) and len(chosen) == len(first):
-        return first
-    return concatenated([found.part(k, k + 1) for found, k in chosen])
+    runs: list[tuple[ConvertedContours, int, int]] = []
+    for found, k in chosen:
+        follows = runs and runs[-1][0] is found and runs[-1][2] == k
+        first = runs.pop()[1] if follows else k
+        runs.append((found, first, k + 1))
+    parts = [found.part(first, last) for found, first, last in runs]
+    return parts[0] if len(parts) == 1 else concatenated(parts)
 
 
 def concatenated(parts: Sequence[ConvertedContours]) -> ConvertedContours:
