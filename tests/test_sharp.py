@@ -63,11 +63,13 @@ def test_every_variant_is_certified_and_gives_what_the_public_interpolation_give
         for arc in contour.interpolations:
             k = len(arc.parameters) - 1
             assert not arc.spline.closed
-            first = int(np.hypot(*(contour.polygon - arc.spline.control_points[0]).T).argmin())
+            starts, ends = arc.spline.control_points[[0, -1]]  # the outline may pass a point twice
+            off = np.hypot(*(contour.polygon - starts).T) + np.hypot(*(np.roll(contour.polygon, -k, axis=0) - ends).T)
+            first = int(off.argmin())
             p = contour.polygon.take(range(first, first + k + 1), axis=0, mode="wrap")
-            ends = arc.spline(arc.spline.knots[[0, -1]], derivative=1)
+            tangents = arc.spline(arc.spline.knots[[0, -1]], derivative=1)
             again = gs.interpolate(
-                p, variant, closed=False, end_tangents=(ends[0], ends[1]), margin=chosen.margin,
+                p, variant, closed=False, end_tangents=(tangents[0], tangents[1]), margin=chosen.margin,
                 residual_tolerance=chosen.solver_tolerance,
             )  # fmt: skip
             np.testing.assert_allclose(arc.spline.control_points, again.spline.control_points, atol=1e-6)
@@ -259,7 +261,7 @@ def test_cubics_are_no_interpolation_that_was_iterated() -> None:
 
 def test_measures_are_those_of_the_curve() -> None:
     for contour in gs.convert(glyph("龍"), options()).contours:
-        form, source = shape(contour.curve.cubics()), shape(contour.source.cubics())
+        form, source = shape(contour.curve.rounded(options().precision).cubics()), shape(contour.source.cubics())
         m = contour.measures
         assert m.length == pytest.approx(form.length)
         assert m.area_change == pytest.approx(form.area - source.area, abs=1e-6)

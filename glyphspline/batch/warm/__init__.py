@@ -16,6 +16,9 @@ from ...fitting.results import GlyphResult
 from ...outlines.outline import Contour, Outline
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
+TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
+"""Touches the square, and itself."""
+
 LEAF = Contour(
     np.array([[0.0, 0.0], [60.0, 0.0], [100.0, 40.0], [100.0, 100.0], [40.0, 100.0], [0.0, 60.0]]), np.array([3, 3])
 )
@@ -36,9 +39,9 @@ KNOT = Contour(
     ),
     np.full(3, 3),
 )
-"""Crosses itself, and is fitted anew more than once."""
+"""Crosses itself, and is fitted again more than once."""
 
-SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT))
+SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 EVERYTHING = ("interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "rest")
 """All modules of this package. Together they compile every function there is. The first ones share little, so that

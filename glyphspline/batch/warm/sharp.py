@@ -3,4 +3,4 @@
 from ...fitting.options import Options
 from . import converted
 
-converted(Options(corners="sharp"))
+converted(Options(corners="sharp", tolerance=0.3))  # pieces fail the certificate
