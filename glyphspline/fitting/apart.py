@@ -22,6 +22,9 @@ REACH = 40.0
 PARTS = 8
 """Pieces into which a strand of that length is cut at least: each control point steps back by its own amount."""
 
+MOST = 200
+"""Crossings of a glyph from which contours step back: a tangle of more is none the better for it."""
+
 MOST_PARTS = 64
 """Pieces into which a segment is cut at most."""
 
@@ -37,7 +40,7 @@ def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tol
     given, results = all_cubics(source), all_cubics(written)
     strands = [_Strand(given[a:b], reach) for a, b in zip(source.offsets, source.offsets[1:], strict=False)]
     moves: list[list[tuple[float, FloatArray]]] = [[] for _ in strands]
-    for c, d, a, _ in found.tolist():
+    for c, d, a, _ in found[:MOST].tolist():
         own, other = strands[int(c)], strands[int(d)]
         point = _point(results[written.offsets[int(c)] + int(a)], a % 1)
         one, two = own.nearest(point), other.nearest(point)

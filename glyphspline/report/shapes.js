@@ -50,7 +50,8 @@ const GS = {};
     return [head, ...names.map((name) => {
       const { label, unit, about } = GS.measures.get(name);
       const cell = (contour) => {
-        const bad = (name === "converged" || name === "within_tolerance") && contour[name] === false;
+        const bad = (name === "converged" || name === "within_tolerance") ? contour[name] === false
+          : (name === "new_crossings" || name === "collapsed") && Boolean(contour[name]);
         return GS.element("td", bad ? { class: "bad" } : {}, GS.number(GS.shown(name, contour[name], em), GS.isBound(name)));
       };
       return GS.element("tr", { "data-measure": name, title: about }, GS.element("th", { scope: "row" }, label,
