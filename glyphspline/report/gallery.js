@@ -82,8 +82,9 @@
       down: at("down").checked, least: sort === "gid" ? null : limit("least"), most: sort === "gid" ? null : limit("most") });
     const fact = sort === "gid" ? "deviation" : sort;
     grid.set(chosen, (row) => (row.status !== "ok" ? row.status
-      : GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
-        : [GS.number(GS.value(row, fact), GS.isBound(fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" ")));
+      : [GS.changed(row), GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
+        : [GS.number(GS.value(row, fact), GS.isBound(fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" "),
+      ].filter(Boolean).join(" · ")));
     at("none").hidden = chosen.length > 0;
     at("csv").disabled = chosen.length === 0;
     at("count").textContent = chosen.length === rows.length ? `${rows.length} glyphs` : `${chosen.length} of ${rows.length} glyphs`;

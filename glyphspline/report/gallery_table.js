@@ -25,6 +25,13 @@
   GS.value = (row, measure) => (measure === "gid" ? row.gid
     : GS.shown(measure, row.values[row.at[measure]] ?? null, row.run.metrics.units_per_em));
 
+  /** What a glyph's contours enclose else than their source, in words; "" if nothing. */
+  GS.changed = (row) => [
+    GS.value(row, "new_crossings") > 0 && `new crossings: ${GS.value(row, "new_crossings")}`,
+    GS.value(row, "collapsed") && "lost its area",
+    GS.value(row, "source_kept") && "source kept",
+  ].filter(Boolean).join(", ");
+
   const WANTED = {
     all: () => true,
     ok: (row) => row.status === "ok",
@@ -32,6 +39,7 @@
     empty: (row) => row.status === "empty",
     "not-converged": (row) => GS.value(row, "converged") === false,
     outside: (row) => GS.value(row, "within_tolerance") === false,
+    changed: (row) => GS.changed(row) !== "",
   };
 
   const matches = (row, words) => {

@@ -74,6 +74,21 @@ def test_search_sort_and_limits(page: Any, gallery: Path) -> None:
     assert page.locator("#count").inner_text().startswith("0 of")
 
 
+def test_glyphs_that_enclose_something_else_are_found_and_say_so(page: Any, gallery: Path) -> None:
+    opened(page, gallery / "kouzan-gyosho")
+    entries = [json.loads(line) for line in (gallery / "kouzan-gyosho" / "manifest.jsonl").read_text().splitlines()]
+    crossing = {e["glyph"]: sum(c["new_crossings"] for c in e["contours"]) for e in entries}
+    changed = {e["glyph"] for e in entries if any(c["new_crossings"] or c["collapsed"] for c in e["contours"])}
+    page.select_option("#show", "changed")
+    page.wait_for_function(
+        "count => document.getElementById('count').textContent === count", arg=f"{len(changed)} of 18 glyphs"
+    )
+    assert set(names(page)) == changed != set()
+    for name in sorted(changed):
+        fact = page.locator(f".card:has(b:text-is('{name}')) .fact").inner_text()
+        assert (f"new crossings: {crossing[name]}" in fact) == (crossing[name] > 0)
+
+
 @pytest.mark.parametrize(
     "layer", ["source", "result", "polygon", "vertices", "control", "source-comb", "comb", "coloured"]
 )
