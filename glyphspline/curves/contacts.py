@@ -48,7 +48,7 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
     """
     radius = RADIUS * float(np.abs(cubics).max())
     found = []
-    for c, d in sorted({(int(c), int(d)) for c, d in touching[:, :2]}):
+    for c, d in np.unique(touching[:, :2].astype(np.int64), axis=0).tolist():
         one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
         for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
             (a, b), (a_end, b_end) = contact.begin, contact.end
@@ -71,15 +71,17 @@ class _Strand:
         self.cubics = cubics
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
         self.lengths = np.concatenate([[0.0], np.cumsum(legs)])
+        self.total = float(self.lengths[-1])
 
-    def position(self, place: float) -> float:
-        """Length of the control polygon up to a place, which grows with the place."""
-        return float(np.interp(place, np.arange(len(self.lengths)), self.lengths))
+    def positions(self, places: FloatArray) -> FloatArray:
+        """Lengths of the control polygon up to places (k,), with which they grow."""
+        found: FloatArray = np.interp(places, np.arange(len(self.lengths)), self.lengths)
+        return found
 
     def way(self, place: float, to: float) -> float:
         """The shorter way between two places as positions count it, negative if it runs back."""
-        total = self.lengths[-1]
-        return float((self.position(to) - self.position(place) + total / 2) % total - total / 2)
+        begin, end = self.positions(np.array([place, to])).tolist()
+        return float((end - begin + self.total / 2) % self.total - self.total / 2)
 
     def reach(self, place: float, to: float) -> float:
         """How far the contour goes from a place on the shorter way to another one."""
@@ -142,26 +144,48 @@ def leaving_angle(
 
 @dataclass
 class _Contact:
-    """Where a contact begins and ends: places on both contours, and the positions that it covers on the second one."""
+    """Where a contact begins and ends.
+
+    Attributes:
+        begin, end: places on both contours. position: of the end, on the first contour.
+        beside: positions on the second contour of the ends of chords, the last ones at the end.
+    """
 
     begin: tuple[float, float]
     end: tuple[float, float]
-    covered: list[float]
+    position: float
+    beside: list[float]
+
+    def is_beside(self, positions: list[float], total: float, radius: float) -> bool:
+        """Whether one of some positions is near one of the last ones; ``total`` is the length of the contour."""
+        for x in positions:
+            for y in self.beside[-RECENT:]:
+                away = abs(x - y) % total
+                if min(away, total - away) <= radius:
+                    return True
+        return False
 
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
     """Pairs of chords that hang together; see :func:`crossing_contacts`."""
+    ordered = touching[np.lexsort(touching.T[::-1])]
+    along = [one.positions(ordered[:, k]) for k in (0, 2)]
+    across = [other.positions(ordered[:, k]) for k in (1, 3)]
     found: list[_Contact] = []
-    for a, b, a_end, b_end in touching[np.lexsort(touching.T[::-1])].tolist():
-        for contact in reversed(found):
-            ahead = one.position(a) - one.position(contact.end[0]) <= radius
-            if ahead and any(abs(other.way(x, y)) <= radius for x in (b, b_end) for y in contact.covered[-RECENT:]):
+    still: list[_Contact] = []  # those that later pairs may hang on
+    for (a, b, a_end, b_end), s, s_end, *beside in zip(
+        ordered.tolist(), *(x.tolist() for x in (*along, *across)), strict=True
+    ):
+        still = [contact for contact in still if s - contact.position <= radius]
+        for contact in reversed(still):
+            if contact.is_beside(beside, other.total, radius):
                 if a_end > contact.end[0]:
-                    contact.end = a_end, b_end
-                contact.covered += [b, b_end]
+                    contact.end, contact.position = (a_end, b_end), s_end
+                contact.beside += beside
                 break
         else:
-            found.append(_Contact((a, b), (a_end, b_end), [b, b_end]))
+            still.append(_Contact((a, b), (a_end, b_end), s_end, beside))
+            found.append(still[-1])
     for contact in found[1:]:  # one that runs over the contour's start is in two parts
         first = found[0]
         over = abs(one.way(contact.end[0], first.begin[0])) <= radius
