@@ -146,10 +146,12 @@ CONVERT = ["-m", "glyphspline", "convert", str(PACKAGE.parent / "fonts_test" / "
 @pytest.mark.parametrize("jobs", ["0", "2"])
 def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
     place = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore the signal
     started = subprocess.Popen(
         [sys.executable, *CONVERT, "--jobs", jobs, "--out", str(tmp_path / "out")],
         env=os.environ | place, cwd=PACKAGE.parent, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
+    signal.signal(signal.SIGINT, before)
     assert started.stderr
     assert started.stderr.readline().startswith("compiling once")
     started.send_signal(signal.SIGINT)
