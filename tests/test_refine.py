@@ -13,7 +13,7 @@ from glyphspline.curves.curvature import comb
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.closed_curves import beziers, interpolated
-from glyphspline.fitting.measures import geometric_columns
+from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.refit import faithful
 from glyphspline.fitting.smooth import steps
 from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
@@ -83,9 +83,9 @@ def test_measures_are_those_that_look_at_every_piece() -> None:
     polygons = [random_polygon(n, seed) for n in (5, 12, 40) for seed in range(3)]
     curves = [gs.Contour.from_segments(gs.interpolate(p, fallback="peak").spline.to_bezier()) for p in polygons]
     source = [circle_contour(10) for _ in curves]
-    found = geometric_columns(
-        Contours(curves).arrays, 9, Contours(source).arrays, polylines(polygons, [True] * len(polygons))
-    )
+    drawn, vertices = Contours(curves).arrays, polylines(polygons, [True] * len(polygons))
+    measured = geometry(drawn, drawn.rounded(9), Contours(source).arrays, vertices.points, vertices.offsets)
+    found = measured._asdict()
     for k, (curve, polygon) in enumerate(zip(curves, polygons, strict=True)):
         whole = shape(curve.cubics())
         assert found["length"][k] == pytest.approx(whole.length)

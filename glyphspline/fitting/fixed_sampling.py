@@ -16,7 +16,7 @@ from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
 from .certified_distance import SHARPNESS, pair_stretches
 from .closed_curves import beziers, interpolated
-from .measures import distance_columns, geometric_columns, solved_columns
+from .measures import distance_columns, solved_columns
 from .options import Options
 from .refit import Fits
 from .results import ConvertedContours
@@ -78,10 +78,8 @@ def through_polygons(
     curves, arcs = cubic_contours(pieces, ends), Views(len(counts), found.results)
     polygons = Polylines(points, ends, closed)
     measures: dict[str, Sequence[Any]] = solved_columns([(found, np.arange(len(counts)))])
-    if options.measure:
-        if places is not None:
-            measures |= _distances(contours, written, places, ends, arcs, tolerance)
-        measures |= geometric_columns(curves, options.precision, contours, polygons)
+    if options.measure and places is not None:
+        measures |= _distances(contours, written, places, ends, arcs, tolerance)
     return ConvertedContours(
         contours, curves, polygons, arcs, Polylines(controls, ends, closed),
         np.arange(len(counts) + 1), measures,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,10 +15,11 @@ from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
 from ..interpolation.batched import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
-from ..outlines.contour_arrays import ContourArrays, Polylines
+from ..outlines.contour_arrays import ContourArrays
 from ..outlines.sampling import CORNER_ANGLE
 from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
+from .results import ConvertedContours
 
 CORNER = float(np.cos(np.radians(CORNER_ANGLE)))
 """Cosine of the turn from which a joint is a corner and has no curvature, whatever ``corner_angle`` the fit had."""
@@ -72,10 +74,12 @@ def distance_columns(gaps: Sequence[float | None], bounds: Sequence[float], tole
     return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 
-def geometric_columns(curves: ContourArrays, precision: int, source: ContourArrays, polygons: Polylines) -> Columns:
-    """Length, area and curvature of curves, as they are written with so many decimals, and of their sources."""
-    found = geometry(curves, curves.rounded(precision), source, polygons.points, polygons.offsets)
-    return {name: values.tolist() for name, values in found._asdict().items()}
+def with_geometry(result: ConvertedContours, precision: int) -> ConvertedContours:
+    """Results with length, area and curvature, as they are written with so many decimals, beside their sources'."""
+    curves, polygons = result.curves, result.polygons
+    found = geometry(curves, curves.rounded(precision), result.source, polygons.points, polygons.offsets)
+    columns = {name: values.tolist() for name, values in found._asdict().items()}
+    return replace(result, measures={**result.measures, **columns})
 
 
 class Geometry(NamedTuple):

@@ -15,7 +15,7 @@ from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, jo
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
 from .apart import drawn_apart
-from .measures import distance_columns, geometric_columns
+from .measures import distance_columns, with_geometry
 from .options import Options
 from .results import ConvertedContours, assembled
 from .topology import Changes, changes
@@ -29,7 +29,7 @@ class Fits(NamedTuple):
 
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
-        fit: from contours, and the number of a fit, to their results.
+        fit: from contours, and the number of a fit, to their results, of which the geometry is not yet measured.
         apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
             Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
@@ -90,7 +90,7 @@ def faithful(
         "source_kept": search.kept.tolist(),
     }
     result = assembled(search.best.chosen)
-    return replace(result, measures={**result.measures, **columns})
+    return with_geometry(replace(result, measures={**result.measures, **columns}), options.precision)
 
 
 class _Search:
@@ -179,7 +179,6 @@ class _Search:
         measures = {
             **found.measures,
             **distance_columns([None] * len(bounds), bounds, self.tolerance),
-            **geometric_columns(found.curves, self.options.precision, source, found.polygons),
         }
         return replace(found, source=source, measures=measures)
 
@@ -200,7 +199,6 @@ def as_source(contours: ContourArrays, options: Options, tolerance: float) -> Co
     measures = {
         "vertices": segments, "segments": segments, "numbers": (2 * np.diff(starts)).tolist(),
         **distance_columns(distances, distances, tolerance),
-        **geometric_columns(curves, options.precision, contours, polygons),
     }  # fmt: skip
     return ConvertedContours(
         contours, curves, polygons, (), NO_POLYLINES, np.zeros(contours.num_contours + 1, dtype=np.int64), measures

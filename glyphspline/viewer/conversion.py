@@ -16,6 +16,7 @@ from ..errors import GlyphsplineError
 from ..fitting.closed_curves import History, recorded
 from ..fitting.convert import convert
 from ..fitting.fixed_sampling import through_polygons
+from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph
 from ..interpolation.result import Interpolation
@@ -123,8 +124,8 @@ def is_smooth(contour: ContourResult) -> bool:
 def through(contour: ContourResult, polygon: FloatArray, options: Options) -> ContourResult:
     """The closed curve through a polygon, computed as in a conversion by step or count."""
     source = Contours([contour.source]).arrays
-    found = through_polygons(source, polygon, np.array([0, len(polygon)]), replace(options, measure=True), 0.0)
-    return found.contour_results()[0]
+    found = through_polygons(source, polygon, np.array([0, len(polygon)]), options, 0.0)
+    return with_geometry(found, options.precision).contour_results()[0]
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:

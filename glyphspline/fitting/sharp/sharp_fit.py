@@ -18,7 +18,7 @@ from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
-from ..measures import Columns, distance_columns, geometric_columns
+from ..measures import Columns, distance_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
@@ -78,9 +78,7 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
         Views(len(arcs), fit.interpolations),
         fit.controls,
         np.searchsorted(arcs, fit.offsets),
-        _solved_columns(fit)
-        | distance_columns(gaps.tolist(), bounds.tolist(), tolerance)
-        | geometric_columns(fit.curve, options.precision, source, polygons),
+        _solved_columns(fit) | distance_columns(gaps.tolist(), bounds.tolist(), tolerance),
     )
 
 

@@ -10,7 +10,7 @@ from ...interpolation.result import Interpolation, reversed_interpolation, turne
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...types import Views
 from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
-from ..measures import distance_columns, geometric_columns, solved_columns
+from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
@@ -36,17 +36,13 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
         near = np.full(contours.num_contours, share * tolerance)
         kept = refined(canonical, np.arange(contours.num_contours), options, near, early)
         fits = [kept[k] for k in range(contours.num_contours)]
-        return _converted(contours, canonical, fits, options.precision, tolerance)
+        return _converted(contours, canonical, fits, tolerance)
 
     return Fits(len(TRIES), fit, apart=APART)
 
 
 def _converted(
-    contours: ContourArrays,
-    canonical: CanonicalContours,
-    kept: Sequence[tuple[Round, int]],
-    precision: int,
-    tolerance: float,
+    contours: ContourArrays, canonical: CanonicalContours, kept: Sequence[tuple[Round, int]], tolerance: float
 ) -> ConvertedContours:
     """Results from rounds: measured in the fitted direction, returned in the given one."""
     flipped = canonical.flipped.tolist()
@@ -72,9 +68,7 @@ def _converted(
         Views(len(kept), arcs),
         Polylines(np.concatenate(controls), offsets, closed),
         np.arange(len(kept) + 1),
-        solved_columns([(found.found, np.array([i])) for found, i in kept])
-        | distance_columns(gaps, bounds, tolerance)
-        | geometric_columns(curves, precision, contours, polygons),
+        solved_columns([(found.found, np.array([i])) for found, i in kept]) | distance_columns(gaps, bounds, tolerance),
     )
 
 
