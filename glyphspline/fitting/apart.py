@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
+from ..curves.bezier import evaluate
 from ..curves.crossings import crossings
 from ..curves.cubics import bernstein, section
+from ..curves.integrals import area
 from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
@@ -42,7 +44,8 @@ def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tol
     moves: list[list[tuple[float, FloatArray]]] = [[] for _ in strands]
     for c, d, a, _ in found[:MOST].tolist():
         own, other = strands[int(c)], strands[int(d)]
-        point = _point(results[written.offsets[int(c)] + int(a)], a % 1)
+        segment = written.offsets[int(c)] + int(a)
+        point = evaluate(results[segment : segment + 1], np.array([a % 1]))[0]
         one, two = own.nearest(point), other.nearest(point)
         if own is other:
             one, two = own.two_nearest(point, reach)
@@ -51,11 +54,6 @@ def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tol
         moves[int(d)].append((two, other.away(two, -v, reach)))
     cubics = [strand.moved(each, reach, shift) for strand, each in zip(strands, moves, strict=True)]
     return cubic_contours(np.concatenate(cubics), offsets_of([len(part) for part in cubics]))
-
-
-def _point(cubic: FloatArray, x: float) -> FloatArray:
-    point: FloatArray = np.array([(1 - x) ** 3, 3 * (1 - x) ** 2 * x, 3 * (1 - x) * x * x, x**3]) @ cubic
-    return point
 
 
 class _Strand:
@@ -67,11 +65,9 @@ class _Strand:
         self.pieces = _cut(cubics, counts)
         chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
         ends = np.concatenate([[0.0], np.cumsum(chords)])
-        self.lengths = ends[:-1].reshape(-1, 3)  # of all control points but the last of each piece
-        self.total = ends[-1]
+        self.places, self.total = ends[:-1], ends[-1]  # of all control points but the last of each piece
         self.points = np.einsum("kt,mkc->mtc", bernstein(3)[:, :3], self.pieces).reshape(-1, 2)
-        self.places = self.lengths.ravel()
-        self.outward = np.sign((self.points[:, 0] * (np.roll(self.points[:, 1], -1) - self.points[:, 1])).sum())
+        self.outward = np.sign(area(cubics))
 
     def way(self, place: float) -> FloatArray:
         """Distance along the contour from a place to all points."""

@@ -48,7 +48,7 @@ def interpolate_any_degree(
     first = free - ((degree + 1) // 2 if closed else 2)
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
     tangents = end_tangents or (None, None)
-    intervals = _intervals(windows, centres[free], method, np.empty(0) if closed else np.diff(u), tangents)
+    intervals = _intervals(windows, centres[free], method, NO_INTERVALS if closed else np.diff(u), tangents)
     problem = Scaled(p, u, centres, free, intervals, method, tangents)
     tolerance = method.tolerance_for(float(np.ptp(p, axis=0).max()))
     settled = SETTLED * float(np.diff(centres).mean()) if method.finish == "solve" else 0.0

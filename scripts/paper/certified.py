@@ -180,10 +180,7 @@ def lower_bounds(f: Family, low: FloatArray, high: FloatArray) -> tuple[FloatArr
 def _bounds_at(
     f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray
 ) -> tuple[FloatArray, IntArray]:
-    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
-    h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
-    h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
-    box = enclose(h_low, h_high, span, fraction)
+    box = _enclosed(f, low, high, span, fraction)
     slope_low, slope_high = _along_box(f, box)
     at = np.where(slope_low >= 0, low, np.where(slope_high <= 0, high, (low + high) / 2))
     mixed = (slope_low < 0) & (slope_high > 0)
@@ -191,6 +188,14 @@ def _bounds_at(
     h = np.exp(at @ f.A.T + f.offset)
     value = enclose(h, h, span, fraction).low - loss.sum(axis=1)
     return np.maximum(value, box.low) - SLACK, np.argmax((slope_high - slope_low) * (high - low), axis=1)
+
+
+def _enclosed(f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray) -> Enclosure:
+    """The value at ``fraction`` of ``span``, and its slopes, on each box."""
+    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
+    h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
+    h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
+    return enclose(h_low, h_high, span, fraction)
 
 
 def _along_box(f: Family, box: Enclosure) -> tuple[FloatArray, FloatArray]:
@@ -203,10 +208,7 @@ def _slope_bounds(
     f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Bounds of the slopes, on each box, of the value at ``fraction`` of ``span``."""
-    positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
-    h_low = np.exp(low @ positive.T + high @ negative.T + f.offset)
-    h_high = np.exp(high @ positive.T + low @ negative.T + f.offset)
-    return _along_box(f, enclose(h_low, h_high, span, fraction))
+    return _along_box(f, _enclosed(f, low, high, span, fraction))
 
 
 def _slopes(f: Family, y: FloatArray) -> FloatArray:

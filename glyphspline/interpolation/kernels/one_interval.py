@@ -40,30 +40,44 @@ def add_fixed(
         first, last: weights of the first and the last free control point in those beside them; 0 for end tangents.
         before, after: (4,) Bernstein coefficients on the spans before and after u_i.
     """
-    if i <= 2:
-        beyond = h[at + 1] if i == 1 else h[at]
-        share = beyond / ((h[at] if i == 1 else h[at - 1]) + beyond)
-        if i == 1:
-            half = 0.5 * (1.0 + first)
-            before[0] += 0.5
-            before[1] += half
-            before[2] += half * share
-            before[3] += half * share * share
-            after[0] += half * share * share
-        else:
-            before[0] += 0.5 * (1.0 - first) * share * share
-    if i >= n - 3:
-        beyond = h[at] if i == n - 2 else h[at + 1]
-        share = beyond / ((h[at + 1] if i == n - 2 else h[at + 2]) + beyond)
-        if i == n - 2:
-            half = 0.5 * (1.0 + last)
-            after[3] += 0.5
-            after[2] += half
-            after[1] += half * share
-            after[0] += half * share * share
-            before[3] += half * share * share
-        else:
-            after[3] += 0.5 * (1.0 - last) * share * share
+    if i == 1:
+        a, b, c = end_shares(h[at], h[at + 1], 1.0 + first)
+        before[0] += 0.5
+        before[1] += a
+        before[2] += b
+        before[3] += c
+        after[0] += c
+    if i == 2:
+        before[0] += end_shares(h[at - 1], h[at], 1.0 - first)[2]
+    if i == n - 2:
+        a, b, c = end_shares(h[at + 1], h[at], 1.0 + last)
+        after[3] += 0.5
+        after[2] += a
+        after[1] += b
+        after[0] += c
+        before[3] += c
+    if i == n - 3:
+        after[3] += end_shares(h[at + 2], h[at + 1], 1.0 - last)[2]
+
+
+@compiled(internal=True)
+def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, float, float]:
+    """Bernstein coefficients 1 to 3, on the span at an end of an arc, of half the function beside that of the end.
+
+    Args:
+        nearest, beyond: the knot intervals at the end. weight: of the function in F_i.
+    """
+    half, share = 0.5 * weight, beyond / (nearest + beyond)
+    return half, half * share, half * share * share
+
+
+@compiled(internal=True)
+def row_pieces(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> tuple[FloatArray, FloatArray]:
+    """(4,) Bernstein coefficients of W_i on the spans before and after u_i; arguments as for :func:`add_fixed`."""
+    before, after = np.empty(4), np.empty(4)
+    basis_pieces(h, at, before, after)
+    add_fixed(h, at, i, n, first, last, before, after)
+    return before, after
 
 
 @compiled(internal=True)
@@ -75,9 +89,7 @@ def end_interval(
     Returns:
         As :func:`one_interval`; False where B_i alone decides, as W_i has no interval or only one below 1/2.
     """
-    before, after = np.empty(4), np.empty(4)
-    basis_pieces(h, at, before, after)
-    add_fixed(h, at, i, n, first, last, before, after)
+    before, after = row_pieces(h, at, i, n, first, last)
     return one_interval(before, after, margin_at(i, n, margin), share)
 
 
@@ -90,9 +102,7 @@ def margin_at(i: int, n: int, margin: float) -> float:
 @compiled(internal=True)
 def value_at_knot(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> float:
     """W_i(u_i), with arguments as for :func:`add_fixed`."""
-    before, after = np.empty(4), np.empty(4)
-    basis_pieces(h, at, before, after)
-    add_fixed(h, at, i, n, first, last, before, after)
+    before, _ = row_pieces(h, at, i, n, first, last)
     return before[3]
 
 
