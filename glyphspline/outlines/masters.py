@@ -1,0 +1,203 @@
+"""The masters of a variable glyph: outlines of one structure, and how they are mixed at a location.
+
+A glyph's outline at a location is its default outline plus, for each *region* of the design space, a delta times the
+region's scalar, which is 1 at the region's peak and falls to 0 towards its ends. The *masters* are the outlines at the
+default and at all peaks; they say the same as the deltas. At every location the outline is a linear combination of
+them, with weights that sum to 1. Locations here are *normalised*: 0 at an axis's default, -1 and 1 at its ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from ..errors import GlyphsplineError
+from ..types import FloatArray, IntArray, counted
+from .outline import Contour, FontMetrics, Outline
+
+MOST_CORNERS = 1024
+"""Corners of the grid of a design space, beyond which :meth:`Masters.grid` gives up."""
+
+
+@dataclass(frozen=True)
+class DesignAxis:
+    """An axis of a design space, in user space.
+
+    Attributes:
+        mapping: pairs of normalised values before and after the font's own mapping (``avar``), ascending.
+    """
+
+    tag: str
+    name: str
+    minimum: float
+    default: float
+    maximum: float
+    mapping: tuple[tuple[float, float], ...] = ()
+
+    def normalised(self, value: float) -> float:
+        """A value of the axis as the regions count: -1 to 1. Values beyond the axis's limits are clamped."""
+        value = min(max(value, self.minimum), self.maximum)
+        side = self.default - self.minimum if value < self.default else self.maximum - self.default
+        x = (value - self.default) / side if side > 0 else 0.0
+        return _mapped(x, self.mapping) if self.mapping else x
+
+    def user(self, x: float) -> float:
+        """The value of the axis at a normalised one."""
+        if self.mapping:
+            x = _mapped(x, [(after, before) for before, after in self.mapping])
+        return self.default + x * (self.default - self.minimum if x < 0 else self.maximum - self.default)
+
+
+def _mapped(x: float, pairs: Sequence[tuple[float, float]]) -> float:
+    return float(np.interp(x, [pair[0] for pair in pairs], [pair[1] for pair in pairs]))
+
+
+@dataclass(frozen=True, eq=False)
+class MasterContour:
+    """One contour in all masters: the same segments, with other points.
+
+    Attributes:
+        points: (K, N, 2) its points in each of the K masters; degrees: (m,) of the segments, as in
+            :class:`.outline.Contour`.
+    """
+
+    points: FloatArray
+    degrees: IntArray
+
+    def cubics(self) -> FloatArray:
+        """(K, m, 4, 2) all segments as cubic Béziers."""
+        return np.stack([Contour(points, self.degrees).cubics() for points in self.points])
+
+    def mixed(self, weights: FloatArray) -> Contour:
+        """The contour with (K,) weights of the masters."""
+        return Contour(np.einsum("k,knc->nc", weights, self.points), self.degrees)
+
+    def __len__(self) -> int:
+        return len(self.degrees)
+
+    def __repr__(self) -> str:
+        return f"<MasterContour: {counted(len(self.points), 'master')}, {counted(len(self), 'segment')}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Masters:
+    """A glyph in all masters of a variable font.
+
+    Attributes:
+        name, gid, unicodes, metrics: as :class:`.outline.Outline` has them.
+        axes: A axes of the font.
+        regions: (R, A, 3) start, peak and end of each region on each axis, normalised; an axis on which the peak is 0
+            does not count. R = K - 1.
+        contours: of the glyph, components decomposed, each in K masters: the default one first, then those at the peaks
+            of the regions.
+        advances: (K,) advances of the masters.
+        notes: one sentence for each part that the reader left out.
+    """
+
+    name: str
+    gid: int = 0
+    unicodes: tuple[int, ...] = ()
+    axes: tuple[DesignAxis, ...] = ()
+    regions: FloatArray = field(default_factory=lambda: np.empty((0, 0, 3)))
+    contours: Sequence[MasterContour] = ()
+    advances: FloatArray = field(default_factory=lambda: np.zeros(1))
+    metrics: FontMetrics = field(default_factory=FontMetrics)
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        tags = " ".join([axis.tag for axis in self.axes])
+        counts = f"{counted(len(self), 'master')}, {counted(len(self.contours), 'contour')}"
+        return f"<Masters {self.name!r} along {tags}: {counts}>"
+
+    def __len__(self) -> int:
+        return len(self.regions) + 1
+
+    @property
+    def peaks(self) -> FloatArray:
+        """(K, A) normalised locations of the masters."""
+        peaks: FloatArray = np.vstack([np.zeros((1, len(self.axes))), self.regions[:, :, 1]])
+        return peaks
+
+    def normalised(self, location: Mapping[str, float]) -> FloatArray:
+        """(A,) the normalised location of user-space values; axes that are not given are at their default.
+
+        Raises:
+            GlyphsplineError: there is no such axis.
+        """
+        tags = [axis.tag for axis in self.axes]
+        for tag in location:
+            if tag not in tags:
+                raise GlyphsplineError(f"no axis {tag!r}: it has {', '.join(tags)}", glyph=self.name)
+        return np.array([axis.normalised(location.get(axis.tag, axis.default)) for axis in self.axes])
+
+    def user(self, at: FloatArray) -> dict[str, float]:
+        """The user-space values of a normalised location (A,)."""
+        return {axis.tag: axis.user(float(x)) for axis, x in zip(self.axes, at, strict=True)}
+
+    def scalars(self, at: FloatArray) -> FloatArray:
+        """(…, K) the scalar of the default, which is 1, and of each region at normalised locations (…, A)."""
+        at = np.asarray(at, dtype=np.float64)[..., None, :]
+        low, peak, high = np.moveaxis(self.regions, 2, 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            side = np.where(at < peak, (at - low) / (peak - low), (high - at) / (high - peak))
+        each = np.where((peak == 0) | (at == peak), 1.0, np.clip(side, 0.0, 1.0))
+        whole: FloatArray = each.prod(axis=-1)
+        return np.concatenate([np.ones((*whole.shape[:-1], 1)), whole], axis=-1)
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        """(K, K) from scalars to weights."""
+        matrix = self.scalars(self.peaks)
+        if np.linalg.matrix_rank(matrix) < len(self):
+            raise GlyphsplineError("two regions have one peak, so that masters cannot be told apart", glyph=self.name)
+        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+
+    def weights_at(self, at: FloatArray) -> FloatArray:
+        """(…, K) weights of the masters at normalised locations (…, A)."""
+        weights: FloatArray = self.scalars(at) @ self._inverse
+        return weights
+
+    def weights(self, location: Mapping[str, float]) -> FloatArray:
+        """(K,) weights of the masters at a location, axis tag to user-space value; they sum to 1."""
+        return self.weights_at(self.normalised(location))
+
+    def instance(self, location: Mapping[str, float]) -> Outline:
+        """The glyph at a location."""
+        weights = self.weights(location)
+        contours = [contour.mixed(weights) for contour in self.contours]
+        return Outline(
+            self.name, self.gid, self.unicodes, float(self.advances @ weights), contours, self.metrics, self.notes
+        )
+
+    def master(self, k: int) -> Outline:
+        """The glyph in master k."""
+        contours = [Contour(contour.points[k], contour.degrees) for contour in self.contours]
+        return Outline(self.name, self.gid, self.unicodes, float(self.advances[k]), contours, self.metrics, self.notes)
+
+    def grid(self) -> FloatArray:
+        """(V, A) normalised corners of boxes inside which every weight is a product of linear functions.
+
+        On each axis they lie at the starts, peaks and ends of the regions and at the axis's ends. Inside a box an
+        instance is a convex combination of those at its corners: what holds at all corners, and is convex, holds
+        everywhere.
+
+        Raises:
+            GlyphsplineError: there are more than ``MOST_CORNERS``.
+        """
+        ticks = []
+        for a, axis in enumerate(self.axes):
+            counts = self.regions[:, a, 1] != 0
+            ends = [-1.0 * (axis.minimum < axis.default), 0.0, 1.0 * (axis.maximum > axis.default)]
+            ticks.append(np.unique([*np.clip(self.regions[counts, a].ravel(), ends[0], ends[2]), *ends]))
+            if not counts.any():  # the glyph does not change along it
+                ticks[-1] = np.zeros(1)
+        count = int(np.prod([len(values) for values in ticks]))
+        if count > MOST_CORNERS:
+            raise GlyphsplineError(
+                f"its design space has {count} grid corners, more than {MOST_CORNERS}", glyph=self.name
+            )
+        return np.array(list(product(*ticks))).reshape(count, len(self.axes))
