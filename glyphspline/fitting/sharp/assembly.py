@@ -32,10 +32,10 @@ class Assembly(NamedTuple):
 
 @compiled
 def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray) -> Assembly:
-    """The curves of all pieces.
+    """The curves of all pieces in one master.
 
     Args:
-        pieces: of so many contours.
+        pieces: of so many contours, in that master alone.
         knots, controls: of the splines of more than one span, one after the other: k + 1 knots each, and k + 3 control
             points of an arc or k of a closed curve.
     """
@@ -51,7 +51,7 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
     at = knot = control = arc = 0 * total
     for q in range(P):
         c, k, ring, first = pieces.where[q, CONTOUR], pieces.where[q, SPANS], pieces.where[q, CLOSED], pieces.starts[q]
-        p, tau = pieces.vertices[first : pieces.starts[q + 1]], pieces.tangents[q]
+        p, tau = pieces.vertices[0, first : pieces.starts[q + 1]], pieces.tangents[0, q]
         count, end = k + 3 * (1 - ring), ends[arc]
         for axis in range(2):
             points[at, axis] = p[0, axis]
@@ -96,8 +96,8 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
     at = 0 * len(cubics)
     for q in range(len(pieces.where)):
         c, k, closed = pieces.where[q, CONTOUR], max(pieces.where[q, SPANS], 1), pieces.where[q, CLOSED]
-        outline = contours.cubics[contours.offsets[c] : contours.offsets[c + 1]]
-        own = pieces.vertices[pieces.starts[q] : pieces.starts[q + 1], 2]
+        outline = contours.cubics[0, contours.offsets[c] : contours.offsets[c + 1]]
+        own = pieces.places[pieces.starts[q] : pieces.starts[q + 1]]
         m = len(outline)
         end = own[0] + m if closed else own[k]
         for s in range(k):
@@ -130,7 +130,7 @@ def certify(
     cubics, ends = all_cubics(written), written.offsets + np.arange(len(written.offsets))
     anchors = find_anchors(pieces, cubics, written.offsets, contours)
     bounds, gaps = pair_stretches(
-        cubics, written.offsets, contours.cubics, contours.offsets, anchors, ends, sharpness, limit
+        cubics, written.offsets, contours.cubics[0], contours.offsets, anchors, ends, sharpness, limit
     )
     first = assembly.segments[:-1]
     return np.maximum.reduceat(bounds, first), np.maximum.reduceat(gaps, first)

@@ -1,6 +1,7 @@
 """The outline as the sharp mode sees it: samples along it, and at each joint of segments whether it is a corner.
 
-Everything is measured against the tolerance and the em, so that a scaled glyph is cut at the same places.
+Everything is measured against the tolerance and the em, so that a scaled glyph is cut at the same places. Of several
+masters the one counts that asks for most: a joint is a corner if it is one in any of them.
 """
 
 from __future__ import annotations
@@ -10,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import directions, jet, turns
+from ...curves.cubics import directions, jet, length, turns
 from ...types import BoolArray, FloatArray, IntArray
+from .spline_curve import chord
 
 NO_HANDLE = 1e-9
 """Handles up to this long, in font units, may be rounding's alone, and give no tangent."""
@@ -29,11 +31,12 @@ class Joints(NamedTuple):
     """Samples of one contour, and its joints; arrays run once round, so that the last joint is the first again.
 
     Attributes:
-        samples: (N, 2) points of the outline; places: (N,) where on it they lie. first: (m + 1,) index of each joint.
+        samples: (K, N, 2) points of the outline in each master; places: (N,) where on it they lie. first: (m + 1,)
+            index of each joint.
         spacing: (N - 1,) wanted distance of vertices between each sample and the next.
         corner: (m + 1,) the outline turns by the corner angle or more.
         hard: (m + 1,) an arc has to end here: a corner that shows, or the end of a straight line that stays.
-        arriving, leaving: (m + 1, 2) unit tangents that arcs take up when they end here.
+        arriving, leaving: (K, m + 1, 2) unit tangents that arcs take up when they end here.
         line: (m,) segment j is a line that stays.
     """
 
@@ -55,34 +58,95 @@ def find_joints(
     """Sample a contour and classify its joints.
 
     Args:
-        cubics: (m, 4, 2) its segments, none without length; degrees: (m,) as in :class:`...outlines.outline.Contour`.
+        cubics: (K, m, 4, 2) its segments in each master; degrees: (m,) as in :class:`...outlines.outline.Contour`.
         tolerance: the fit's, in font units.
         angle: turn from which a joint is a corner, in radians.
         shortest_line: straight lines at least this long stay lines.
         graded: whether samples are denser beside tight turns, where a spline might swing out between them.
     """
-    m = len(cubics)
+    masters, m = len(cubics), len(degrees)
     places = even_places(cubics, degrees, tolerance)
     if graded:
         places = graded_places(cubics, places, tolerance)
     N = len(places)
-    samples, spacing, first = np.empty((N, 2)), np.empty(N - 1), np.empty(m + 1, dtype=np.int64)
+    first = np.empty(m + 1, dtype=np.int64)
     first[m] = N - 1
     for i in range(N - 1):
         j = int(places[i])
-        x = places[i] - j
-        if x == 0.0:
+        if places[i] - j == 0.0:
             first[j] = i
-        samples[i, 0], samples[i, 1], _, _, _, _ = jet(cubics, j, x)
-        _, _, dx, dy, ax, ay = jet(cubics, j, (places[i] + places[i + 1]) / 2 - j)
-        curvature = abs(dx * ay - dy * ax) / max(np.hypot(dx, dy), 1e-9) ** 3
-        spacing[i] = (tolerance / (BEND * max(curvature, 1e-9 / tolerance) ** 3)) ** 0.25
-    samples[N - 1, 0], samples[N - 1, 1] = cubics[0, 0, 0], cubics[0, 0, 1]
-    corner, hard, line = np.empty(m + 1, np.bool_), np.empty(m + 1, np.bool_), np.empty(m, np.bool_)
-    arriving, leaving = np.empty((m + 1, 2)), np.empty((m + 1, 2))
+    samples = sampled(cubics, places)
+    spacing = spacings(cubics, places, samples, tolerance)
+    corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
+    arriving, leaving = np.empty((masters, m + 1, 2)), np.empty((masters, m + 1, 2))
     for j in range(m):
-        chord = np.hypot(cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1])
-        line[j] = degrees[j] == 1 and chord >= shortest_line
+        square = 0.0
+        for v in range(masters):
+            square += np.hypot(cubics[v, j, 3, 0] - cubics[v, j, 0, 0], cubics[v, j, 3, 1] - cubics[v, j, 0, 1]) ** 2
+        line[j] = degrees[j] == 1 and np.sqrt(square / masters) >= shortest_line
+    bends = np.zeros(m)
+    for v in range(masters):
+        own = np.abs(turns(cubics[v], NO_HANDLE))
+        for j in range(m):
+            bends[j] = max(bends[j], own[j])
+            if own[j] >= angle:
+                corner[j] = True
+                hard[j] = hard[j] or shows(samples[v], first[j], tolerance, angle)
+    for j in range(m):
+        hard[j] = hard[j] or line[j] or line[j - 1]
+        kink = tolerance / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
+        for i in (first[j], (first[j] - 1) % (N - 1)):
+            spacing[i] = min(spacing[i], kink)
+    corner[m], hard[m] = corner[0], hard[0]
+    for v in range(masters):
+        set_directions(cubics[v], bends, corner, line, arriving[v], leaving[v])
+    return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, line)
+
+
+@compiled(internal=True)
+def sampled(cubics: FloatArray, places: FloatArray) -> FloatArray:
+    """(K, N, 2) the outline at places that run once round."""
+    N = len(places)
+    samples = np.empty((len(cubics), N, 2))
+    for v in range(len(cubics)):
+        for i in range(N - 1):
+            j = int(places[i])
+            samples[v, i, 0], samples[v, i, 1], _, _, _, _ = jet(cubics[v], j, places[i] - j)
+        samples[v, N - 1, 0], samples[v, N - 1, 1] = cubics[v, 0, 0, 0], cubics[v, 0, 0, 1]
+    return samples
+
+
+@compiled(internal=True)
+def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolerance: float) -> FloatArray:
+    """(N - 1,) the wanted distance of vertices between each sample and the next.
+
+    A master's own counts in proportion to its step: in the one that asks for most vertices it is the wanted one.
+    """
+    masters, N = len(cubics), len(places)
+    spacing = np.empty(N - 1)
+    for i in range(N - 1):
+        j = int(places[i])
+        step = chord(samples, i, i + 1)
+        spacing[i] = np.inf
+        for v in range(masters):
+            _, _, dx, dy, ax, ay = jet(cubics[v], j, (places[i] + places[i + 1]) / 2 - j)
+            curvature = abs(dx * ay - dy * ax) / max(np.hypot(dx, dy), 1e-9) ** 3
+            wanted = (tolerance / (BEND * max(curvature, 1e-9 / tolerance) ** 3)) ** 0.25
+            own = length(samples[v, i + 1, 0] - samples[v, i, 0], samples[v, i + 1, 1] - samples[v, i, 1])
+            if masters == 1 or own > 0.0:
+                spacing[i] = min(spacing[i], wanted * step / own if masters > 1 else wanted)
+        if spacing[i] == np.inf:
+            spacing[i] = 1e6 * tolerance
+    return spacing
+
+
+@compiled(internal=True)
+def set_directions(
+    cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
+) -> None:
+    """The unit tangents of arcs that end at the joints of one master."""
+    m = len(cubics)
+    for j in range(m):
         ax, ay, bx, by = directions(cubics, j, NO_HANDLE)
         if ax == ay == 0.0:
             ax = bx = 1.0
@@ -90,39 +154,32 @@ def find_joints(
         leaving[j, 0], leaving[j, 1] = ax / size, ay / size
         arriving[j + 1, 0], arriving[j + 1, 1] = bx / size_there, by / size_there
     arriving[0, 0], arriving[0, 1] = arriving[m, 0], arriving[m, 1]
-    bends = turns(cubics, NO_HANDLE)
     for j in range(m):
-        bend = abs(bends[j])
-        corner[j] = bend >= angle
-        hard[j] = (corner[j] and shows(samples, first[j], tolerance, angle)) or line[j] or line[j - 1]
-        kink = tolerance / (KINK * np.sin(max(min(bend, np.pi / 2), 1e-9)))
-        for i in (first[j], (first[j] - 1) % (N - 1)):
-            spacing[i] = min(spacing[i], kink)
         if corner[j]:
             continue
         ax, ay, bx, by = arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1]
         x, y = ax + bx, ay + by
         if line[j] or line[j - 1]:
-            if not bend < SMOOTH_KINK:
+            if not bends[j] < SMOOTH_KINK:
                 continue
             x, y = (bx, by) if line[j] else (ax, ay)
         else:
             size = np.hypot(x, y)
             x, y = x / size, y / size
         arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1] = x, y, x, y
-    corner[m], hard[m] = corner[0], hard[0]
     for axis in range(2):
         arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
-    return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, line)
 
 
 @compiled(internal=True)
 def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
     """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later."""
-    m = len(cubics)
+    m = len(degrees)
     counts, total = np.empty(m, dtype=np.int64), 0
     for j in range(m):
-        counts[j] = samples_of(cubics, j, degrees[j] == 1, tolerance)
+        counts[j] = 0
+        for v in range(len(cubics)):
+            counts[j] = max(counts[j], samples_of(cubics[v], j, degrees[j] == 1, tolerance))
         total += counts[j]
     places, at = np.empty(total + 1), 0
     for j in range(m):
@@ -136,21 +193,24 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
 @compiled(internal=True)
 def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> FloatArray:
     """The places with more between them, until no step longer than the tolerance is over twice as long as the next."""
-    m = len(cubics)
+    m = cubics.shape[1]
     while True:
         n = len(places) - 1
-        step = np.empty(n)
-        x, y, _, _, _, _ = jet(cubics, 0, 0.0)
-        for i in range(n):
-            s = min(int(places[i + 1]), m - 1)
-            px, py, _, _, _, _ = jet(cubics, s, places[i + 1] - s)
-            step[i] = np.hypot(px - x, py - y)
-            x, y = px, py
+        step, long = np.empty(n), np.zeros(n, dtype=np.bool_)
+        for v in range(len(cubics)):
+            x, y, _, _, _, _ = jet(cubics[v], 0, 0.0)
+            for i in range(n):
+                s = min(int(places[i + 1]), m - 1)
+                px, py, _, _, _, _ = jet(cubics[v], s, places[i + 1] - s)
+                step[i] = np.hypot(px - x, py - y)
+                x, y = px, py
+            for i in range(n):
+                long[i] = long[i] or step[i] > max(2 * min(step[i - 1], step[(i + 1) % n]), tolerance)
         new, count = np.empty(2 * n + 1), 0
         for i in range(n):
             new[count] = places[i]
             count += 1
-            if step[i] > max(2 * min(step[i - 1], step[(i + 1) % n]), tolerance):
+            if long[i]:
                 new[count] = (places[i] + places[i + 1]) / 2
                 count += 1
         if count == n:

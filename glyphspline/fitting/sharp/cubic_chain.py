@@ -26,7 +26,16 @@ NEAR_MISS = 2.0
 
 @compiled(internal=True)
 def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
-    """Whether samples a to b run along their chord, in order, within the tolerance."""
+    """Whether samples a to b run along their chord, in order, within the tolerance in every master."""
+    straight = True
+    for v in range(len(samples)):
+        straight = straight and _is_straight(samples[v], a, b, tolerance)
+    return straight
+
+
+@compiled(internal=True)
+def _is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
+    """The same in one master."""
     x, y = samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]
     length = np.hypot(x, y)
     if length <= tolerance:
@@ -44,18 +53,24 @@ def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
 
 @compiled
 def fit_between(joints: Joints, i: int, j: int, tolerance: float, rounds: int, tangents: FloatArray) -> float:
-    """A cubic from joint i to joint j; tangents at corners are free to turn.
+    """A cubic from joint i to joint j, in each master by itself; tangents at corners are free to turn.
 
     Args:
-        tolerance, rounds: see :func:`.cubic_fit.fit_cubic`. tangents: (2, 2) receives the end tangents.
+        tolerance, rounds: see :func:`.cubic_fit.fit_cubic`. tangents: (K, 2, 2) receives the end tangents.
 
     Returns:
         The largest distance of a sample; infinite if there is no cubic.
     """
-    return fit_cubic(
-        joints.samples[joints.first[i] : joints.first[j] + 1], joints.leaving[i], joints.corner[i], joints.arriving[j],
-        joints.corner[j], tolerance, rounds, tangents[0], tangents[1],
-    )  # fmt: skip
+    worst = 0.0
+    for v in range(len(tangents)):
+        error = fit_cubic(
+            joints.samples[v, joints.first[i] : joints.first[j] + 1], joints.leaving[v, i], joints.corner[i],
+            joints.arriving[v, j], joints.corner[j], tolerance, rounds, tangents[v, 0], tangents[v, 1],
+        )  # fmt: skip
+        worst = max(worst, error)
+        if worst == np.inf:
+            break
+    return worst
 
 
 @compiled(internal=True)
@@ -67,7 +82,8 @@ def add_cubics(joints: Joints, c: int, nodes: IntArray, settings: Settings, piec
     """
     J, tolerance = len(nodes) - 1, settings.near
     rest, following, errors = np.empty(J + 1), np.empty(J + 1, dtype=np.int64), np.empty(J + 1)
-    spans, tangents = np.empty(J + 1, dtype=np.int64), np.empty((J + 1, 2, 2))
+    masters = len(joints.samples)
+    spans, tangents = np.empty(J + 1, dtype=np.int64), np.empty((J + 1, masters, 2, 2))
     out, carried = np.zeros(J + 1, dtype=np.bool_), np.zeros(J + 1, dtype=np.bool_)
     rest[J] = 0.0
     for i in range(J - 1, -1, -1):
@@ -102,14 +118,22 @@ def add_cubics(joints: Joints, c: int, nodes: IntArray, settings: Settings, piec
         rest[i], following[i], errors[i], spans[i] = best, at, error, k
         for j in range(J + 1):
             out[j] = carried[j]
-    p = np.empty((2, 3))
     i = 0
     while i < J:
         j = following[i]
-        p[0, 2], p[1, 2] = nodes[i], nodes[j]
-        for axis in range(2):
-            p[0, axis] = joints.samples[joints.first[nodes[i]], axis]
-            p[1, axis] = joints.samples[joints.first[nodes[j]], axis]
-        count = add_piece(pieces, count, (c, nodes[i], nodes[j], spans[i], 0, ONLY), p, tangents[i], errors[i])
+        p, places = ends(joints, nodes[i], nodes[j])
+        count = add_piece(pieces, count, (c, nodes[i], nodes[j], spans[i], 0, ONLY), p, places, tangents[i], errors[i])
         i = j
     return count
+
+
+@compiled(internal=True)
+def ends(joints: Joints, i: int, j: int) -> tuple[FloatArray, FloatArray]:
+    """(K, 2, 2) the points at two joints, and their places."""
+    p, places = np.empty((len(joints.samples), 2, 2)), np.empty(2)
+    for v in range(len(p)):
+        for axis in range(2):
+            p[v, 0, axis] = joints.samples[v, joints.first[i], axis]
+            p[v, 1, axis] = joints.samples[v, joints.first[j], axis]
+    places[0], places[1] = i, j
+    return p, places

@@ -12,10 +12,9 @@ import numpy as np
 
 from ...compiled import compiled
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import contour_cubics
 from ...types import FloatArray
 from .corners import Joints, find_joints
-from .cubic_chain import add_cubics, fit_between, is_straight
+from .cubic_chain import add_cubics, ends, fit_between, is_straight
 from .pieces import (
     CHOICE,
     CONTOUR,
@@ -41,20 +40,24 @@ from .stretches import Stretches, add_stretch, empty_stretches, stretches_used
 
 
 @compiled
-def cut_all(contours: ContourArrays, settings: Settings) -> tuple[SplitContours, Pieces, Stretches]:
-    """All contours cut: their pieces in the direction in which they are fitted, and the stretches that need splines."""
-    count, most = len(contours.offsets) - 1, 2 * len(contours.degrees)
+def cut_all(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> tuple[SplitContours, Pieces, Stretches]:
+    """All contours cut: their pieces in the direction in which they are fitted, and the stretches that need splines.
+
+    Args:
+        cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
+    """
+    masters, count, most = len(cubics), len(contours.offsets) - 1, 2 * len(contours.degrees)
     split = SplitContours(
-        np.empty((most, 4, 2)), np.empty(most, dtype=np.int64), np.empty(count + 1, dtype=np.int64),
+        np.empty((masters, most, 4, 2)), np.empty(most, dtype=np.int64), np.empty(count + 1, dtype=np.int64),
         np.empty(count, dtype=np.bool_),
     )  # fmt: skip
-    pieces, stretches = empty_pieces(2 * most, 4 * most), empty_stretches(2 * most, most)
+    pieces, stretches = empty_pieces(masters, 2 * most, 4 * most), empty_stretches(masters, 2 * most, most)
     at = split.offsets[0] = 0
     done = wanted = contours.offsets[0]  # 0, and no literal, for which callees would be compiled once more
     for c in range(count):
-        own = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
-        cubics, degrees, back, joints = laid_out(contour_cubics(contours, c), own, settings)
-        split.flipped[c], m = back, len(cubics)
+        a, b = contours.offsets[c], contours.offsets[c + 1]
+        chain, degrees, back, joints = laid_out(cubics[:, a:b].copy(), contours.degrees[a:b], settings)
+        split.flipped[c], m = back, len(degrees)
         i = 0 * c
         while i < m:
             j = i + 1
@@ -70,30 +73,21 @@ def cut_all(contours: ContourArrays, settings: Settings) -> tuple[SplitContours,
         for j in range(m):
             t = m - 1 - j if back else j
             split.degrees[at + j] = degrees[t]
-            for k in range(4):
-                for axis in range(2):
-                    split.cubics[at + j, k, axis] = cubics[t, 3 - k if back else k, axis]
+            for v in range(masters):
+                for k in range(4):
+                    for axis in range(2):
+                        split.cubics[v, at + j, k, axis] = chain[v, t, 3 - k if back else k, axis]
         at += m
         split.offsets[c + 1] = at
-    split = SplitContours(split.cubics[:at], split.degrees[:at], split.offsets, split.flipped)
+    split = SplitContours(split.cubics[:, :at].copy(), split.degrees[:at], split.offsets, split.flipped)
     return split, used(pieces, done), stretches_used(stretches, wanted)
 
 
 @compiled(internal=True)
 def _add_line(joints: Joints, row: Row, pieces: Pieces, count: int) -> int:
     """Add a line between two joints."""
-    p = _ends(joints, row[1], row[2])
-    return add_piece(pieces, count, row, p, p, 0.0)
-
-
-@compiled(internal=True)
-def _ends(joints: Joints, i: int, j: int) -> FloatArray:
-    """(2, 3) the points at two joints, and their places."""
-    p = np.empty((2, 3))
-    for axis in range(2):
-        p[0, axis], p[1, axis] = joints.samples[joints.first[i], axis], joints.samples[joints.first[j], axis]
-    p[0, 2], p[1, 2] = i, j
-    return p
+    p, places = ends(joints, row[1], row[2])
+    return add_piece(pieces, count, row, p, places, p, 0.0)
 
 
 @compiled(internal=True)
@@ -161,11 +155,11 @@ def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, 
     corners = not closed and joints.corner[i] and joints.corner[j]
     if corners and is_straight(joints.samples, joints.first[i], joints.first[j], settings.near):
         return _add_line(joints, (c, i, j, 0 * c, 0, choice), pieces, count)
-    p, tangents = _ends(joints, i, j), np.zeros((2, 2))
+    (p, places), tangents = ends(joints, i, j), np.zeros((len(joints.samples), 2, 2))
     error = np.inf
     if not closed:
         error = fit_between(joints, i, j, settings.near, settings.search.cubic_rounds, tangents)
-    return add_piece(pieces, count, (c, i, j, 1, int(closed), choice), p, tangents, error)
+    return add_piece(pieces, count, (c, i, j, 1, int(closed), choice), p, places, tangents, error)
 
 
 @compiled
@@ -191,7 +185,8 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
             for r in range(q, last):
                 kept[r] = cut == (r > q)
         q = last
-    found = empty_pieces(P + len(contours.degrees), len(pieces.vertices) + 2 * len(contours.degrees))
+    m = len(contours.degrees)
+    found = empty_pieces(len(contours.cubics), P + m, len(pieces.places) + 2 * m)
     count = first = contours.offsets[0]
     for c in range(len(contours.flipped)):
         a, b, back = contours.offsets[c], contours.offsets[c + 1], contours.flipped[c]
@@ -207,7 +202,7 @@ def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
                 reverse_last(found, count, b - a)
             if pieces.errors[q] > near:
                 count = add_source(
-                    found, count - 1, row_of(found, count - 1), contours.cubics[a:b], contours.degrees[a:b]
+                    found, count - 1, row_of(found, count - 1), contours.cubics[:, a:b].copy(), contours.degrees[a:b]
                 )
         first = last
     return used(found, count)
@@ -219,8 +214,8 @@ def source_pieces(contours: SplitContours, piece: Pieces) -> Pieces:
     row = row_of(piece, 0)
     a, b = contours.offsets[row[CONTOUR]], contours.offsets[row[CONTOUR] + 1]
     most = row[LAST] - row[FIRST]
-    found = empty_pieces(most, 2 * most)
-    return used(found, add_source(found, 0 * most, row, contours.cubics[a:b], contours.degrees[a:b]))
+    found = empty_pieces(len(contours.cubics), most, 2 * most)
+    return used(found, add_source(found, 0 * most, row, contours.cubics[:, a:b].copy(), contours.degrees[a:b]))
 
 
 @compiled
@@ -231,16 +226,18 @@ def cut_again(contours: SplitContours, piece: Pieces, cut: bool, settings: Setti
         Lines and cubics, and the stretches that need splines: of a piece as it is, always.
     """
     c = piece.where[0, CONTOUR]
-    cubics = contours.cubics[contours.offsets[c] : contours.offsets[c + 1]].copy()
+    cubics = contours.cubics[:, contours.offsets[c] : contours.offsets[c + 1]].copy()
+    masters = len(cubics)
     degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]].copy()
-    given, count = empty_pieces(1, len(piece.vertices)), 0 * c
+    given, count = empty_pieces(masters, 1, len(piece.places)), 0 * c
     add_pieces(given, count, piece)
     if contours.flipped[c]:
         reverse_last(given, count + 1, len(degrees))
-        cubics, degrees = cubics[::-1, ::-1].copy(), degrees[::-1].copy()
+        cubics, degrees = cubics[:, ::-1, ::-1].copy(), degrees[::-1].copy()
     i, j = given.where[0, FIRST], given.where[0, LAST]
     joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
-    found, stretches = empty_pieces(j - i, 2 * (j - i)), empty_stretches(j - i, 2 * len(joints.samples))
+    found = empty_pieces(masters, j - i, 2 * (j - i))
+    stretches = empty_stretches(masters, j - i, 2 * len(joints.places))
     if not cut:
         return given, stretches_used(add_stretch(stretches, count, joints, i, j, count), count + 1)
     count, wanted, stretches = _add_cut(joints, c, i, j, ONLY, settings, found, count, stretches, count)

@@ -22,13 +22,15 @@ class Samples(NamedTuple):
     """The stretch of outline that a curve follows.
 
     Attributes:
-        Q: (n, 3) points in order, and their places on the contour; the ends of an arc are the first and the last.
+        Q: (K, n, 2) points in order, in each master; the ends of an arc are the first and the last.
+        places: (n,) their places on the contour.
         D: (n,) integral of the wanted vertex density up to each.
         free: (2,) whether the end tangents of an arc may turn.
         lap: how far the places count on around a closed contour: its number of segments.
     """
 
     Q: FloatArray
+    places: FloatArray
     D: FloatArray
     free: IntArray
     lap: float
@@ -37,8 +39,11 @@ class Samples(NamedTuple):
 class Rows(NamedTuple):
     """Points of a curve and their signed distances from the outline: the samples' feet, then others between them.
 
+    Each master has rows of its own: what the curve is near is the outline as a whole, not its parametrisation.
+
     Attributes:
-        used: (1,) rows in use. span, x: span and local parameter; spans count on around a closed curve.
+        used: (K, 1) rows in use; the others are (K, room). span, x: span and local parameter; spans count on around a
+            closed curve.
         e: distance from the curve to the outline, along the normal (nx, ny).
     """
 
@@ -51,27 +56,44 @@ class Rows(NamedTuple):
 
 
 @compiled(internal=True)
-def empty_rows(samples: int) -> Rows:
+def empty_rows(masters: int, samples: int) -> Rows:
     """Room for the rows of so many samples."""
-    n = (1 + EXTRA) * samples
+    room = (masters, (1 + EXTRA) * samples)
     return Rows(
-        np.zeros(1, dtype=np.int64), np.empty(n, dtype=np.int64), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    )
+        np.zeros((masters, 1), dtype=np.int64), np.empty(room, dtype=np.int64), np.empty(room), np.empty(room),
+        np.empty(room), np.empty(room),
+    )  # fmt: skip
+
+
+@compiled(internal=True)
+def rows_of(rows: Rows, v: int) -> Rows:
+    """The rows of master v, in arrays of one dimension."""
+    return Rows(rows.used[v], rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v])
 
 
 @compiled(internal=True)
 def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
-    """Pair the outline with the curve, in order; the largest distance.
+    """Pair the outline with the curve in every master; the largest distance. Arguments as of :func:`_measure`."""
+    worst = 0.0
+    for v in range(len(samples.Q)):
+        worst = max(worst, _measure(samples.Q[v], curve, curve.b[v], near, rows_of(known, v), rows_of(rows, v)))
+    return worst
+
+
+@compiled(internal=True)
+def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Rows, rows: Rows) -> float:
+    """Pair the outline in a master with the curve, in order; the largest distance.
 
     Each foot is the nearest point after the foot before it, by Newton's method across the spans. Between two feet the
     curve is measured too, in several places where they are far apart on it: from loops, and from humps of short spans,
     no sample is far.
 
     Args:
+        Q: (n, 2) samples. b: (room, 4, 2) Bézier points of the curve in this master.
         near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
         rows: receives the feet and distances.
     """
-    Q, b, h, k, closed = samples.Q, curve.b, curve.h, curve.size[0], curve.size[1]
+    h, k, closed = curve.h, curve.size[0], curve.size[1]
     n = len(Q)
     span, x, e, nx, ny = rows.span, rows.x, rows.e, rows.nx, rows.ny
     worst, guessed = 0.0, known.used[0] > 0
@@ -117,7 +139,7 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
 @compiled(internal=True)
 def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
     """Measure a curve without first guesses."""
-    rows.used[0] = 0
+    rows.used[:] = 0
     return measure(samples, curve, near, rows, rows)
 
 
@@ -209,48 +231,51 @@ def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[in
 @compiled(internal=True)
 def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
-    target.used[0] = source.used[0]
-    for r in range(source.used[0]):
-        target.span[r], target.x[r], target.e[r] = source.span[r], source.x[r], source.e[r]
-        target.nx[r], target.ny[r] = source.nx[r], source.ny[r]
+    for v in range(len(source.used)):
+        target.used[v, 0] = source.used[v, 0]
+        for r in range(source.used[v, 0]):
+            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
+            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
 
 
 @compiled(internal=True)
 def span_errors(rows: Rows, k: int) -> FloatArray:
     """(k,) the largest distance in each span."""
     errors = np.zeros(k)
-    for r in range(rows.used[0]):
-        s = _wrapped(rows.span[r], k)
-        errors[s] = max(errors[s], abs(rows.e[r]))
+    for v in range(len(rows.used)):
+        for r in range(rows.used[v, 0]):
+            s = _wrapped(rows.span[v, r], k)
+            errors[s] = max(errors[s], abs(rows.e[v, r]))
     return errors
 
 
 @compiled(internal=True)
-def find_places(samples: Samples, curve: Curve, rows: Rows, p: FloatArray) -> None:
-    """The places of the outline beside the knots of a curve, from the feet of the samples, into column 2 of p."""
-    Q, k, closed, n, lap = samples.Q, curve.size[0], curve.size[1], len(samples.Q), samples.lap
+def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) -> None:
+    """The places of the outline beside the knots of a curve, from the feet of the samples in the first master."""
+    Q, k, closed, n, lap = samples.places, curve.size[0], curve.size[1], len(samples.places), samples.lap
+    span, x = rows.span[0], rows.x[0]
     j = 0 * n
     for i in range(k + 1 - closed):
         knot = float(i)
-        if closed and knot < rows.span[0] + rows.x[0]:
+        if closed and knot < span[0] + x[0]:
             knot += k
         if closed:
             j = 0 * n
-        while j + 1 < n and rows.span[j + 1] + rows.x[j + 1] <= knot:
+        while j + 1 < n and span[j + 1] + x[j + 1] <= knot:
             j += 1
-        low, here = rows.span[j] + rows.x[j], Q[j, 2]
+        low, here = span[j] + x[j], Q[j]
         if j + 1 < n:
-            high, there = rows.span[j + 1] + rows.x[j + 1], Q[j + 1, 2]
+            high, there = span[j + 1] + x[j + 1], Q[j + 1]
         else:
-            high, there = rows.span[0] + rows.x[0] + k, Q[0, 2] + lap
+            high, there = span[0] + x[0] + k, Q[0] + lap
         share = (knot - low) / (high - low) if high > low else 0.0
-        p[i, 2] = here + share * (there - here)
+        places[i] = here + share * (there - here)
     if closed:
         for i in range(1, k):
-            if p[i, 2] < p[0, 2]:
-                p[i, 2] += lap
-        if p[0, 2] >= lap:
+            if places[i] < places[0]:
+                places[i] += lap
+        if places[0] >= lap:
             for i in range(k):
-                p[i, 2] -= lap
+                places[i] -= lap
     else:
-        p[k, 2] = Q[n - 1, 2]
+        places[k] = Q[n - 1]

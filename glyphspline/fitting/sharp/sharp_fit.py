@@ -16,6 +16,7 @@ from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
+from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
 from ..measures import Columns, distance_columns
@@ -62,7 +63,7 @@ def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:
 def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
     """Contours fitted to within a share of the tolerance, and measured."""
     fit = fit_sharp(source, options, share * tolerance, em)
-    where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[:, :2]
+    where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[0]
     # Where two pieces meet, the vertex belongs to the second one.
     open_ends = starts[1:][where[:, CLOSED] == 0] - 1
     counts = np.add.reduceat(np.maximum(where[:, SPANS], 1), fit.offsets[:-1])
@@ -163,7 +164,7 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
-    split, pieces, stretches = cut_all(contours, settings)
+    split, pieces, stretches = cut_all(all_cubics(contours)[None], contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
     fit = _certified(split, choose(split, pieces, settings.near), options, tolerance)
@@ -186,9 +187,10 @@ def refitted(
         parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings))
         done = q + 1
     parts.append(part(pieces, done, len(poor)))
-    where, vertices, tangents, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 2, 3, 4))
+    where, places, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 3, 5))
+    vertices, tangents = (np.concatenate([own[k] for own in parts], axis=1) for k in (2, 4))
     starts = offsets_of(np.maximum(where[:, SPANS], 1) + 1 - where[:, CLOSED])
-    return Pieces(where, starts, vertices, tangents, errors)
+    return Pieces(where, starts, vertices, places, tangents, errors)
 
 
 def _refitted_piece(
@@ -227,7 +229,7 @@ def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
 
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     """The splines of more than one span, in order. Lemma 2 has an interval for all of their vertices."""
-    where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[:, :2], pieces.tangents
+    where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[0], pieces.tangents[0]
     spans, closed = where[:, SPANS], where[:, CLOSED] > 0
     arcs: dict[int, Interpolation] = {}
     for which in (closed, (spans > 1) & ~closed):

@@ -1,9 +1,12 @@
 """Small cubic splines of variant 2 that a fit moves: arcs clamped at both ends, and closed curves.
 
-Both have the same form here. Knot interval ``s`` runs from vertex s to vertex s + 1; outside of an arc the intervals
-have no length, around a closed curve they begin again. *Slot* i is the control point of vertex i. Those of an arc are
-its inner control points and, for its two ends, the control points next to them; the ends themselves lie before the
-first slot and after the last. The cubic of span s depends on slots s - 1 to s + 2.
+A spline follows K *masters* of one outline at once: it is a curve in R^{2K}, of which master v has the coordinates 2v
+and 2v + 1. Lengths there are the root mean squares of those in the masters. An outline by itself is its only master.
+
+Arcs and closed curves have the same form. Knot interval ``s`` runs from vertex s to vertex s + 1; outside of an arc
+the intervals have no length, around a closed curve they begin again. *Slot* i is the control point of vertex i. Those
+of an arc are its inner control points and, for its two ends, the control points next to them; the ends themselves lie
+before the first slot and after the last. The cubic of span s depends on slots s - 1 to s + 2.
 
 Newton's method finds the footpoints from the last ones, without the certificate of the interpolation. A fit keeps only
 the vertices and end tangents; :func:`glyphspline.interpolate` computes the curve that is written from them.
@@ -16,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet, length, newton_step
+from ...curves.cubics import jet, newton_step
 from ...interpolation.kernels.one_interval import add_fixed, margin_at, near_end, one_interval
 from ...types import FloatArray, IntArray
 
@@ -28,18 +31,18 @@ MOST_PASSES = 200
 
 
 class Curve(NamedTuple):
-    """A cubic spline of k spans and its vertices, in arrays that have room for more.
+    """A cubic spline of k spans and its vertices in K masters, in arrays that have room for more.
 
     Attributes:
         size: (2,) k, and whether the curve is closed.
-        p: (room, 2) the vertices: k + 1 of an arc, k of a closed curve.
-        X: (room + 2, 2) the control points: slot i in row i + 1.
+        p: (K, room, 2) the vertices: k + 1 of an arc, k of a closed curve.
+        X: (K, room + 2, 2) the control points: slot i in row i + 1.
         h: (room + 4,) the knot intervals: that of span s in entry s + 2.
-        W: (room, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[s : s + 4]``.
-        b: (room, 4, 2) the Bézier points.
+        W: (room, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
+        b: (K, room, 4, 2) the Bézier points.
         t: (room,) footpoints of the vertices, as signed shares of the span before or after them.
         bounds: (room, 2) the ends of their intervals (Lemma 2), likewise.
-        e: (room, 2) vertices less footpoints.
+        e: (K, room, 2) vertices less footpoints. d: (K, 2) derivatives at the last footpoint looked at.
     """
 
     size: IntArray
@@ -51,16 +54,18 @@ class Curve(NamedTuple):
     t: FloatArray
     bounds: FloatArray
     e: FloatArray
+    d: FloatArray
 
 
 @compiled(internal=True)
-def empty_curve(most: int, closed: int) -> Curve:
+def empty_curve(masters: int, most: int, closed: int) -> Curve:
     """Room for a curve of up to ``most`` spans."""
     size, room = np.zeros(2, dtype=np.int64), most + 1
     size[1] = closed
     return Curve(
-        size, np.empty((room, 2)), np.empty((room + 2, 2)), np.zeros(room + 4), np.empty((room, 4, 4)),
-        np.empty((room, 4, 2)), np.zeros(room), np.empty((room, 2)), np.empty((room, 2)),
+        size, np.empty((masters, room, 2)), np.empty((masters, room + 2, 2)), np.zeros(room + 4),
+        np.empty((room, 4, 4)), np.empty((masters, room, 4, 2)), np.zeros(room), np.empty((room, 2)),
+        np.empty((masters, room, 2)), np.empty((masters, 2)),
     )  # fmt: skip
 
 
@@ -71,16 +76,22 @@ def copy_curve(source: Curve, target: Curve) -> None:
     target.size[0], target.size[1] = k, source.size[1]
     for i in range(k + 4):
         target.h[i] = source.h[i]
-    for i in range(k + 3):
-        target.X[i, 0], target.X[i, 1] = source.X[i, 0], source.X[i, 1]
     for i in range(k + 1):
-        target.p[i, 0], target.p[i, 1], target.t[i] = source.p[i, 0], source.p[i, 1], source.t[i]
+        target.t[i] = source.t[i]
         target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
     for s in range(k):
         for r in range(4):
-            target.b[s, r, 0], target.b[s, r, 1] = source.b[s, r, 0], source.b[s, r, 1]
             for c in range(4):
                 target.W[s, r, c] = source.W[s, r, c]
+    for v in range(len(source.p)):
+        for axis in range(2):
+            for i in range(k + 3):
+                target.X[v, i, axis] = source.X[v, i, axis]
+            for i in range(k + 1):
+                target.p[v, i, axis] = source.p[v, i, axis]
+        for s in range(k):
+            for r in range(4):
+                target.b[v, s, r, 0], target.b[v, s, r, 1] = source.b[v, s, r, 0], source.b[v, s, r, 1]
 
 
 @compiled(internal=True)
@@ -90,27 +101,38 @@ def inner_vertices(curve: Curve) -> tuple[int, int]:
 
 
 @compiled(internal=True)
+def chord(p: FloatArray, i: int, j: int) -> float:
+    """Distance of vertices i and j, (K, room, 2): the root mean square of those in the masters."""
+    total = 0.0
+    for v in range(len(p)):
+        x, y = p[v, j, 0] - p[v, i, 0], p[v, j, 1] - p[v, i, 1]
+        total += x * x + y * y
+    return np.sqrt(total / len(p))
+
+
+@compiled(internal=True)
 def set_handles(curve: Curve, tangents: FloatArray) -> None:
-    """The end handles of an arc from its end tangents, derivatives by chord length."""
+    """The end handles of an arc from its end tangents (K, 2, 2), derivatives by chord length."""
     k, p, X = curve.size[0], curve.p, curve.X
     if curve.size[1]:
         return
-    first = length(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
-    last = length(p[k, 0] - p[k - 1, 0], p[k, 1] - p[k - 1, 1]) / 3
-    for axis in range(2):
-        X[0, axis], X[1, axis] = p[0, axis], p[0, axis] + first * tangents[0, axis]
-        X[k + 1, axis], X[k + 2, axis] = p[k, axis] - last * tangents[1, axis], p[k, axis]
+    first, last = chord(p, 0, 1) / 3, chord(p, k - 1, k) / 3
+    for v in range(len(p)):
+        for axis in range(2):
+            X[v, 0, axis], X[v, 1, axis] = p[v, 0, axis], p[v, 0, axis] + first * tangents[v, 0, axis]
+            X[v, k + 1, axis], X[v, k + 2, axis] = p[v, k, axis] - last * tangents[v, 1, axis], p[v, k, axis]
 
 
 @compiled(internal=True)
 def end_tangents(curve: Curve, tangents: FloatArray) -> None:
-    """The end tangents of an arc, derivatives by chord length; those of a closed curve stay as they are."""
+    """The end tangents (K, 2, 2) of an arc, derivatives by chord length; those of a closed curve stay as they are."""
     k, X, h = curve.size[0], curve.X, curve.h
     if curve.size[1]:
         return
-    for axis in range(2):
-        tangents[0, axis] = 3 * (X[1, axis] - X[0, axis]) / h[2]
-        tangents[1, axis] = 3 * (X[k + 2, axis] - X[k + 1, axis]) / h[k + 1]
+    for v in range(len(X)):
+        for axis in range(2):
+            tangents[v, 0, axis] = 3 * (X[v, 1, axis] - X[v, 0, axis]) / h[2]
+            tangents[v, 1, axis] = 3 * (X[v, k + 2, axis] - X[v, k + 1, axis]) / h[k + 1]
 
 
 @compiled(internal=True)
@@ -120,7 +142,7 @@ def set_knots(curve: Curve) -> bool:
     least = np.inf
     for s in range(k):
         e = s + 1 if s + 1 < k or not closed else 0
-        h[s + 2] = length(p[e, 0] - p[s, 0], p[e, 1] - p[s, 1])
+        h[s + 2] = chord(p, s, e)
         least = min(least, h[s + 2])
     for n in range(2):
         h[n], h[k + 2 + n] = (h[k + n], h[2 + n]) if closed else (0.0, 0.0)
@@ -148,15 +170,17 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
 @compiled(internal=True)
 def set_beziers(curve: Curve) -> None:
     """The Bézier points of all spans."""
-    k, X, W, b = curve.size[0], curve.X, curve.W, curve.b
-    if curve.size[1]:
-        for axis in range(2):
-            X[0, axis], X[k + 1, axis], X[k + 2, axis] = X[k, axis], X[1, axis], X[2, axis]
-    for s in range(k):
-        for r in range(4):
+    k, W = curve.size[0], curve.W
+    for v in range(len(curve.X)):
+        X, b = curve.X[v], curve.b[v]
+        if curve.size[1]:
             for axis in range(2):
-                total = W[s, r, 0] * X[s, axis] + W[s, r, 1] * X[s + 1, axis]
-                b[s, r, axis] = total + W[s, r, 2] * X[s + 2, axis] + W[s, r, 3] * X[s + 3, axis]
+                X[0, axis], X[k + 1, axis], X[k + 2, axis] = X[k, axis], X[1, axis], X[2, axis]
+        for s in range(k):
+            for r in range(4):
+                for axis in range(2):
+                    total = W[s, r, 0] * X[s, axis] + W[s, r, 1] * X[s + 1, axis]
+                    b[s, r, axis] = total + W[s, r, 2] * X[s + 2, axis] + W[s, r, 3] * X[s + 3, axis]
 
 
 @compiled(internal=True)
@@ -165,7 +189,8 @@ def cold_start(curve: Curve, margin: float) -> None:
     k, closed, (first, stop) = curve.size[0], curve.size[1], inner_vertices(curve)
     before, after = np.empty(4), np.empty(4)
     for i in range(first, stop):
-        curve.X[i + 1, 0], curve.X[i + 1, 1] = curve.p[i, 0], curve.p[i, 1]
+        for v in range(len(curve.p)):
+            curve.X[v, i + 1, 0], curve.X[v, i + 1, 1] = curve.p[v, i, 0], curve.p[v, i, 1]
         last = i - 1 if i > 0 else k - 1
         for r in range(4):
             before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
@@ -182,51 +207,60 @@ def cold_start(curve: Curve, margin: float) -> None:
 def iterate(curve: Curve, tolerance: float, most: int) -> float:
     """Variant 2 (Algorithm 2) from the control points at hand, for at most so many passes; the largest error left."""
     first, stop = inner_vertices(curve)
-    p, X, t, bounds, e = curve.p, curve.X, curve.t, curve.bounds, curve.e
+    X, e, masters = curve.X, curve.e, len(curve.X)
     error = 0.0
     for _ in range(most):
         set_beziers(curve)
         error = 0.0
         for i in range(first, stop):
-            e[i, 0], e[i, 1], t[i] = foot_error(curve, i, p[i, 0], p[i, 1], t[i], bounds[i, 0], bounds[i, 1])
-            error = max(error, e[i, 0] * e[i, 0] + e[i, 1] * e[i, 1])
-        error = np.sqrt(error)
+            find_footpoint(curve, i)
+            square = 0.0
+            for v in range(masters):
+                square += e[v, i, 0] * e[v, i, 0] + e[v, i, 1] * e[v, i, 1]
+            error = max(error, square)
+        error = np.sqrt(error / masters)
         if error < tolerance or not error < 1e9:
             break
-        for i in range(first, stop):
-            X[i + 1, 0] += e[i, 0]
-            X[i + 1, 1] += e[i, 1]
+        for v in range(masters):
+            for i in range(first, stop):
+                X[v, i + 1, 0] += e[v, i, 0]
+                X[v, i + 1, 1] += e[v, i, 1]
     else:
         set_beziers(curve)
     return error
 
 
 @compiled(internal=True)
-def foot_error(
-    curve: Curve, i: int, x: float, y: float, t: float, low: float, high: float
-) -> tuple[float, float, float]:
-    """Vertex i less its footpoint, and the footpoint, as a signed share of the span before or after u_i.
+def find_footpoint(curve: Curve, i: int) -> None:
+    """The footpoint of vertex i, as a signed share of the span before or after u_i, and the vertex less that point.
 
-    Where Newton's last step is short, it is the part along the normal at the point before it.
+    Where Newton's last step is short, it is the part across the curve at the point before it.
     """
-    before, after = curve.h[i + 1], curve.h[i + 2]
+    before, after, e, d = curve.h[i + 1], curve.h[i + 2], curve.e, curve.d
     last = i - 1 if i > 0 else curve.size[0] - 1
-    ex = ey = 0.0
+    low, high, t = curve.bounds[i, 0], curve.bounds[i, 1], curve.t[i]
     for step in range(3):
         ahead = t >= 0
         s, h = (i, after) if ahead else (last, before)
-        cx, cy, dx, dy, ax, ay = jet(curve.b, s, t if ahead else t + 1)
-        ex, ey = x - cx, y - cy
-        speed = dx * dx + dy * dy
+        speed = slope = bend = 0.0
+        for v in range(len(e)):
+            cx, cy, dx, dy, ax, ay = jet(curve.b[v], s, t if ahead else t + 1)
+            ex, ey = curve.p[v, i, 0] - cx, curve.p[v, i, 1] - cy
+            e[v, i, 0], e[v, i, 1], d[v, 0], d[v, 1] = ex, ey, dx, dy
+            own = dx * dx + dy * dy
+            speed += own
+            slope += -ex * dx - ey * dy
+            bend += own - ex * ax - ey * ay
         if step == 2 or speed <= 0:
             break
-        slope = -ex * dx - ey * dy
-        bend = speed - ex * ax - ey * ay
         new = newton_step(t * h, slope * h, speed, bend, -before, after)
         old, t = t, min(max(new / after if new >= 0 else new / before, low), high)
         if abs(t - old) < SHORT and low < t < high:
-            return ex - (ex * dx + ey * dy) / speed * dx, ey - (ex * dx + ey * dy) / speed * dy, t
-    return ex, ey, t
+            for v in range(len(e)):
+                e[v, i, 0] -= -slope / speed * d[v, 0]
+                e[v, i, 1] -= -slope / speed * d[v, 1]
+            break
+    curve.t[i] = t
 
 
 @compiled(internal=True)

@@ -5,6 +5,9 @@ footpoint of its vertex, so in the limit *the vertex is the foot of its control 
 together, and along the curve the vertex takes its knot with it. A step has these two unknowns a vertex and two for each
 free end tangent. The equations are those of Gauss and Newton, with Levenberg and Marquardt's damping, on the distances
 of the samples along the normals. Weights that grow with the distance turn least squares towards the least maximum.
+
+Each master has unknowns and equations of its own. They share the knots: a step along the curve counts as if it were
+taken in all masters, each as far as its chords are long.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import jet, length
 from ...types import FloatArray, IntArray
-from .feet import EXTRA, Rows, Samples, empty_rows
+from .feet import EXTRA, Rows, Samples, empty_rows, rows_of
 from .spline_curve import Curve, empty_curve, inner_vertices, span_weights
 
 LARGEST_RATIO = 4.0
@@ -29,16 +32,20 @@ BAND = 8
 """Unknowns that meet in one equation: those of four slots."""
 
 
+MOST_KNOTS = 4.0
+"""A knot moves at most this many times as far as its vertex in a master: chords of one may vanish."""
+
+
 class Fit(NamedTuple):
     """Scratch arrays of a fit, for curves of up to ``room`` spans.
 
     Attributes:
         curve, trial: the curve so far, and the one tried. rows, tried: of both. best: the best curve so far.
-        frames: (room + 1, 4) normal and tangent of each vertex at its footpoint.
-        moves: (room, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
+        frames: (K, room + 1, 4) normal and tangent of each vertex at its footpoint.
+        moves: (K, room, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
             slots: across and along the curve; along, a vertex takes its knot with it.
-        gram: (room, 9, 8) equations of each span.
-        A, step: the equations. first: (2 room + 2,) where each row of A begins.
+        gram: (K, room, 9, 8) equations of each span.
+        A: the equations of one master. first: (2 room + 2,) where each of its rows begins. step: (K, 2 room + 2).
     """
 
     curve: Curve
@@ -55,14 +62,14 @@ class Fit(NamedTuple):
 
 
 @compiled(internal=True)
-def empty_fit(samples: int, spans: int, closed: int) -> Fit:
+def empty_fit(masters: int, samples: int, spans: int, closed: int) -> Fit:
     """Scratch arrays for a stretch of so many samples and curves of up to so many spans."""
     slots = spans + 1
     return Fit(
-        empty_curve(spans, closed), empty_curve(spans, closed), empty_curve(spans, closed),
-        empty_rows(samples), empty_rows(samples),
-        np.empty((slots, 4)), np.empty((slots, 8, 8)), np.empty((slots, 9, 8)),
-        np.empty((2 * slots, 2 * slots)), np.empty(2 * slots), np.empty(2 * slots, dtype=np.int64),
+        empty_curve(masters, spans, closed), empty_curve(masters, spans, closed), empty_curve(masters, spans, closed),
+        empty_rows(masters, samples), empty_rows(masters, samples),
+        np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
+        np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
     )  # fmt: skip
 
 
@@ -72,40 +79,58 @@ def differentiate(fit: Fit) -> None:
 
     Those by the knots are differences; a knot's influence beyond two spans to either side is small and left out.
     """
-    curve, frames, moves = fit.curve, fit.frames, fit.moves
-    k, closed, X, h = curve.size[0], curve.size[1], curve.X, curve.h
+    curve = fit.curve
+    k, closed, h = curve.size[0], curve.size[1], curve.h
     first, stop = inner_vertices(curve)
-    for i in range(k + 1 - closed):
-        if i < first or i >= stop:
-            tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
-            dx, dy = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
-        else:
-            s, at = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
-            _, _, dx, dy, _, _ = jet(curve.b, s, at)
-        speed = max(length(dx, dy), 1e-12)
-        frames[i, 0], frames[i, 1], frames[i, 2], frames[i, 3] = -dy / speed, dx / speed, dx / speed, dy / speed
-    for s in range(k):
-        for c in range(4):
-            i = (s - 1 + c) % k if closed else s - 1 + c
-            exists = 0 <= i <= k
-            for r in range(4):
-                for axis in range(2):
-                    moves[s, 2 * r + axis, 2 * c] = curve.W[s, r, c] * frames[i, axis] if exists else 0.0
-                    moves[s, 2 * r + axis, 2 * c + 1] = curve.W[s, r, c] * frames[i, 2 + axis] if exists else 0.0
-    W = np.empty((4, 4))
+    for v in range(len(curve.X)):
+        X, frames, moves = curve.X[v], fit.frames[v], fit.moves[v]
+        for i in range(k + 1 - closed):
+            if i < first or i >= stop:
+                tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
+                dx, dy = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
+            else:
+                s, at = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+                _, _, dx, dy, _, _ = jet(curve.b[v], s, at)
+            speed = max(length(dx, dy), 1e-12)
+            frames[i, 0], frames[i, 1], frames[i, 2], frames[i, 3] = -dy / speed, dx / speed, dx / speed, dy / speed
+        for s in range(k):
+            for c in range(4):
+                i = (s - 1 + c) % k if closed else s - 1 + c
+                exists = 0 <= i <= k
+                for r in range(4):
+                    for axis in range(2):
+                        moves[s, 2 * r + axis, 2 * c] = curve.W[s, r, c] * frames[i, axis] if exists else 0.0
+                        moves[s, 2 * r + axis, 2 * c + 1] = curve.W[s, r, c] * frames[i, 2 + axis] if exists else 0.0
+    W, share = np.empty((4, 4)), np.empty(len(curve.X))
     for i in range(first, stop):
         delta = 1e-4 * min(h[i + 1], h[i + 2])
+        for v in range(len(share)):
+            share[v] = knots_per_step(curve, v, i)
         shift_knot(curve, i, delta)
         for c in range(4):
             s = (i + 1 - c) % k if closed else i + 1 - c
             if 0 <= s < k:
                 span_weights(h, s, W)
-                for r in range(4):
-                    for axis in range(2):
-                        total = W[r, 0] * X[s, axis] + W[r, 1] * X[s + 1, axis]
-                        total += W[r, 2] * X[s + 2, axis] + W[r, 3] * X[s + 3, axis]
-                        moves[s, 2 * r + axis, 2 * c + 1] += (total - curve.b[s, r, axis]) / delta
+                for v in range(len(curve.X)):
+                    X, b, moves = curve.X[v], curve.b[v], fit.moves[v]
+                    for r in range(4):
+                        for axis in range(2):
+                            total = W[r, 0] * X[s, axis] + W[r, 1] * X[s + 1, axis]
+                            total += W[r, 2] * X[s + 2, axis] + W[r, 3] * X[s + 3, axis]
+                            moves[s, 2 * r + axis, 2 * c + 1] += share[v] * (total - b[s, r, axis]) / delta
         shift_knot(curve, i, -delta)
+
+
+@compiled(internal=True)
+def knots_per_step(curve: Curve, v: int, i: int) -> float:
+    """How far knot i moves with a step of its vertex along the curve in master v, if the other masters do the same."""
+    if len(curve.p) == 1:
+        return 1.0
+    p, k = curve.p[v], curve.size[0]
+    last, after = i - 1 if i > 0 else k - 1, i + 1 if i + 1 < k or not curve.size[1] else 0
+    own = length(p[i, 0] - p[last, 0], p[i, 1] - p[last, 1]) + length(p[after, 0] - p[i, 0], p[after, 1] - p[i, 1])
+    both = curve.h[i + 1] + curve.h[i + 2]
+    return both / own if own * MOST_KNOTS > both else MOST_KNOTS
 
 
 @compiled(internal=True)
@@ -141,7 +166,14 @@ def _add_row(
 @compiled(internal=True)
 def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
     """The equations of all rows by spans, in units of ``scale``: matrices (8, 8), and right sides in their row 8."""
-    curve, rows, gram, moves = fit.curve, fit.rows, fit.gram, fit.moves
+    for v in range(len(fit.gram)):
+        _add_master(fit, v, scale, minimax, wobble)
+
+
+@compiled(internal=True)
+def _add_master(fit: Fit, v: int, scale: float, minimax: bool, wobble: float) -> None:
+    """The same of one master."""
+    curve, rows, gram, moves, b = fit.curve, rows_of(fit.rows, v), fit.gram[v], fit.moves[v], fit.curve.b[v]
     k = curve.size[0]
     for s in range(k):
         for u in range(9):
@@ -159,8 +191,8 @@ def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
     if wobble > 0.0:
         B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
         for s in range(k):
-            nx, ny = middle_normal(curve.b[s])
-            wanted = -third_along(curve.b, s, nx, ny)
+            nx, ny = middle_normal(b[s])
+            wanted = -third_along(b, s, nx, ny)
             _add_row(gram[s], J, moves[s], B, nx, ny, wanted, wobble / curve.h[s + 2] ** 5)
     for s in range(k):
         for u in range(8):
@@ -179,12 +211,13 @@ def ratio_excess(curve: Curve, s: int) -> float:
 def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: float) -> float:
     """What a step has to lower: squares (``minimax``: fourth powers) of the distances, ratios and wobble."""
     total = 0.0
-    for r in range(rows.used[0]):
-        square = (rows.e[r] / scale) ** 2
-        total += square * square + 0.02 * square if minimax else square
+    for v in range(len(rows.used)):
+        for r in range(rows.used[v, 0]):
+            square = (rows.e[v, r] / scale) ** 2
+            total += square * square + 0.02 * square if minimax else square
     first, stop = inner_vertices(curve)
     for s in range(first, stop):
-        total += len(rows.e) / (1 + EXTRA) * ratio_excess(curve, s) ** 2
+        total += rows.e.size / (1 + EXTRA) * ratio_excess(curve, s) ** 2
     if wobble > 0.0:
         total += wobble * third_derivatives(curve)
     return total
@@ -194,9 +227,11 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
 def third_derivatives(curve: Curve) -> float:
     """The integral of the squared third derivative across the curve: of (dκ/ds)², as knots run by arc length."""
     total = 0.0
-    for s in range(curve.size[0]):
-        nx, ny = middle_normal(curve.b[s])
-        total += third_along(curve.b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
+    for v in range(len(curve.b)):
+        b = curve.b[v]
+        for s in range(curve.size[0]):
+            nx, ny = middle_normal(b[s])
+            total += third_along(b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
     return total
 
 
@@ -218,9 +253,9 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
 
 
 @compiled(internal=True)
-def equations(fit: Fit, samples: Samples, damping: float, start: int, width: int) -> None:
-    """The equations of one step of ``width`` slots from ``start`` on: those of the rows, of ratios, and damping."""
-    curve, A, g, first = fit.curve, fit.A, fit.step, fit.first
+def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, width: int) -> None:
+    """The equations in master v of one step of ``width`` slots from ``start`` on: of the rows, of ratios, damping."""
+    curve, A, g, first = fit.curve, fit.A, fit.step[v], fit.first
     k, closed = curve.size[0], curve.size[1]
     n = 2 * width
     for r in range(n):
@@ -232,8 +267,8 @@ def equations(fit: Fit, samples: Samples, damping: float, start: int, width: int
         for c in range(4):
             place = place_of(s - 1 + c, start, width, k, closed)
             index[2 * c], index[2 * c + 1] = 2 * place, 2 * place + 1
-        _scatter(fit, index, fit.gram[s], 8)
-    _hold_ratios(fit, len(samples.Q), start, width)
+        _scatter(fit, v, index, fit.gram[v, s], 8)
+    _hold_ratios(fit, v, len(samples.places), start, width)
     mean = 0.0
     for r in range(n):
         mean += A[r, r] / n
@@ -253,28 +288,28 @@ def place_of(slot: int, start: int, width: int, k: int, closed: int) -> int:
 
 
 @compiled(internal=True)
-def _scatter(fit: Fit, index: IntArray, gram: FloatArray, n: int) -> None:
+def _scatter(fit: Fit, v: int, index: IntArray, gram: FloatArray, n: int) -> None:
     """Add equations of n unknowns, the right side in row n of ``gram``, to all; negative indices are left out."""
-    A, g, first = fit.A, fit.step, fit.first
+    A, g, first = fit.A, fit.step[v], fit.first
     for u in range(n):
         r = index[u]
         if r < 0:
             continue
         g[r] += gram[n, u]
-        for v in range(n):
-            c = index[v]
+        for w in range(n):
+            c = index[w]
             if 0 <= c <= r:
-                A[r, c] += gram[u, v]
+                A[r, c] += gram[u, w]
                 first[r] = min(first[r], c)
 
 
 @compiled(internal=True)
-def _hold_ratios(fit: Fit, n: int, start: int, width: int) -> None:
+def _hold_ratios(fit: Fit, v: int, n: int, start: int, width: int) -> None:
     """Equations that bring ratios of adjacent chords back to what is allowed; ``n`` is their weight."""
     curve = fit.curve
     k, closed, h = curve.size[0], curve.size[1], curve.h
     first, stop = inner_vertices(curve)
-    index, gram = np.empty(3, dtype=np.int64), np.empty((4, 3))
+    index, slope, gram = np.empty(3, dtype=np.int64), np.empty(3), np.empty((4, 3))
     for s in range(first, stop):
         excess = ratio_excess(curve, s)
         if excess == 0.0:
@@ -283,7 +318,10 @@ def _hold_ratios(fit: Fit, n: int, start: int, width: int) -> None:
         for c in range(3):
             i = (s - 1 + c) % k if closed else s - 1 + c
             place = place_of(i, start, width, k, closed) if first <= i < stop else -1
-            index[c], gram[3, c] = 2 * place + 1, -n * J[c] * excess
+            index[c] = 2 * place + 1
+            slope[c] = J[c] * knots_per_step(curve, v, i) if place >= 0 else J[c]
+        for c in range(3):
+            gram[3, c] = -n * slope[c] * excess
             for d in range(3):
-                gram[c, d] = n * J[c] * J[d]
-        _scatter(fit, index, gram, 3)
+                gram[c, d] = n * slope[c] * slope[d]
+        _scatter(fit, v, index, gram, 3)

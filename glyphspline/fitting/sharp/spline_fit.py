@@ -14,7 +14,16 @@ from ...types import FloatArray
 from .cholesky import solve
 from .feet import Samples, copy_rows, measure, measure_afresh
 from .spline_curve import Curve, copy_curve, inner_vertices, interpolate_cold, iterate, set_knots
-from .spline_equations import LARGEST_RATIO, Fit, add_all, differentiate, equations, objective, place_of
+from .spline_equations import (
+    LARGEST_RATIO,
+    Fit,
+    add_all,
+    differentiate,
+    equations,
+    knots_per_step,
+    objective,
+    place_of,
+)  # fmt: skip
 
 WARM_PASSES, WARM = 12, 0.02
 """Passes of variant 2 after a step, and the share of the tolerance below which its error is small enough."""
@@ -66,8 +75,9 @@ def improve(
         add_all(fit, error, minimax, wobble)
         old = objective(curve, rows, error, minimax, wobble)
         while True:
-            equations(fit, samples, damping, start, width)
-            solve(fit.A, fit.step, fit.first, 2 * width)
+            for v in range(len(fit.step)):
+                equations(fit, samples, v, damping, start, width)
+                solve(fit.A, fit.step[v], fit.first, 2 * width)
             better = False
             if _advance(fit, 0.5 if minimax else 1.0, start, width):
                 iterate(trial, WARM * near, WARM_PASSES)
@@ -103,40 +113,45 @@ def _advance(fit: Fit, share: float, start: int, width: int) -> bool:
 
     A vertex moves across the curve as the curve does at its footpoint. False if chords vanish.
     """
-    curve, trial, step, frames = fit.curve, fit.trial, fit.step, fit.frames
+    curve, trial = fit.curve, fit.trial
     copy_curve(curve, trial)
-    k, closed, X, h = curve.size[0], curve.size[1], trial.X, curve.h
+    k, closed, h = curve.size[0], curve.size[1], curve.h
     first, stop = inner_vertices(curve)
-    for place in range(width):
-        i = (start + place) % k if closed else start + place
-        nu, sigma = share * step[2 * place], share * step[2 * place + 1]
-        if first <= i < stop:
-            most = MOST_SLIDE * min(h[i + 1], h[i + 2])
-            sigma = min(max(sigma, -most), most)
-        step[2 * place], step[2 * place + 1] = nu, sigma
-        for axis in range(2):
-            X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
-    for i in range(first, stop):
-        place = place_of(i, start, width, k, closed)
-        across, along = _change_across(fit, i, start, width), step[2 * place + 1] if place >= 0 else 0.0
-        for axis in range(2):
-            trial.p[i, axis] += across * frames[i, axis] + along * frames[i, 2 + axis]
+    for v in range(len(fit.step)):
+        X, p, step, frames = trial.X[v], trial.p[v], fit.step[v], fit.frames[v]
+        for place in range(width):
+            i = (start + place) % k if closed else start + place
+            nu, sigma = share * step[2 * place], share * step[2 * place + 1]
+            if first <= i < stop:
+                most = MOST_SLIDE * min(h[i + 1], h[i + 2]) / knots_per_step(curve, v, i)
+                sigma = min(max(sigma, -most), most)
+            step[2 * place], step[2 * place + 1] = nu, sigma
+            for axis in range(2):
+                X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
+        for i in range(first, stop):
+            place = place_of(i, start, width, k, closed)
+            across, along = _change_across(fit, v, i, start, width), step[2 * place + 1] if place >= 0 else 0.0
+            for axis in range(2):
+                p[i, axis] += across * frames[i, axis] + along * frames[i, 2 + axis]
     if not set_knots(trial):
         return False
-    if not closed:
-        _limit_handle(curve.X, X, 0, 1, trial.h[2])
-        _limit_handle(curve.X, X, k + 2, k + 1, trial.h[k + 1])
+    for v in range(0 if closed else len(fit.step)):
+        p = trial.p[v]
+        for end, tip, i in ((0, 1, 0), (k + 2, k + 1, k - 1)):
+            own = length(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
+            if own > 0.0:
+                _limit_handle(curve.X[v], trial.X[v], end, tip, own)
     return True
 
 
 @compiled(internal=True)
-def _change_across(fit: Fit, i: int, start: int, width: int) -> float:
-    """How far a step moves the curve across itself at the footpoint of vertex i."""
-    curve, moves, step = fit.curve, fit.moves, fit.step
+def _change_across(fit: Fit, v: int, i: int, start: int, width: int) -> float:
+    """How far a step moves the curve across itself at the footpoint of vertex i in master v."""
+    curve, moves, step, frames = fit.curve, fit.moves[v], fit.step[v], fit.frames[v]
     k, closed = curve.size[0], curve.size[1]
     s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
     y = 1 - x
-    nx, ny = fit.frames[i, 0], fit.frames[i, 1]
+    nx, ny = frames[i, 0], frames[i, 1]
     across = 0.0
     for c in range(4):
         place = place_of(s - 1 + c, start, width, k, closed)
@@ -151,7 +166,7 @@ def _change_across(fit: Fit, i: int, start: int, width: int) -> float:
 
 @compiled(internal=True)
 def _limit_handle(old: FloatArray, X: FloatArray, end: int, tip: int, chord: float) -> None:
-    """Keep an end handle on its old side, and its length within bounds."""
+    """Keep an end handle on its old side, and its length within bounds beside its chord."""
     ax, ay = old[tip, 0] - old[end, 0], old[tip, 1] - old[end, 1]
     bx, by = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
     size, new = length(ax, ay), length(bx, by)

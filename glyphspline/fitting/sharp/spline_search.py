@@ -15,8 +15,9 @@ from .cubic_fit import fit_cubic
 from .feet import Samples, find_places, measure_afresh, span_errors
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
-from .spline_curve import Curve, copy_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
+from .spline_curve import Curve, chord, copy_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
 from .spline_equations import Fit, empty_fit, third_along
+from .spline_fit import SHORTEST_HANDLE as SHORTEST
 from .spline_fit import improve
 from .stretches import Stretches, samples_of
 
@@ -43,36 +44,30 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
     Args:
         near: how near all samples have to be. given: begin from the pieces' own vertices and tangents.
     """
-    P, S = len(pieces.where), len(stretches.piece)
-    found, count, s = empty_pieces(P, len(pieces.vertices) + len(stretches.points) + S), 0 * P, 0 * P
-    tangents = np.empty((2, 2))
+    P, S, masters = len(pieces.where), len(stretches.piece), len(pieces.vertices)
+    room = len(pieces.places) + len(stretches.places) + S
+    found, count, s = empty_pieces(masters, P, room), 0 * P, 0 * P
     for q in range(P):
         if s == S or stretches.piece[s] != q:
             count = add_pieces(found, count, part(pieces, q, q + 1))
             continue
         c, i, j, k, closed, choice = row_of(pieces, q)
         samples = samples_of(stretches, s, closed)
-        p = np.empty((len(samples.Q) + 1, 3))
-        for axis in range(2):
-            tangents[0, axis], tangents[1, axis] = pieces.tangents[q, 0, axis], pieces.tangents[q, 1, axis]
+        n, tangents = len(samples.places), pieces.tangents[:, q].copy()
+        p, places = np.empty((masters, n + 1, 2)), np.empty(n + 1)
         for r in range(k + 1 - closed):
-            for axis in range(3):
-                p[r, axis] = pieces.vertices[pieces.starts[q] + r, axis]
+            at = pieces.starts[q] + r
+            places[r] = pieces.places[at]
+            for v in range(masters):
+                p[v, r, 0], p[v, r, 1] = pieces.vertices[v, at, 0], pieces.vertices[v, at, 1]
         begun = k if given else 0 * k
-        fit = empty_fit(len(samples.Q), most_spans(samples, search, begun), closed)
+        fit = empty_fit(masters, n, most_spans(samples, search, begun), closed)
         k, error = find_spline(
-            borrowed(fit),
-            borrowed(samples),
-            stretches.directions[s],
-            near,
-            search,
-            begun,
-            pieces.errors[q],
-            p,
-            tangents,
-        )
+            borrowed(fit), borrowed(samples), stretches.directions[:, s].copy(), near, search, begun, pieces.errors[q],
+            p, places, tangents,
+        )  # fmt: skip
         keep_alive((fit, samples))
-        count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, tangents, error)
+        count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, places, tangents, error)
         s += 1
     return used(found, count)
 
@@ -80,19 +75,19 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
 @compiled(internal=True)
 def most_spans(samples: Samples, search: Search, given: int) -> int:
     """Spans for which a fit has room, begun with so many; 0 for a first guess."""
-    return min(2 * max(spans_wanted(samples, search), 4, given) + 16, len(samples.Q) - 1)
+    return min(2 * max(spans_wanted(samples, search), 4, given) + 16, len(samples.places) - 1)
 
 
 @compiled(internal=True)
 def spans_wanted(samples: Samples, search: Search) -> int:
     """Spans of a first guess, by the density of vertices."""
-    return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.Q)))))
+    return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.places)))))
 
 
 @compiled(internal=True)
 def find_spline(
     fit: Fit, samples: Samples, directions: FloatArray, near: float, search: Search, given: int, missed: float,
-    p: FloatArray, tangents: FloatArray,
+    p: FloatArray, places: FloatArray, tangents: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Fit one spline to a stretch, of as few spans as the search finds.
 
@@ -100,22 +95,25 @@ def find_spline(
     more to compile.
 
     Args:
-        fit: scratch arrays. directions: (2, 2) unit tangents at the ends. near: how near all samples have to be.
+        fit: scratch arrays. directions: (K, 2, 2) unit tangents at the ends. near: how near all samples have to be.
         given: spans to begin with, whose vertices and tangents are in p and ``tangents``; 0 for a first guess.
         missed: by how much a single cubic misses the samples.
-        p: (n + 1, 3) receives the vertices and their places. tangents: (2, 2) receives the end tangents of an arc,
-            derivatives by chord length.
+        p: (K, n + 1, 2) receives the vertices, and places: (n + 1,) theirs. tangents: (K, 2, 2) receives the end
+            tangents of an arc, derivatives by chord length.
 
     Returns:
         The number of spans and the largest distance of a sample; 0 and infinity if there is none.
     """
     Q, curve, best = samples.Q, fit.curve, fit.best
-    n, closed = len(Q), curve.size[1]
+    n, closed = len(samples.places), curve.size[1]
     if given == 1:
-        missed = fit_cubic(
-            Q, directions[0], samples.free[0] > 0, directions[1], samples.free[1] > 0, near, search.cubic_rounds,
-            tangents[0], tangents[1],
-        )  # fmt: skip
+        missed = 0.0
+        for v in range(len(Q)):
+            error = fit_cubic(
+                Q[v], directions[v, 0], samples.free[0] > 0, directions[v, 1], samples.free[1] > 0, near,
+                search.cubic_rounds, tangents[v, 0], tangents[v, 1],
+            )  # fmt: skip
+            missed = max(missed, error)
         if missed <= near:
             return 1, missed
     wanted = spans_wanted(samples, search)
@@ -123,7 +121,7 @@ def find_spline(
     guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
     if max(guess, given) > min(search.most, n - 1):
         return 0, np.inf
-    tried, costs = np.zeros(len(fit.gram) + 1, dtype=np.bool_), np.empty(len(fit.gram))
+    tried, costs = np.zeros(fit.gram.shape[1] + 1, dtype=np.bool_), np.empty(fit.gram.shape[1])
     what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
     insertions = 0 * n
     best_error = last = np.inf
@@ -133,7 +131,7 @@ def find_spline(
         if what == BEGIN and given > 1:
             begin_from(curve, given, p, tangents)
         elif what in (BEGIN, RESTART):
-            possible = place_vertices(curve, samples, directions, guess, len(fit.gram) - 1)
+            possible = place_vertices(curve, samples, directions, guess, fit.gram.shape[1] - 1)
         elif what == INSERT:
             insertions += 1
             possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
@@ -184,9 +182,10 @@ def find_spline(
         if at < 0:
             what, guess = RESTART, best.size[0] - 1
     measure_afresh(samples, best, near, fit.rows)
-    find_places(samples, best, fit.rows, p)
-    for i in range(best.size[0] + 1 - closed):
-        p[i, 0], p[i, 1] = best.p[i, 0], best.p[i, 1]
+    find_places(samples, best, fit.rows, places)
+    for v in range(len(p)):
+        for i in range(best.size[0] + 1 - closed):
+            p[v, i, 0], p[v, i, 1] = best.p[v, i, 0], best.p[v, i, 1]
     end_tangents(best, tangents)
     return best.size[0], best_error
 
@@ -195,8 +194,9 @@ def find_spline(
 def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> None:
     """A curve of k spans with the given vertices and end tangents."""
     curve.size[0] = k
-    for i in range(k + 1 - curve.size[1]):
-        curve.p[i, 0], curve.p[i, 1] = p[i, 0], p[i, 1]
+    for v in range(len(p)):
+        for i in range(k + 1 - curve.size[1]):
+            curve.p[v, i, 0], curve.p[v, i, 1] = p[v, i, 0], p[v, i, 1]
     set_handles(curve, tangents)
 
 
@@ -204,7 +204,7 @@ def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> Non
 def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: int, most: int) -> bool:
     """A curve of k spans with its vertices on the outline, as the density has them; False if there is no room."""
     Q, D, p, closed = samples.Q, samples.D, curve.p, curve.size[1]
-    n = len(Q)
+    n = len(samples.places)
     if k > most:
         return False
     curve.size[0] = k
@@ -215,11 +215,23 @@ def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: in
             j += 1
         after = (j + 1) % n
         share = min(max((goal - D[j]) / max(D[j + 1] - D[j], 1e-300), 0.0), 1.0)
-        p[i, 0] = Q[j, 0] + share * (Q[after, 0] - Q[j, 0])
-        p[i, 1] = Q[j, 1] + share * (Q[after, 1] - Q[j, 1])
-    if not closed:
-        p[k, 0], p[k, 1] = Q[n - 1, 0], Q[n - 1, 1]
-    set_handles(curve, directions)
+        for v in range(len(Q)):
+            p[v, i, 0] = Q[v, j, 0] + share * (Q[v, after, 0] - Q[v, j, 0])
+            p[v, i, 1] = Q[v, j, 1] + share * (Q[v, after, 1] - Q[v, j, 1])
+    if closed:
+        return True
+    tangents = np.empty_like(directions)
+    for v in range(len(Q)):
+        p[v, k, 0], p[v, k, 1] = Q[v, n - 1, 0], Q[v, n - 1, 1]
+    for end in range(2):
+        i = end * (k - 1)
+        whole = chord(p, i, i + 1)
+        for v in range(len(Q)):
+            own = length(p[v, i + 1, 0] - p[v, i, 0], p[v, i + 1, 1] - p[v, i, 1])
+            share = max(own / whole, SHORTEST) if whole > 0.0 else 1.0
+            for axis in range(2):
+                tangents[v, end, axis] = share * directions[v, end, axis]
+    set_handles(curve, tangents)
     return True
 
 
@@ -237,7 +249,7 @@ def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
     for s in range(k):
         if errors[s] > near:
             wanted += min((errors[s] / near) ** growth - 1, 1.0)
-    count = min(max(int(np.rint(wanted)), 1), len(fit.gram) - 1 - k)
+    count = min(max(int(np.rint(wanted)), 1), fit.gram.shape[1] - 1 - k)
     if count <= 0:
         return False
     cut = np.zeros(k, dtype=np.bool_)
@@ -254,12 +266,14 @@ def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
         cut[worst] = True
     copy_curve(curve, trial)
     at = 0 * k
-    for s in range(k):
-        curve.p[at, 0], curve.p[at, 1] = trial.p[s, 0], trial.p[s, 1]
-        at += 1
-        if cut[s]:
-            curve.p[at, 0], curve.p[at, 1], _, _, _, _ = jet(trial.b, s, 0.5)
+    for v in range(len(curve.p)):
+        p, at = curve.p[v], 0 * k
+        for s in range(k):
+            p[at, 0], p[at, 1] = trial.p[v, s, 0], trial.p[v, s, 1]
             at += 1
+            if cut[s]:
+                p[at, 0], p[at, 1], _, _, _, _ = jet(trial.b[v], s, 0.5)
+                at += 1
     _resize(curve, trial, at)
     return True
 
@@ -271,18 +285,20 @@ def _resize(curve: Curve, old: Curve, k: int) -> None:
     curve.size[0] = k
     if curve.size[1]:
         return
-    for axis in range(2):
-        curve.p[k, axis] = old.p[before, axis]
-        curve.X[0, axis], curve.X[1, axis] = old.X[0, axis], old.X[1, axis]
-        curve.X[k + 1, axis], curve.X[k + 2, axis] = old.X[before + 1, axis], old.X[before + 2, axis]
-    # Handles stay within the bounds of the chords beside them.
-    first = length(curve.p[1, 0] - curve.p[0, 0], curve.p[1, 1] - curve.p[0, 1])
-    last = length(curve.p[k, 0] - curve.p[k - 1, 0], curve.p[k, 1] - curve.p[k - 1, 1])
-    for end, tip, chord in ((0, 1, first), (k + 2, k + 1, last)):
-        x, y = curve.X[tip, 0] - curve.X[end, 0], curve.X[tip, 1] - curve.X[end, 1]
-        size = length(x, y)
-        share = min(1.0, 0.5 * chord / size) if size > 0 else 1.0
-        curve.X[tip, 0], curve.X[tip, 1] = curve.X[end, 0] + share * x, curve.X[end, 1] + share * y
+    for v in range(len(curve.p)):
+        p, X = curve.p[v], curve.X[v]
+        for axis in range(2):
+            p[k, axis] = old.p[v, before, axis]
+            X[0, axis], X[1, axis] = old.X[v, 0, axis], old.X[v, 1, axis]
+            X[k + 1, axis], X[k + 2, axis] = old.X[v, before + 1, axis], old.X[v, before + 2, axis]
+        # Handles stay within the bounds of the chords beside them.
+        first = length(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1])
+        last = length(p[k, 0] - p[k - 1, 0], p[k, 1] - p[k - 1, 1])
+        for end, tip, own in ((0, 1, first), (k + 2, k + 1, last)):
+            x, y = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
+            size = length(x, y)
+            share = min(1.0, 0.5 * own / size) if size > 0 else 1.0
+            X[tip, 0], X[tip, 1] = X[end, 0] + share * x, X[end, 1] + share * y
 
 
 @compiled(internal=True)
@@ -308,17 +324,21 @@ def mean_chord(curve: Curve) -> float:
 def removal_costs(fit: Fit, costs: FloatArray) -> None:
     """What taking out each vertex is estimated to cost: the jump of the third derivative at its knot, and the error."""
     curve = fit.curve
-    k, b, h = curve.size[0], curve.b, curve.h
+    k, h = curve.size[0], curve.h
     errors = span_errors(fit.rows, k)
     first, stop = inner_vertices(curve)
     for i in range(first, stop):
         last = i - 1 if i > 0 else k - 1
-        _, _, dx, dy, _, _ = jet(b, i, 0.0)
-        speed = max(length(dx, dy), 1e-12)
-        nx, ny, before, after = -dy / speed, dx / speed, h[i + 1], h[i + 2]
-        jump = third_along(b, i, nx, ny) / after**3 - third_along(b, last, nx, ny) / before**3
+        before, after = h[i + 1], h[i + 2]
         reach = before * after / (before + after)
-        costs[i] = abs(jump) * reach**3 / 6 + max(errors[last], errors[i]) / 4
+        costs[i] = 0.0
+        for v in range(len(curve.b)):
+            b = curve.b[v]
+            _, _, dx, dy, _, _ = jet(b, i, 0.0)
+            speed = max(length(dx, dy), 1e-12)
+            nx, ny = -dy / speed, dx / speed
+            jump = third_along(b, i, nx, ny) / after**3 - third_along(b, last, nx, ny) / before**3
+            costs[i] = max(costs[i], abs(jump) * reach**3 / 6 + max(errors[last], errors[i]) / 4)
 
 
 @compiled(internal=True)
@@ -346,7 +366,8 @@ def mark_tried(tried: BoolArray, i: int, removed: bool, k: int) -> None:
 def remove_vertex(curve: Curve, good: Curve, i: int) -> None:
     """The good curve without vertex i."""
     k, closed = good.size[0], good.size[1]
-    for j in range(k - closed):
-        n = j if j < i else j + 1
-        curve.p[j, 0], curve.p[j, 1] = good.p[n, 0], good.p[n, 1]
+    for v in range(len(curve.p)):
+        for j in range(k - closed):
+            n = j if j < i else j + 1
+            curve.p[v, j, 0], curve.p[v, j, 1] = good.p[v, n, 0], good.p[v, n, 1]
     _resize(curve, good, k - 1)

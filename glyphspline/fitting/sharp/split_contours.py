@@ -43,7 +43,8 @@ class SplitContours(NamedTuple):
     They keep their own direction, in which lines and arcs are put together.
 
     Attributes:
-        cubics: (M, 4, 2) and degrees: (M,) of all, in their own direction; offsets: (C + 1,) where each begins.
+        cubics: (K, M, 4, 2) in each master and degrees: (M,) of all, in their own direction; offsets: (C + 1,) where
+            each begins.
         flipped: (C,) whether it is fitted the other way round.
     """
 
@@ -55,21 +56,32 @@ class SplitContours(NamedTuple):
 
 @compiled(internal=True)
 def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
-    """The segments that have a length, those that end where they begin cut in two: an arc needs two ends."""
-    those = lasting(cubics)
-    found, kept = np.empty((2 * len(those), 4, 2)), np.empty(2 * len(those), dtype=np.int64)
+    """The segments that have a length in some master; those that end where they begin are cut in two: an arc needs two
+    ends.
+    """
+    masters, m = len(cubics), len(degrees)
+    lasts = np.zeros(m, dtype=np.bool_)
+    for v in range(masters):
+        for j in lasting(cubics[v]):
+            lasts[j] = True
+    found, kept = np.empty((masters, 2 * m, 4, 2)), np.empty(2 * m, dtype=np.int64)
     count = 0
-    for n in range(len(those)):
-        j = those[n]
-        closed = cubics[j, 0, 0] == cubics[j, 3, 0] and cubics[j, 0, 1] == cubics[j, 3, 1]
+    for j in range(m):
+        if not lasts[j]:
+            continue
+        closed = True
+        for v in range(masters):
+            own = cubics[v, j]
+            closed = closed and own[0, 0] == own[3, 0] and own[0, 1] == own[3, 1]
         last = count + 1 if closed else count
-        for k in range(4):
-            found[last, k, 0], found[last, k, 1] = cubics[j, k, 0], cubics[j, k, 1]
-        if closed:
-            split(found[last], 0.5, found[count])
+        for v in range(masters):
+            for k in range(4):
+                found[v, last, k, 0], found[v, last, k, 1] = cubics[v, j, k, 0], cubics[v, j, k, 1]
+            if closed:
+                split(found[v, last], 0.5, found[v, count])
         kept[count] = kept[last] = degrees[j]
         count = last + 1
-    return found[:count], kept[:count]
+    return found[:, :count].copy(), kept[:count]
 
 
 @compiled(internal=True)
@@ -77,11 +89,13 @@ def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
 
     It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first point.
+    Direction and that joint are those of the first master.
     """
-    given, kept = with_ends(cubics, degrees)
-    chain, flipped = directed(given)
-    m = len(chain)
+    chain, kept = with_ends(cubics, degrees)
+    masters, m = len(chain), len(kept)
+    _, flipped = directed(chain[0])
     if flipped:
+        chain = chain[:, ::-1, ::-1].copy()
         for j in range(m // 2):
             kept[j], kept[m - 1 - j] = kept[m - 1 - j], kept[j]
     joints = find_joints(chain, kept, settings.near, settings.angle, settings.line, settings.c2)
@@ -89,12 +103,13 @@ def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     while k < m and not joints.hard[k]:
         k += 1
     if k == m:
-        k = farthest_joint(chain[:, 0])
+        k = farthest_joint(chain[0, :, 0])
     if k == 0:
         return chain, kept, flipped, joints
-    turned, own = np.empty((m, 4, 2)), np.empty(m, dtype=np.int64)
+    turned, own = np.empty((masters, m, 4, 2)), np.empty(m, dtype=np.int64)
     for j in range(m):
         own[j] = kept[(j + k) % m]
-        for c in range(4):
-            turned[j, c, 0], turned[j, c, 1] = chain[(j + k) % m, c, 0], chain[(j + k) % m, c, 1]
+        for v in range(masters):
+            for c in range(4):
+                turned[v, j, c, 0], turned[v, j, c, 1] = chain[v, (j + k) % m, c, 0], chain[v, (j + k) % m, c, 1]
     return turned, own, flipped, find_joints(turned, own, settings.near, settings.angle, settings.line, settings.c2)

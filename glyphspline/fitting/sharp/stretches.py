@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
 from ...types import FloatArray, IntArray
 from .corners import Joints
 from .feet import Samples
+from .spline_curve import chord
 
 GROWTH = 1.35
 """How fast the wanted distance of vertices grows along the outline: by exp(1.35) < 4 from one to the next."""
@@ -22,25 +22,27 @@ class Stretches(NamedTuple):
     Attributes:
         piece: (S,) the piece whose place the spline takes.
         starts: (S + 1,) first sample of each.
-        points: (N, 3) samples and their places on the contour; at the end of a closed one the first again, a lap later.
+        points: (K, N, 2) samples in each master, and (N,) places: where on the contour; at the end of a closed one the
+            first again, a lap later.
         spacing: (N,) wanted distance of vertices after each sample.
-        directions: (S, 2, 2) unit tangents at the ends. free: (S, 2) whether these may turn.
+        directions: (K, S, 2, 2) unit tangents at the ends. free: (S, 2) whether these may turn.
     """
 
     piece: IntArray
     starts: IntArray
     points: FloatArray
+    places: FloatArray
     spacing: FloatArray
     directions: FloatArray
     free: IntArray
 
 
 @compiled(internal=True)
-def empty_stretches(count: int, samples: int) -> Stretches:
+def empty_stretches(masters: int, count: int, samples: int) -> Stretches:
     """Room for so many stretches, with so many samples together."""
     stretches = Stretches(
-        np.empty(count, dtype=np.int64), np.empty(count + 1, dtype=np.int64), np.empty((samples, 3)), np.empty(samples),
-        np.empty((count, 2, 2)), np.empty((count, 2), dtype=np.int64),
+        np.empty(count, dtype=np.int64), np.empty(count + 1, dtype=np.int64), np.empty((masters, samples, 2)),
+        np.empty(samples), np.empty(samples), np.empty((masters, count, 2, 2)), np.empty((count, 2), dtype=np.int64),
     )  # fmt: skip
     stretches.starts[0] = 0
     return stretches
@@ -50,21 +52,25 @@ def empty_stretches(count: int, samples: int) -> Stretches:
 def add_stretch(stretches: Stretches, count: int, joints: Joints, i: int, j: int, piece: int) -> Stretches:
     """Add the samples between two joints after ``count`` other stretches; in larger arrays if need be."""
     a, b, at = joints.first[i], joints.first[j], stretches.starts[count]
-    if at + b - a + 1 > len(stretches.points):
-        points, spacing = np.empty((2 * (at + b - a + 1), 3)), np.empty(2 * (at + b - a + 1))
+    masters, room = len(stretches.points), 2 * (at + b - a + 1)
+    if at + b - a + 1 > len(stretches.places):
+        points, places, spacing = np.empty((masters, room, 2)), np.empty(room), np.empty(room)
         for r in range(at):
-            spacing[r] = stretches.spacing[r]
-            for axis in range(3):
-                points[r, axis] = stretches.points[r, axis]
-        stretches = Stretches(stretches.piece, stretches.starts, points, spacing, stretches.directions, stretches.free)
+            places[r], spacing[r] = stretches.places[r], stretches.spacing[r]
+            for v in range(masters):
+                points[v, r, 0], points[v, r, 1] = stretches.points[v, r, 0], stretches.points[v, r, 1]
+        stretches = Stretches(
+            stretches.piece, stretches.starts, points, places, spacing, stretches.directions, stretches.free
+        )
     for r in range(b - a + 1):
-        for axis in range(2):
-            stretches.points[at + r, axis] = joints.samples[a + r, axis]
-        stretches.points[at + r, 2] = joints.places[a + r]
+        stretches.places[at + r] = joints.places[a + r]
         stretches.spacing[at + r] = joints.spacing[min(a + r, len(joints.spacing) - 1)]
-    for axis in range(2):
-        stretches.directions[count, 0, axis] = joints.leaving[i, axis]
-        stretches.directions[count, 1, axis] = joints.arriving[j, axis]
+    for v in range(masters):
+        for axis in range(2):
+            for r in range(b - a + 1):
+                stretches.points[v, at + r, axis] = joints.samples[v, a + r, axis]
+            stretches.directions[v, count, 0, axis] = joints.leaving[v, i, axis]
+            stretches.directions[v, count, 1, axis] = joints.arriving[v, j, axis]
     stretches.free[count, 0], stretches.free[count, 1] = joints.corner[i], joints.corner[j]
     stretches.piece[count], stretches.starts[count + 1] = piece, at + b - a + 1
     return stretches
@@ -75,8 +81,9 @@ def stretches_used(stretches: Stretches, count: int) -> Stretches:
     """The first ``count`` stretches."""
     end = stretches.starts[count]
     return Stretches(
-        stretches.piece[:count], stretches.starts[: count + 1], stretches.points[:end], stretches.spacing[:end],
-        stretches.directions[:count], stretches.free[:count],
+        stretches.piece[:count], stretches.starts[: count + 1], stretches.points[:, :end].copy(),
+        stretches.places[:end], stretches.spacing[:end], stretches.directions[:, :count].copy(),
+        stretches.free[:count],
     )  # fmt: skip
 
 
@@ -84,10 +91,10 @@ def stretches_used(stretches: Stretches, count: int) -> Stretches:
 def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     """The samples of a stretch, with the integral of the density of vertices."""
     first, n = stretches.starts[s], stretches.starts[s + 1] - stretches.starts[s] - 1
-    Q = stretches.points[first : first + n + 1]
+    Q, places = stretches.points[:, first : first + n + 1].copy(), stretches.places[first : first + n + 1]
     D, h, step = np.empty(n + 1), np.empty(n), np.empty(n)
     for r in range(n):
-        h[r], step[r] = stretches.spacing[first + r], length(Q[r + 1, 0] - Q[r, 0], Q[r + 1, 1] - Q[r, 1])
+        h[r], step[r] = stretches.spacing[first + r], chord(Q, r, r + 1)
     # Spacings grow no faster than chords may; around a closed contour from the last to the first, too.
     for _ in range(2):
         for r in range(n):
@@ -100,4 +107,4 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     D[0] = 0.0
     for r in range(n):
         D[r + 1] = D[r] + step[r] / h[r]
-    return Samples(Q[: n + 1 - closed], D, stretches.free[s], Q[n, 2])
+    return Samples(Q[:, : n + 1 - closed].copy(), places[: n + 1 - closed], D, stretches.free[s], places[n])
