@@ -25,8 +25,8 @@ from glyphspline.fitting.sharp.sharp_fit import refitted
 from glyphspline.fitting.sharp.spline_search import fit_splines
 from glyphspline.fitting.sharp.split_contours import Settings, SplitContours
 from glyphspline.outlines.outline import Contours
-from glyphspline.outlines.segments import all_cubics
 from glyphspline.outlines.overlaps import remove_overlaps
+from glyphspline.outlines.segments import all_cubics
 from glyphspline.types import FloatArray
 
 from .polygons import circle_contour, square_contour
