@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from ..errors import FontError
+from .designspace import Designspace, open_designspace
 from .opentype.containers import FORMATS
 from .opentype.font import Font, open_font
 from .opentype.tables import Location
@@ -16,7 +17,7 @@ from .source import opening
 from .svg_drawings import SvgDrawings, open_svg
 from .ufo import Ufo, open_ufo
 
-AnySource: TypeAlias = Font | Ufo | SvgDrawings
+AnySource: TypeAlias = Font | Ufo | Designspace | SvgDrawings
 
 STDIN = "-"
 LARGEST_INPUT = 1 << 29
@@ -26,13 +27,13 @@ _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> AnySource:
-    """Open a font file, a UFO, an SVG drawing or a folder of drawings.
+    """Open a font file, a UFO, a designspace, an SVG drawing or a folder of drawings.
 
     The content of the path decides, not its name.
 
     Args:
         path: file or folder; ``"-"`` is a font or drawing on standard input.
-        face_index, location: as in :func:`open_font`; only fonts have them.
+        face_index, location: as in :func:`open_font`; only fonts have them, and a designspace has a location.
 
     Raises:
         FontError: the path cannot be read, or it has no such face or location.
@@ -49,6 +50,8 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
         reader = open_svg
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
+    if path.is_file() and b"<designspace" in beginning(path):
+        return open_designspace(path, location)
     if location:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))
     return reader(path)
@@ -63,9 +66,18 @@ def is_font(path: str | Path) -> bool:
     path = _place(path)
     if path.is_dir():
         return False
-    with opening(path), open(path, "rb") as file:
-        head = file.read(4096)
+    head = beginning(path)
     return head[:4] in FORMATS or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] != b"<"
+
+
+def beginning(path: Path) -> bytes:
+    """The first bytes of a file, which say its kind.
+
+    Raises:
+        FontError: it cannot be read.
+    """
+    with opening(path), open(path, "rb") as file:
+        return file.read(4096)
 
 
 def _place(path: str | Path) -> Path:

@@ -44,7 +44,9 @@ class StackPen:
         self._add(point)
 
     def curveTo(self, *points: Any) -> None:
-        """A cubic through two control points to a third."""
+        """A cubic of two control points and an end; of fewer control points, a quadratic or a line, as in fontTools."""
+        if len(points) > 3:
+            raise GlyphsplineError(f"a curve of {len(points) - 1} control points, more than two", contour=self._drawn)
         self._add(*points)
 
     def qCurveTo(self, *points: Any) -> None:

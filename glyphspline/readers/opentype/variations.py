@@ -19,7 +19,7 @@ from fontTools.varLib.iup import iup_delta
 from fontTools.varLib.varStore import VarStoreInstancer
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import DesignAxis, Masters, Region, region_scalars, told_apart
+from ...outlines.masters import Masters, Region, region_scalars, told_apart
 from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
 from ..pens import MAX_COMPONENTS, MAX_SEGMENTS
@@ -52,12 +52,8 @@ class Variations:
                 )
             segments = tables["avar"].segments
         self.axes = tuple(
-            DesignAxis(
-                axis.tag, axis.name, axis.minimum, axis.default, axis.maximum,
-                tuple(sorted(segments.get(axis.tag, {}).items())),
-            )
-            for axis in axes_of(tables)
-        )  # fmt: skip
+            replace(axis, mapping=tuple(sorted(segments.get(axis.tag, {}).items()))) for axis in axes_of(tables)
+        )
         self._tags = [axis.tag for axis in self.axes]
         self._parts: dict[str, _Parts] = {}
         self._composed = set(tables["VARC"].table.Coverage.glyphs) if "VARC" in tables else set()
