@@ -258,3 +258,49 @@ def test_what_is_no_designspace(space: Path, tmp_path: Path) -> None:
     )
     with pytest.raises(FontError, match="entities"):
         open_designspace(broken)
+
+
+GLYPHS = """{
+.appVersion = "3208";
+.formatVersion = 3;
+axes = ({ name = Weight; tag = wght; });
+familyName = Strokes;
+fontMaster = (
+{ axesValues = (20); id = m01; metricValues = ({ pos = 800; }, { pos = -200; }); name = Light; },
+{ axesValues = (200); id = m02; metricValues = ({ pos = 800; }, { pos = -200; }); name = Bold; }
+);
+glyphs = (
+{
+glyphname = o;
+layers = (
+{ layerId = m01; shapes = ({ closed = 1; nodes = ((0,0,l),(20,0,l),(20,700,l),(0,700,l)); }); width = 500; },
+{ layerId = m02; shapes = ({ closed = 1; nodes = ((0,0,l),(200,0,l),(200,720,l),(0,720,l)); }); width = 600; }
+);
+unicode = 111;
+}
+);
+instances = (
+{ axesValues = (20); name = Light; weightClass = 300; },
+{ axesValues = (200); name = Bold; weightClass = 700; }
+);
+metrics = ({ type = ascender; }, { type = descender; });
+unitsPerEm = 1000;
+}
+"""
+
+
+def test_a_glyphs_file_is_a_designspace(tmp_path: Path) -> None:
+    pytest.importorskip("glyphsLib")
+    path = tmp_path / "strokes.glyphs"
+    path.write_text(GLYPHS)
+    source = open_source(path, location={"wght": 500})
+    assert source.format == "Glyphs"
+    assert source.select(text="o") == ("o",)
+    assert source.outline("o").contours[0].points[:, 0].max() == pytest.approx(110)
+    assert len(source.masters("o")) == 2
+    again = pickle.loads(pickle.dumps(source))
+    assert again.sha256 == source.sha256
+    assert corners(again, "o") == corners(source, "o")
+    path.write_text("{ .appVersion = ")
+    with pytest.raises(FontError, match=r"strokes\.glyphs: a broken Glyphs file"):
+        open_source(path)

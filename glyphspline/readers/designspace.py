@@ -53,11 +53,11 @@ class Designspace(Source):
 
     format = "designspace"
 
-    def __init__(self, path: Path, location: Location) -> None:
-        self.path = path
-        data = path.read_bytes()
-        parsed(data)
-        self._document = document = DesignSpaceDocument.fromfile(path)
+    def __init__(self, path: Path, location: Location, file: Path | None = None) -> None:
+        """Open the masters that ``file`` names, which is at ``path`` unless it was made of what is there."""
+        self.path, file = path, file or path
+        parsed(file.read_bytes())
+        document = DesignSpaceDocument.fromfile(file)
         if document.axisMappings:
             raise FontError("its axes depend on each other (mappings): locations cannot be told axis by axis")
         for axis in document.axes:
