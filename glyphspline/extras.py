@@ -11,6 +11,7 @@ from .errors import GlyphsplineError
 EXTRAS = {
     "overlaps": ("removing overlaps", "pathops"),
     "parquet": ("Parquet", "pyarrow"),
+    "sources": ("reading Glyphs files", "glyphsLib"),
     "cluster": ("--scheduler", "distributed"),
     "view": ("the viewer", "starlette", "uvicorn"),
 }

@@ -18,6 +18,7 @@ FONT = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
 COMMANDS = {
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
+    "sources": ["convert", "made.glyphs", "--text", "O"],
     "cluster": ["convert", FONT, "--text", "O", "--scheduler", "tcp://127.0.0.1:1"],
     "view": ["view", FONT, "--no-browser"],
 }
@@ -35,8 +36,11 @@ def without(extra: str, words: list[str], place: Path) -> subprocess.CompletedPr
 
 @pytest.mark.parametrize("extra", COMMANDS)
 def test_a_missing_extra_is_said_at_once(extra: str, tmp_path: Path) -> None:
+    glyphs = tmp_path / "made.glyphs"
+    glyphs.write_text('{\n.appVersion = "3208";\n}\n')
+    words = [str(glyphs) if word == "made.glyphs" else word for word in COMMANDS[extra]]
     out = [] if extra == "view" else ["--out", str(tmp_path / "out")]
-    found = without(extra, [*COMMANDS[extra], *out], tmp_path / "cache")
+    found = without(extra, [*words, *out], tmp_path / "cache")
     assert found.returncode == 2
     said = [line for line in found.stderr.splitlines() if not line.startswith("compiling once")]
     assert len(said) == 1, found.stderr

@@ -2,8 +2,7 @@
 
 from .open import AnySource, open_source
 from .opentype.font import Font, open_font
-from .opentype.tables import Axis
 from .selection import Selection
 from .source import Source
 
-__all__ = ["AnySource", "Axis", "Font", "Selection", "Source", "open_font", "open_source"]
+__all__ = ["AnySource", "Font", "Selection", "Source", "open_font", "open_source"]

@@ -8,7 +8,9 @@ from typing import Any
 
 from ..errors import GlyphsplineError
 from ..extras import has
+from ..outlines.masters import DesignAxis
 from ..outlines.outline import Outline
+from .designspace import Designspace
 from .open import STDIN, is_font, open_source, standard_input
 from .opentype.face import Face, open_faces
 from .opentype.tables import Location
@@ -45,12 +47,17 @@ def face_facts(face: Face | Source) -> dict[str, Any]:
         "family": face.family,
         "style": face.style,
         **asdict(face.metrics),
-        "axes": [asdict(axis) for axis in face.axes] if isinstance(face, Face) else [],
-        "instances": face.instances if isinstance(face, Face) else {},
+        "axes": [axis_facts(axis) for axis in face.axes] if isinstance(face, Face | Designspace) else [],
+        "instances": face.instances if isinstance(face, Face | Designspace) else {},
         "location": dict(face.location),
         "glyphs": glyphs,
         "characters": characters,
     }
+
+
+def axis_facts(axis: DesignAxis) -> dict[str, Any]:
+    """An axis in user space."""
+    return {name: value for name, value in asdict(axis).items() if name != "mapping"}
 
 
 def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tempfile
 from functools import cache
@@ -9,6 +10,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from ..errors import FontError
+from .designspace import Designspace, open_designspace
+from .glyphs_file import GlyphsFile, open_glyphs
 from .opentype.containers import FORMATS
 from .opentype.font import Font, open_font
 from .opentype.tables import Location
@@ -16,9 +19,10 @@ from .source import opening
 from .svg_drawings import SvgDrawings, open_svg
 from .ufo import Ufo, open_ufo
 
-AnySource: TypeAlias = Font | Ufo | SvgDrawings
+AnySource: TypeAlias = Font | Ufo | Designspace | GlyphsFile | SvgDrawings
 
 STDIN = "-"
+UTF8 = b"\xef\xbb\xbf"
 LARGEST_INPUT = 1 << 29
 """Limit of bytes from standard input."""
 
@@ -26,13 +30,14 @@ _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> AnySource:
-    """Open a font file, a UFO, an SVG drawing or a folder of drawings.
+    """Open a font file, a UFO, a designspace, a Glyphs file, an SVG drawing or a folder of drawings.
 
     The content of the path decides, not its name.
 
     Args:
         path: file or folder; ``"-"`` is a font or drawing on standard input.
-        face_index, location: as in :func:`open_font`; only fonts have them.
+        face_index, location: as in :func:`open_font`; only fonts have them; a designspace and a Glyphs file
+            have locations.
 
     Raises:
         FontError: the path cannot be read, or it has no such face or location.
@@ -49,13 +54,19 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
         reader = open_svg
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
+    if path.is_file():
+        head = beginning(path)
+        if is_glyphs(head):
+            return open_glyphs(path, location)
+        if b"<designspace" in head:
+            return open_designspace(path, location)
     if location:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))
     return reader(path)
 
 
 def is_font(path: str | Path) -> bool:
-    """Whether a path is to be read as a font file: it is one, or neither a folder nor XML.
+    """Whether a path is to be read as a font file: it is one, or neither a folder, nor XML, nor a Glyphs file.
 
     Raises:
         FontError: it cannot be read.
@@ -63,9 +74,23 @@ def is_font(path: str | Path) -> bool:
     path = _place(path)
     if path.is_dir():
         return False
+    head = beginning(path)
+    return head[:4] in FORMATS or not (is_glyphs(head) or head.removeprefix(UTF8).lstrip()[:1] == b"<")
+
+
+def is_glyphs(head: bytes) -> bool:
+    """Whether a file that begins so is a Glyphs file: a property list in braces."""
+    return re.match(rb'\s*\{\s*"?\.?\w+"?\s*=', head.removeprefix(UTF8)) is not None
+
+
+def beginning(path: Path) -> bytes:
+    """The first bytes of a file, which say its kind.
+
+    Raises:
+        FontError: it cannot be read.
+    """
     with opening(path), open(path, "rb") as file:
-        head = file.read(4096)
-    return head[:4] in FORMATS or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] != b"<"
+        return file.read(4096)
 
 
 def _place(path: str | Path) -> Path:

@@ -51,11 +51,7 @@ class Ufo(Source):
         ascender = 0.8 * em if info.ascender is None else info.ascender
         descender = -0.2 * em if info.descender is None else info.descender
         self.metrics = FontMetrics(em, float(ascender), float(descender))
-        self._glyphs = reader.getGlyphSet()
-        self._glyphs.glyphClass = _Glyph
-        outside = [name for name, file in self._glyphs.contents.items() if Path(file).name != file]
-        if outside:
-            raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
+        self._reader, self._glyphs = reader, _glyph_set(reader)
         self.glyph_names = _exported(list(self._glyphs.contents), reader.readLib())
         claims = {name: self._claims(name) for name in self._glyphs.contents}
         self.cmap = first_claims((name, claims[name]) for name in self.glyph_names)
@@ -83,6 +79,21 @@ class Ufo(Source):
         pen.finish()
         return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
 
+    def layer(self, name: str) -> GlyphSet:
+        """The glyphs of another layer. Their files are not checked for entities; see :func:`parsed`.
+
+        Raises:
+            FontError: there is no such layer.
+        """
+        if name not in self._reader.getLayerNames():
+            raise FontError(f"no layer {name!r}", font=str(self.path))
+        return _glyph_set(self._reader, name)
+
+    @property
+    def default_layer(self) -> GlyphSet:
+        """The glyphs of the default layer."""
+        return self._glyphs
+
     def _claims(self, name: str) -> list[int]:
         """A glyph's code points. Its file is checked for entities here, before ufoLib reads it."""
         try:
@@ -104,6 +115,16 @@ class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
     def draw(self, pen: Any) -> None:
         """Draw with a segment pen."""
         self.replay(PointToSegmentPen(pen))
+
+
+def _glyph_set(reader: UFOReader, layer: str | None = None) -> GlyphSet:
+    """The glyphs of a layer, all of which are inside the UFO."""
+    glyphs = reader.getGlyphSet(layer)
+    glyphs.glyphClass = _Glyph
+    outside = [name for name, file in glyphs.contents.items() if Path(file).name != file]
+    if outside:
+        raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
+    return glyphs
 
 
 def open_ufo(path: str | Path) -> Ufo:

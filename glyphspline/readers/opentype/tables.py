@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
 from fontTools.ttLib import TTFont
 
 from ...errors import FontError
+from ...outlines.masters import DesignAxis
 from ...outlines.outline import FontMetrics
 
 Location: TypeAlias = Mapping[str, float] | str | None
@@ -20,21 +20,10 @@ Location: TypeAlias = Mapping[str, float] | str | None
 log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class Axis:
-    """A variable font's axis, in user space."""
-
-    tag: str
-    name: str
-    minimum: float
-    default: float
-    maximum: float
-
-
-def axes_of(tables: TTFont) -> tuple[Axis, ...]:
-    """The axes in the font's order; empty if the font is not variable."""
+def axes_of(tables: TTFont) -> tuple[DesignAxis, ...]:
+    """The axes in the font's order, without their mappings; empty if the font is not variable."""
     return tuple(
-        Axis(a.axisTag, _name(tables, a.axisNameID) or a.axisTag, a.minValue, a.defaultValue, a.maxValue)
+        DesignAxis(a.axisTag, _name(tables, a.axisNameID) or a.axisTag, a.minValue, a.defaultValue, a.maxValue)
         for a in (tables["fvar"].axes if "fvar" in tables else ())
     )
 
@@ -52,7 +41,7 @@ def _name(tables: TTFont, name_id: int) -> str | None:
 
 
 def location_within(
-    asked: Location, axes: tuple[Axis, ...], instances: Mapping[str, Mapping[str, float]], path: Path
+    asked: Location, axes: tuple[DesignAxis, ...], instances: Mapping[str, Mapping[str, float]], path: Path
 ) -> dict[str, float]:
     """Clamp a location to the limits of the axes; the result is in the order of the font's axes.
 

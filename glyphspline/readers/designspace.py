@@ -1,0 +1,290 @@
+"""Designspaces: variable sources, whose masters are UFOs or layers of them, through fontTools' designspaceLib.
+
+A glyph may be missing in some of the masters; then it has regions of its own, as its components may have. Between the
+masters it is interpolated by fontTools' model of variations, from which variable fonts are built.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument
+from fontTools.pens.pointPen import PointToSegmentPen
+from fontTools.pens.recordingPen import RecordingPen
+from fontTools.ufoLib.glifLib import GlyphSet
+from fontTools.varLib.errors import VariationModelError
+from fontTools.varLib.models import VariationModel, normalizeValue
+
+from ..errors import FontError, GlyphsplineError
+from ..outlines.masters import DesignAxis, Masters, Region, told_apart
+from ..outlines.outline import Outline
+from ..types import FloatArray
+from .opentype.tables import Location, location_within
+from .pens import MAX_COMPONENTS, ContourPen
+from .source import Head, OutlineOrError, Source, attempt, opening
+from .stacks import StackPen
+from .ufo import Ufo, open_ufo, parsed
+
+
+@dataclass(frozen=True)
+class _Master:
+    """A source of a designspace: its name, where it is by axis tag, normalised, and its glyphs."""
+
+    name: str
+    at: dict[str, float]
+    glyphs: GlyphSet
+    muted: frozenset[str]
+
+
+class Designspace(Source):
+    """A designspace at one location; made by :func:`open_designspace`.
+
+    Attributes:
+        path: the file, as given. location: axis tag to user-space value; empty at the default.
+        axes: its axes. family, style, metrics, glyph_names, cmap: those of the default master.
+    """
+
+    format = "designspace"
+
+    def __init__(self, path: Path, location: Location, file: Path | None = None) -> None:
+        """Open the masters that ``file`` names, which is at ``path`` unless it was made of what is there."""
+        self.path, file = path, file or path
+        parsed(file.read_bytes())
+        document = DesignSpaceDocument.fromfile(file)
+        if document.axisMappings:
+            raise FontError("its axes depend on each other (mappings): locations cannot be told axis by axis")
+        for axis in document.axes:
+            if not isinstance(axis, AxisDescriptor):
+                raise FontError(f"axis {axis.tag!r} has separate values, between which nothing is interpolated")
+        self.axes = tuple(_axis(axis) for axis in document.axes)
+        instances = {item.name: item.getFullUserLocation(document) for item in document.instances if item.name}
+        tags = {axis.name: axis.tag for axis in document.axes}
+        named = {name: {tags[axis]: value for axis, value in at.items()} for name, at in instances.items()}
+        self.instances = named
+        self.location = MappingProxyType(location_within(location, self.axes, named, path))
+        default = document.findDefault()
+        if default is None:
+            raise FontError("no master at the default of all axes")
+        ufos: dict[str, Ufo] = {}
+        self._masters_of_all: list[_Master] = []
+        for number, source in enumerate(document.sources):
+            if source.path is None:
+                raise FontError(f"source {number} names no file")
+            if source.path not in ufos:
+                ufos[source.path] = open_ufo(source.path)
+            ufo, full = ufos[source.path], source.getFullDesignLocation(document)
+            at = {axis.tag: _normalised(axis, full[axis.name]) for axis in document.axes}
+            name = source.styleName or source.name or Path(source.path).stem
+            glyphs = ufo.default_layer if source.layerName is None else ufo.layer(source.layerName)
+            name = name if source.layerName is None else f"{name}, layer {source.layerName}"
+            self._masters_of_all.append(_Master(name, at, glyphs, frozenset(source.mutedGlyphNames)))
+        self._ufos, self._default = tuple(ufos.values()), ufos[default.path]
+        self.family, self.style = self._default.family, self._default.style
+        self.metrics, self.cmap = self._default.metrics, self._default.cmap
+        self.glyph_names = self._default.glyph_names
+        self._components: dict[str, Masters] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_designspace, (self.path, dict(self.location))
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the document and of all its UFOs, in hexadecimal."""
+        digest = hashlib.sha256(self.path.read_bytes())
+        for ufo in self._ufos:
+            digest.update(ufo.sha256.encode())
+        return digest.hexdigest()
+
+    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
+
+    def _outline(self, head: Head) -> Outline:
+        """The glyph at the location, by the pen of all readers: it drops what has no length there."""
+        instance, pen = self._masters(head).instance(self.location), ContourPen()
+        for contour in instance.contours:
+            contour.draw(pen)
+        pen.finish()
+        notes = (*instance.notes, *pen.notes)
+        return replace(instance, contours=pen.contours, notes=notes, snapped=pen.snapped)
+
+    def _masters(self, head: Head) -> Masters:
+        return replace(self._mixed(head.name, ()), name=head.name, gid=head.gid, unicodes=head.unicodes)
+
+    def _mixed(self, name: str, above: tuple[str, ...]) -> Masters:
+        """A glyph in its masters and in those of its components."""
+        if name in above:
+            raise GlyphsplineError("components in a loop: " + " > ".join([*above[above.index(name) :], name]))
+        if name in self._components:
+            return self._components[name]
+        drawn = [(master, *_drawing(master, name)) for master in self._masters_of_all if name in master.glyphs]
+        drawn = [item for item in drawn if name not in item[0].muted]
+        try:
+            model = VariationModel([item[0].at for item in drawn], axisOrder=[axis.tag for axis in self.axes])
+        except VariationModelError as error:
+            where = ", ".join([item[0].name for item in drawn]) or "none"
+            raise GlyphsplineError(f"its masters ({where}) are not one default and others elsewhere") from error
+        drawn = [drawn[k] for k in model.reverseMapping]  # the default first
+        for master, parts, _ in drawn[1:]:
+            _compare(parts, drawn[0][1], master.name, drawn[0][0].name)
+        own = Masters(name, axes=self.axes, regions=self._stacked(map(self._region, model.supports[1:])))
+        names = [part.base for part in drawn[0][1] if part.base is not None]
+        if len(names) > MAX_COMPONENTS:
+            raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
+        children = {base: self._mixed(base, (*above, name)) for base in dict.fromkeys(names)}
+        regions = [_key(region) for masters in (own, *children.values()) for region in masters.regions]
+        found = replace(own, regions=self._stacked(told_apart(regions)), metrics=self.metrics)
+        weights = own.weights_at(found.peaks)  # (K, S)
+        pen = StackPen(len(found))
+        notes: list[str] = []
+        for k, part in enumerate(drawn[0][1]):
+            points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
+            points = np.tensordot(weights, points, axes=1)  # (K, N, 2)
+            if part.base is None:
+                _replay(pen, part.operations, points)
+                continue
+            child = children[part.base]
+            of_child = child.weights_at(found.peaks)
+            for contour in child.contours:
+                placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
+                pen.contour(placed, contour.degrees)
+            notes += child.notes
+        pen.closePath()
+        found = replace(
+            found, contours=tuple(pen.contours), advances=weights @ np.array([width for _, _, width in drawn]),
+            notes=(*pen.notes, *notes),
+        )  # fmt: skip
+        if above:  # components are asked for again
+            self._components[name] = found
+        return found
+
+    def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
+        return tuple(support.get(axis.tag, (0.0, 0.0, 0.0)) for axis in self.axes)
+
+    def _stacked(self, regions: Any) -> FloatArray:
+        return np.array([*regions], dtype=np.float64).reshape(-1, len(self.axes), 3)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A contour, as names of a segment pen's operations and their points, or a component of another glyph.
+
+    Of a component the points (3, 2) are the rows of its matrix and its offset. A point of None is one that is implied.
+    """
+
+    operations: tuple[tuple[str, int], ...]
+    points: list[tuple[float, float]]
+    base: str | None = None
+
+
+def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
+    """The parts of a glyph in a master, in order, and its advance."""
+    parsed(master.glyphs.getGLIF(name))  # refuses entities
+    glyph, pen = master.glyphs[name], RecordingPen()
+    glyph.replay(PointToSegmentPen(pen, outputImpliedClosingLine=True))
+    return [*_parts(pen.value)], float(glyph.width)
+
+
+def _parts(recorded: Sequence[tuple[str, tuple[Any, ...]]]) -> Iterator[_Part]:
+    operations: list[tuple[str, int]] = []
+    points: list[tuple[float, float]] = []
+    for operation, given in recorded:
+        if operation == "addComponent":
+            base, (a, b, c, d, e, f) = given
+            yield _Part((), [(a, b), (c, d), (e, f)], base)
+        elif operation in ("closePath", "endPath"):
+            yield _Part(tuple(operations), points)
+            operations, points = [], []
+        else:
+            implied = given[-1:] == (None,)
+            operations.append(("all implied" if implied else operation, len(given) - implied))
+            points += given[:-1] if implied else given
+
+
+def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str) -> None:
+    """Raise an error that names the first contour that is drawn otherwise than in the default master."""
+    if len(parts) != len(expected):
+        counts = f"{len(parts)} contours and components, not {len(expected)}"
+        raise GlyphsplineError(f"master {name!r} has {counts} as {default!r}")
+    for number, (part, other) in enumerate(zip(parts, expected, strict=True)):
+        if part.base != other.base:
+            kinds = ["a contour" if base is None else f"component {base!r}" for base in (part.base, other.base)]
+            raise GlyphsplineError(f"master {name!r} has {kinds[0]}, {default!r} has {kinds[1]}", contour=number)
+        if part.operations != other.operations:
+            words = _difference(part.operations, other.operations)
+            raise GlyphsplineError(f"master {name!r} is unlike {default!r}: {words}", contour=number)
+
+
+# What the operations of a segment pen draw.
+KINDS = {
+    "moveTo": "start",
+    "lineTo": "line",
+    "qCurveTo": "quadratic",
+    "curveTo": "cubic",
+    "all implied": "closed quadratic",
+}
+
+
+def _difference(operations: Sequence[tuple[str, int]], expected: Sequence[tuple[str, int]]) -> str:
+    """How two contours differ first."""
+    if len(operations) != len(expected):
+        return f"{len(operations) - 1} segments, not {len(expected) - 1}"
+    k = next(k for k, (one, other) in enumerate(zip(operations, expected, strict=True)) if one != other)
+    (one, count), (other, expected_count) = operations[k], expected[k]
+    if one == other:
+        return f"segment {k - 1} has {count} points, not {expected_count}"
+    return f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[other]}"
+
+
+def _replay(pen: StackPen, operations: Sequence[tuple[str, int]], points: FloatArray) -> None:
+    """Draw a contour of (K, N, 2) points."""
+    at = 0
+    for operation, count in operations:
+        given = [(points[:, n, 0], points[:, n, 1]) for n in range(at, at + count)]
+        at += count
+        if operation == "all implied":
+            pen.qCurveTo(*given, None)
+        else:
+            getattr(pen, operation)(*given)
+    pen.closePath()
+
+
+def _key(region: FloatArray) -> Region:
+    return tuple((low, peak, high) for low, peak, high in region.tolist())
+
+
+def _axis(axis: AxisDescriptor) -> DesignAxis:
+    """An axis; its mapping is from user space to that of the masters, both normalised."""
+    limits = (axis.minimum, axis.default, axis.maximum)
+    users = sorted({*limits, *(user for user, _ in axis.map if axis.minimum <= user <= axis.maximum)})
+    pairs = tuple((normalizeValue(user, limits), _normalised(axis, axis.map_forward(user))) for user in users)
+    mapping = () if all(before == after for before, after in pairs) else pairs
+    low, default, high = map(float, limits)
+    return DesignAxis(axis.tag, axis.name, low, default, high, mapping)
+
+
+def _normalised(axis: AxisDescriptor, value: float) -> float:
+    """A value of the masters' space, normalised."""
+    low, default, high = (axis.map_forward(user) for user in (axis.minimum, axis.default, axis.maximum))
+    return float(normalizeValue(value, (low, default, high)))
+
+
+def open_designspace(path: str | Path, location: Location = None) -> Designspace:
+    """Open a designspace file, whose masters are UFOs.
+
+    Args:
+        path: the file. location: as in :func:`.opentype.font.open_font`.
+
+    Raises:
+        FontError: the file or one of its UFOs cannot be read, there is no such axis or instance, or axes depend on
+            each other.
+    """
+    path = Path(path)
+    with opening(path, "designspace"):
+        return Designspace(path, location)
