@@ -187,7 +187,7 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     exact = refitted(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), SETTINGS)
     assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
     curve = assembly.curves
-    bounds, _ = certify(split, exact, assembly, curve, 0.01, 1.0)
+    bounds, _ = certify(split, exact, assembly.segments, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
     none = np.zeros(len(contours) + 1, dtype=np.int64)

@@ -10,9 +10,10 @@ from ...compiled import compiled
 from ...curves.cubics import spline_beziers
 from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...outlines.segments import all_cubics
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 from ..certified_distance import near_place, pair_stretches
-from .pieces import CLOSED, CONTOUR, SPANS, Pieces
+from ..stacked_distance import near_places, pair_stacks, regular
+from .pieces import CLOSED, CONTOUR, FIRST, LAST, SPANS, Pieces
 from .split_contours import SplitContours
 
 
@@ -118,19 +119,62 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
 
 
 def certify(
-    contours: SplitContours, pieces: Pieces, assembly: Assembly, written: ContourArrays, sharpness: float, limit: float
+    contours: SplitContours, pieces: Pieces, segments: IntArray, written: ContourArrays, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:
     """(P,) certified bound between each piece, as written, and its stretch of contour; and the largest gap seen.
 
     Every span is paired on its own: a long piece paired as a whole may lose its way.
 
     Args:
-        written: the curves, rounded. sharpness, limit: see :func:`..certified_distance.certified_distance`.
+        segments: see :class:`Assembly`. written: the curves, rounded.
+        sharpness, limit: see :func:`..certified_distance.certified_distance`.
     """
     cubics, ends = all_cubics(written), written.offsets + np.arange(len(written.offsets))
     anchors = find_anchors(pieces, cubics, written.offsets, contours)
     bounds, gaps = pair_stretches(
         cubics, written.offsets, contours.cubics[0], contours.offsets, anchors, ends, sharpness, limit
     )
-    first = assembly.segments[:-1]
-    return np.maximum.reduceat(bounds, first), np.maximum.reduceat(gaps, first)
+    return np.maximum.reduceat(bounds, segments[:-1]), np.maximum.reduceat(gaps, segments[:-1])
+
+
+def certify_masters(
+    contours: SplitContours, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
+    mixes: FloatArray, sharpness: float, limit: float,
+) -> tuple[FloatArray, FloatArray, BoolArray]:  # fmt: skip
+    """The same in a whole design space, and whether the curves have speed everywhere; (P,) each.
+
+    Args:
+        curves: (K, M, 4, 2) the curves in all masters; offsets: (C + 1,) where each contour begins in them.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid.
+    """
+    results, sources = (np.einsum("vk,kmpc->vmpc", mixes, cubics) for cubics in (curves, contours.cubics))
+    bounds, gaps = np.empty(segments[-1]), np.empty(segments[-1])
+    first = pieces.starts[:-1]
+    for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
+        own = np.flatnonzero(pieces.where[:, CONTOUR] == c)
+        source = np.ascontiguousarray(sources[:, contours.offsets[c] : contours.offsets[c + 1]])
+        result = np.ascontiguousarray(results[:, a:b])
+        m, r = source.shape[1], result.shape[1]
+        closed = bool(pieces.where[own[0], CLOSED])
+        hints = np.concatenate([pieces.places[first[q] : first[q] + segments[q + 1] - segments[q]] for q in own])
+        ranges = np.empty((r, 4))
+        for q in own:
+            s, e = segments[q] - a, segments[q + 1] - a
+            ranges[s:e] = s, e, pieces.where[q, FIRST], pieces.where[q, LAST]
+        if closed:
+            places = near_places(source, hints, np.ascontiguousarray(result[:, :, 0]), True, 0.0, 0.0)
+            places += m * np.ceil(max(-places[0], 0.0) / m)
+        else:
+            places = hints.astype(np.float64)
+            for q in own:
+                s, e = segments[q] - a, segments[q + 1] - a
+                if e - s > 1:
+                    inner = np.ascontiguousarray(result[:, s + 1 : e, 0])
+                    low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
+                    places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
+        anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
+        rings = np.full(r, closed).astype(np.int64)
+        bounds[a:b], gaps[a:b] = pair_stacks(result, source, anchors, ranges, rings, sharpness, limit)
+    good = regular(results)
+    each = segments[:-1]
+    return np.maximum.reduceat(bounds, each), np.maximum.reduceat(gaps, each), np.logical_and.reduceat(good, each)

@@ -6,8 +6,9 @@ the result is within the tolerance, and measures it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,9 +24,9 @@ from ..measures import Columns, distance_columns
 from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
-from .assembly import certify, put_together
+from .assembly import certify, certify_masters, put_together
 from .cutting import choose, cut_again, cut_all, source_pieces
-from .pieces import CLOSED, CONTOUR, SPANS, Pieces, part
+from .pieces import CLOSED, CONTOUR, SPANS, Pieces, of_master, part
 from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
 from .split_contours import Settings, SplitContours
@@ -62,7 +63,7 @@ def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:
 
 def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
     """Contours fitted to within a share of the tolerance, and measured."""
-    fit = fit_sharp(source, options, share * tolerance, em)
+    fit = fit_sharp(single(source), options, share * tolerance, em)
     where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[0]
     # Where two pieces meet, the vertex belongs to the second one.
     open_ends = starts[1:][where[:, CLOSED] == 0] - 1
@@ -74,10 +75,10 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
     arcs = np.flatnonzero(where[:, SPANS])
     return ConvertedContours(
         source,
-        fit.curve,
+        fit.curves[0],
         polygons,
         Views(len(arcs), fit.interpolations),
-        fit.controls,
+        fit.controls[0],
         np.searchsorted(arcs, fit.offsets),
         _solved_columns(fit) | distance_columns(gaps.tolist(), bounds.tolist(), tolerance),
     )
@@ -111,22 +112,25 @@ class SharpFit:
         pieces: the lines and arcs of all contours.
         offsets: (C + 1,) where in ``pieces`` each contour begins.
         splines: the interpolations of those arcs that have more than one span, by their piece.
-        curve: the contours they make, before rounding. controls: the control polygons of all arcs.
-        bounds, gaps: (P,) certified distance of each piece, as written, from the source, and the largest one seen.
+        curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
+        bounds, gaps: (P,) certified distance of each piece from the source, and the largest one seen; of a single
+            master as it is written, and of several in the whole design space.
+        regular: (P,) whether the curve has speed everywhere, in the whole design space; not looked at for a single one.
     """
 
     pieces: Pieces
     offsets: IntArray
     splines: dict[int, Interpolation]
-    curve: ContourArrays
-    controls: Polylines
+    curves: tuple[ContourArrays, ...]
+    controls: tuple[Polylines, ...]
     bounds: FloatArray
     gaps: FloatArray
+    regular: BoolArray
 
     def interpolations(self) -> list[Interpolation]:
-        """All arcs; one of a single span interpolates its two ends as it is."""
+        """All arcs of a single master; one of a single span interpolates its two ends as it is."""
         arcs = np.flatnonzero(self.pieces.where[:, SPANS]).tolist()
-        first, points = self.controls.offsets.tolist(), self.controls.points
+        first, points = self.controls[0].offsets.tolist(), self.controls[0].points
         return [
             self.splines[q] if q in self.splines else _single_span(points[i : i + 4])
             for q, i in zip(arcs, first[:-1], strict=True)
@@ -150,8 +154,27 @@ def _single_span(controls: FloatArray) -> Interpolation:
     )
 
 
-def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: float) -> SharpFit:
-    """Lines and arcs within ``tolerance`` of contours, certified after rounding to ``options.precision``.
+class Source(NamedTuple):
+    """Contours in K masters.
+
+    Attributes:
+        contours: their degrees and offsets. cubics: (K, m, 4, 2) their segments in each master.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid.
+    """
+
+    contours: ContourArrays
+    cubics: FloatArray
+    mixes: FloatArray
+
+
+def single(contours: ContourArrays) -> Source:
+    """Contours by themselves: their only master."""
+    return Source(contours, all_cubics(contours)[None], np.ones((1, 1)))
+
+
+def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> SharpFit:
+    """Lines and arcs within ``tolerance`` of contours, certified: one master after rounding to the precision of the
+    options, several in the whole design space.
 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
     the source's own segments, of which each is an arc of one span.
@@ -164,16 +187,17 @@ def fit_sharp(contours: ContourArrays, options: Options, tolerance: float, em: f
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
-    split, pieces, stretches = cut_all(all_cubics(contours)[None], contours, settings)
+    split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
-    fit = _certified(split, choose(split, pieces, settings.near), options, tolerance)
+    fit = _certified(split, choose(split, pieces, settings.near), source.mixes, options, tolerance)
     tries = RETRIES[options.continuity]
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        fit = _certified(split, refitted(split, fit.pieces, poor, tries[attempt:], settings), options, tolerance)
+        pieces = refitted(split, fit.pieces, poor, tries[attempt:], settings)
+        fit = _certified(split, pieces, source.mixes, options, tolerance)
     return fit
 
 
@@ -207,29 +231,37 @@ def _refitted_piece(
     return source_pieces(contours, piece)
 
 
-def _certified(split: SplitContours, pieces: Pieces, options: Options, tolerance: float) -> SharpFit:
+def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options: Options, tolerance: float) -> SharpFit:
     """The pieces with curves put through them, measured against the source."""
-    count = len(split.flipped)
+    count, masters = len(split.flipped), len(split.cubics)
     splines = _interpolated(pieces, options)
-    assembly = put_together(pieces, count, *_splines(splines.values()))
-    curves = assembly.curves
-    written = curves.rounded(options.precision)
-    bounds, gaps = certify(split, pieces, assembly, written, SHARPNESS * tolerance, tolerance)
+    knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
+    stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
+    controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
+    made = [put_together(of_master(pieces, v), count, knots, controls[v]) for v in range(masters)]
+    curves, segments = tuple(each.curves for each in made), made[0].segments
+    if masters == 1:
+        written = curves[0].rounded(options.precision)
+        bounds, gaps = certify(split, pieces, segments, written, SHARPNESS * tolerance, tolerance)
+        regular = np.ones(len(bounds), dtype=np.bool_)
+    else:
+        cubics = np.stack([all_cubics(curve) for curve in curves])
+        bounds, gaps, regular = certify_masters(
+            split, pieces, segments, cubics, curves[0].offsets, mixes, SHARPNESS * tolerance, tolerance
+        )
     offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
-    return SharpFit(pieces, offsets, splines, curves, assembly.controls, bounds, gaps)
-
-
-def _splines(arcs: Iterable[Interpolation]) -> tuple[FloatArray, FloatArray]:
-    """All knots and all control points."""
-    splines = [arc.spline for arc in arcs]
-    if not splines:
-        return np.empty(0), np.empty((0, 2))
-    return np.concatenate([s.knots for s in splines]), np.concatenate([s.control_points for s in splines])
+    return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
 
 
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span, in order. Lemma 2 has an interval for all of their vertices."""
-    where, starts, vertices, tangents = pieces.where, pieces.starts, pieces.vertices[0], pieces.tangents[0]
+    """The splines of more than one span, in order. Lemma 2 has an interval for all of their vertices.
+
+    K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
+    """
+    where, starts, masters = pieces.where, pieces.starts, len(pieces.vertices)
+    size = np.sqrt(masters)
+    vertices = pieces.vertices.swapaxes(0, 1).reshape(-1, 2 * masters) / size
+    tangents = pieces.tangents.transpose(1, 2, 0, 3).reshape(-1, 2, 2 * masters) / size
     spans, closed = where[:, SPANS], where[:, CLOSED] > 0
     arcs: dict[int, Interpolation] = {}
     for which in (closed, (spans > 1) & ~closed):

@@ -1,0 +1,298 @@
+"""A certified bound of the two-sided distance between a result and its source in a whole design space at once.
+
+Both are chains of cubics in V instances, the corners of the design space's grid: everywhere else an instance is a
+convex combination of some of these, with the same weights for the result as for the source. Both chains are cut into
+sections A and B in pairs, at places that are the same in all instances; A_v and B_v are the polynomials of a pair in
+instance v.
+
+The *plain* bound of a pair is the largest ``|A_vk - B_vk|`` of its Bézier points, as in :mod:`.certified_distance`:
+being convex it holds in between. But it charges the result for running along the outline at another pace, which
+instances do in different ways, and no pairing of places suits all of them. The *slip* bound does not. Let e be the
+direction of the pair's chords, the same for all instances, and n its normal. Let
+
+    ν = max |n·(A_vk - B_vk)|,   σ = max |e·(A_vk - B_vk)|,   m = max |n·h| / e·h
+
+over all instances, where h runs over the Bézier points of the derivatives of B_v, and of the chain before and after it
+for as long as its extent along e is below σ in some instance, and all e·h are positive. A point of A_v has a point of
+B_v at the same parameter that is at most σ farther or less far along e. From there to the point of the chain at the
+same height along e the chain rises by at most mσ. So every point of A_v has a point of the chain within ν + mσ. With
+the roles exchanged the same holds for the points of B_v. All of it is linear in the weights, or a quotient of
+linear functions whose denominator is positive, so it holds for every convex combination. Where an arc ends, both chains
+end at the same point: there they are both followed to it, and nothing lies beyond.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.cubics import COARSE, extent, jet, length, newton_step, section, split
+from ..types import BoolArray, FloatArray, IntArray
+from .certified_distance import ROUNDING
+
+DEEPEST = 12
+"""Maximum subdivision depth; pairs still above the limit there count as too far apart."""
+
+MOST_HALVINGS = 2_000
+"""Halvings of one span, after which what is left counts as too far apart."""
+
+STEPS = 6
+"""Newton steps to the nearest place."""
+
+PARTS = 24
+"""Most parts of a chain that are looked at beyond either end of a section."""
+
+FLAT = 1e-9
+"""Least extent of a derivative along a chord, as a share of its length, that counts as positive."""
+
+
+@compiled
+def pair_stacks(
+    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray,
+    sharpness: float, limit: float,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Certified bounds of the spans of one contour, and the largest distances seen across it.
+
+    Args:
+        results: (V, r, 4, 2) and sources: (V, m, 4, 2) closed chains in all instances.
+        anchors: (r + 1, 2) places on both where each span of the result begins, and the first a lap later.
+        ranges: (r, 4) first and last place on the result and on the source of the arc that each span belongs to.
+        laps: (r,) whether that arc is the whole contour, which has no ends.
+        sharpness: halve sections until a bound exceeds the distances seen by no more than this, or
+        limit: until it is below this.
+    """
+    V, spans = len(results), len(laps)
+    bounds, gaps = np.empty(spans), np.zeros(spans)
+    work, marks = np.empty((2, DEEPEST + 2, V, 4, 2)), np.empty((DEEPEST + 2, 5))
+    rounding = 0.0
+    for v in range(V):
+        rounding = max(rounding, ROUNDING * max(extent(results[v]), extent(sources[v])))
+    m = sources.shape[1]
+    for k in range(spans):
+        bound, halvings = 0.0, 0
+        y, y_end = anchors[k, 1], anchors[k + 1, 1]
+        x, last = anchors[k, 0], False
+        i = int(np.floor(x))
+        while not last:
+            s = int(np.floor(y))
+            last = y_end <= s + 1
+            stop, cut = y_end, i + 1.0
+            if not last:
+                stop = s + 1.0
+                cut = i + nearest_stacked(results, i, x - i, 1.0, sources[:, s % m, 3])
+            for v in range(V):
+                section(results[v, i % results.shape[1]], x - i, cut - i, work[0, 0, v])
+                section(sources[v, s % m], y - s, stop - s, work[1, 0, v])
+            marks[0, 0], marks[0, 1], marks[0, 2], marks[0, 3], marks[0, 4] = x, cut, y, stop, 0.0
+            top = 0
+            while top >= 0:
+                A, B = work[0, top], work[1, top]
+                x0, x1, y0, y1, depth = marks[top]
+                most, seen = _bound_of_pair(
+                    A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, max(limit, bound)
+                )
+                gaps[k] = max(gaps[k], seen)
+                enough = max(limit, bound, gaps[k] + sharpness)
+                if most <= enough or depth >= DEEPEST or halvings >= MOST_HALVINGS:
+                    bound = max(bound, most)
+                    top -= 1
+                    continue
+                halvings += 1
+                xm = (x0 + x1) / 2
+                for v in range(V):
+                    split(A[v], 0.5, work[0, top + 1, v])
+                z = nearest_stacked(sources, s, y0 - s, y1 - s, A[:, 0])
+                share = (z - (y0 - s)) / (y1 - y0) if y1 > y0 else 0.5
+                for v in range(V):
+                    split(B[v], share, work[1, top + 1, v])
+                marks[top, 0], marks[top, 2], marks[top, 4] = xm, z + s, depth + 1
+                top += 1
+                marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = x0, xm, y0, z + s
+                marks[top, 4] = depth + 1
+            x, y = cut, stop
+        bounds[k] = bound + rounding
+    return bounds, gaps
+
+
+@compiled(internal=True)
+def _bound_of_pair(
+    A: FloatArray, B: FloatArray, results: FloatArray, sources: FloatArray, x0: float, x1: float, y0: float, y1: float,
+    arc: FloatArray, ring: bool, enough: float,
+) -> tuple[float, float]:  # fmt: skip
+    """The smaller of the two bounds of a pair of sections (V, 4, 2), and the largest distance across seen at its ends.
+
+    The slip bound is left out where the plain one is enough.
+    """
+    plain = ex = ey = 0.0
+    for v in range(len(A)):
+        for k in range(4):
+            plain = max(plain, length(A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]))
+        ex += A[v, 3, 0] - A[v, 0, 0] + B[v, 3, 0] - B[v, 0, 0]
+        ey += A[v, 3, 1] - A[v, 0, 1] + B[v, 3, 1] - B[v, 0, 1]
+    size = length(ex, ey)
+    if plain <= enough or size <= 0.0:
+        return plain, plain if size <= 0.0 else 0.0
+    ex, ey = ex / size, ey / size
+    across = along = seen = 0.0
+    for v in range(len(A)):
+        for k in range(4):
+            x, y = A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]
+            across, along = max(across, abs(ex * y - ey * x)), max(along, abs(ex * x + ey * y))
+            if k == 0 or k == 3:
+                seen = max(seen, abs(ex * y - ey * x))
+    slope = max(_slope(A, ex, ey), _slope(B, ex, ey))
+    for side in range(2):
+        if not across + slope * along < plain:
+            break
+        x, y = (x1, y1) if side else (x0, y0)
+        x_end, y_end = (arc[1], arc[3]) if side else (arc[0], arc[2])
+        slope, ended = _slope_beyond(sources, side, y, y_end, ring, along, ex, ey, slope)
+        slope, also = _slope_beyond(results, side, x, x_end, ring, np.inf if ended else along, ex, ey, slope)
+        if also and not ended:
+            slope, _ = _slope_beyond(sources, side, y, y_end, ring, np.inf, ex, ey, slope)
+    return min(plain, across + slope * along), min(seen, plain)
+
+
+@compiled(internal=True)
+def _slope(b: FloatArray, ex: float, ey: float) -> float:
+    """The largest |n·h| / e·h of the derivatives of cubics (V, 4, 2); infinite unless all e·h are positive."""
+    most = 0.0
+    for v in range(len(b)):
+        for k in range(3):
+            x, y = b[v, k + 1, 0] - b[v, k, 0], b[v, k + 1, 1] - b[v, k, 1]
+            ahead, aside = ex * x + ey * y, abs(ex * y - ey * x)
+            if not ahead > FLAT * (abs(x) + abs(y)):
+                return np.inf
+            most = max(most, aside / ahead)
+    return most
+
+
+@compiled(internal=True)
+def _slope_beyond(
+    chains: FloatArray, side: int, first: float, last: float, ring: bool, reach: float, ex: float, ey: float,
+    slope: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """The slope with what chains (V, m, 4, 2) have beyond a place, until they extend by ``reach`` or their arc ends.
+
+    Args:
+        side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end, unless it is a ``ring``.
+
+    Returns:
+        The slope, infinite if the chains do not get that far; and whether the arc ended.
+    """
+    V, m = len(chains), chains.shape[1]
+    part, start = np.empty((V, 4, 2)), np.empty((V, 2))
+    near, far = (0, 3) if side else (3, 0)
+    at = first
+    for turn in range(PARTS):
+        if not ring and (at >= last if side else at <= last):
+            return slope, True
+        s = int(np.floor(at)) if side else int(np.ceil(at)) - 1
+        step = min(s + 1 - at if side else at - s, 0.125 * 2.0 ** (turn // 4))
+        a, b = (at, at + step) if side else (at - step, at)
+        if not ring:
+            a, b = (a, min(b, last)) if side else (max(a, last), b)
+        least = np.inf
+        for v in range(V):
+            section(chains[v, s % m], a - s, b - s, part[v])
+            if turn == 0:
+                start[v, 0], start[v, 1] = part[v, near, 0], part[v, near, 1]
+            x, y = part[v, far, 0] - start[v, 0], part[v, far, 1] - start[v, 1]
+            least = min(least, abs(ex * x + ey * y))
+        slope = max(slope, _slope(part, ex, ey))
+        if slope == np.inf or least >= reach:
+            return slope, False
+        at = b if side else a
+    return np.inf, False
+
+
+@compiled(internal=True)
+def nearest_stacked(chains: FloatArray, s: int, low: float, high: float, point: FloatArray) -> float:
+    """The parameter in [low, high] of segment s at which all instances together are nearest to (V, 2) points."""
+    V, m = len(chains), chains.shape[1]
+    best, at = np.inf, low
+    for k in range(COARSE + 1):
+        z = low + (high - low) * k / COARSE
+        d = 0.0
+        for v in range(V):
+            px, py, _, _, _, _ = jet(chains[v], s % m, z)
+            d += (px - point[v, 0]) ** 2 + (py - point[v, 1]) ** 2
+        if d < best:
+            best, at = d, z
+    for _ in range(STEPS):
+        slope = speed = bend = 0.0
+        for v in range(V):
+            px, py, dx, dy, ax, ay = jet(chains[v], s % m, at)
+            x, y = px - point[v, 0], py - point[v, 1]
+            speed += dx * dx + dy * dy
+            slope += x * dx + y * dy
+            bend += dx * dx + dy * dy + x * ax + y * ay
+        if speed <= 0.0:
+            break
+        before, at = at, newton_step(at, slope, speed, bend, low, high)
+        if abs(at - before) < 1e-9:
+            break
+    return at
+
+
+@compiled
+def near_places(
+    chains: FloatArray, hints: FloatArray, points: FloatArray, closed: bool, low: float, high: float
+) -> FloatArray:
+    """(n,) places of closed chains nearest to points, sought half-way to the hints before and after each.
+
+    Args:
+        chains: (V, m, 4, 2). hints: (n,) increasing places. points: (V, n, 2).
+        closed: whether the first follows the last a lap later. low, high: bounds of all places, unless ``closed``.
+    """
+    n, m = len(hints), chains.shape[1]
+    places = np.empty(n)
+    for i in range(n):
+        before, after = hints[i - 1] if i > 0 else low, hints[i + 1] if i + 1 < n else high
+        if closed:
+            before = hints[i - 1] if i > 0 else hints[n - 1] - m
+            after = hints[i + 1] if i + 1 < n else hints[0] + m
+        a, b = (before + hints[i]) / 2, (hints[i] + after) / 2
+        best, places[i] = np.inf, hints[i]
+        s = int(np.floor(a))
+        while s < b:
+            z0, z1 = max(a - s, 0.0), min(b - s, 1.0)
+            if z1 >= z0:
+                z = nearest_stacked(chains, s, z0, z1, points[:, i])
+                d = 0.0
+                for v in range(len(chains)):
+                    px, py, _, _, _, _ = jet(chains[v], s % m, z)
+                    d += (px - points[v, i, 0]) ** 2 + (py - points[v, i, 1]) ** 2
+                if d < best:
+                    best, places[i] = d, s + z
+            s += 1
+    return places
+
+
+@compiled
+def regular(chains: FloatArray) -> BoolArray:
+    """(m,) whether no convex combination of the instances (V, m, 4, 2) of a cubic has a point without speed.
+
+    The derivatives' Bézier points of all instances lie in one half-plane then, for each of the parts into which the
+    cubic is halved.
+    """
+    V, m = len(chains), chains.shape[1]
+    good = np.ones(m, dtype=np.bool_)
+    part = np.empty((V, 4, 2))
+    for s in range(m):
+        pieces = 1
+        while pieces <= 16:
+            fine = True
+            for k in range(pieces):
+                ex = ey = 0.0
+                for v in range(V):
+                    section(chains[v, s], k / pieces, (k + 1) / pieces, part[v])
+                    size = max(length(part[v, 3, 0] - part[v, 0, 0], part[v, 3, 1] - part[v, 0, 1]), 1e-300)
+                    ex += (part[v, 3, 0] - part[v, 0, 0]) / size
+                    ey += (part[v, 3, 1] - part[v, 0, 1]) / size
+                fine = fine and _slope(part, ex, ey) < np.inf
+            if fine:
+                break
+            pieces *= 2
+        good[s] = pieces <= 16
+    return good
