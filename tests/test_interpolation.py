@@ -169,7 +169,7 @@ BAD = {
     "two distinct": ([[0, 0], [1, 1], [0, 0], [1, 1]], "2 distinct vertices"),
     "one": ([[2, 2]] * 5, "1 distinct vert"),
     "empty": (np.empty((0, 2)), "0 distinct vertices"),
-    "space": (np.zeros((5, 3)), "shape"),
+    "space": (np.zeros((5, 1)), "shape"),
     "flat": (np.zeros(6), "shape"),
     "words": ("polygon", "array of numbers"),
     "huge": ([[0, 0], [1e200, 0], [0, 1e200]], "spread"),

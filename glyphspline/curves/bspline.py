@@ -1,4 +1,4 @@
-"""Planar B-spline curves, closed (periodic) or open (clamped): evaluation, curvature, exact Bézier form."""
+"""B-spline curves, closed (periodic) or open (clamped): evaluation, exact Bézier form; curvature in the plane."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..errors import OptionError
 from ..types import FloatArray, IntArray, counted
 from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
 
@@ -18,10 +19,10 @@ DEGREES = range(2, 7)
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A B-spline curve in the plane.
+    """A B-spline curve in the plane, or in R^d. Curvature and drawing are for the plane.
 
     Attributes:
-        control_points: (n, 2) if closed, where row i belongs to vertex p_i; (m + degree - 1, 2) if open.
+        control_points: (n, d) if closed, d ≥ 2, where row i belongs to vertex p_i; (m + degree - 1, d) if open.
         knots: (n + 1,) from 0 to the period if closed; the m break points if open, where the ends have multiplicity
             degree + 1.
         degree: 2 to 6. closed: periodic; otherwise clamped at both ends.
@@ -50,8 +51,8 @@ class Spline:
         if self.degree not in DEGREES:
             raise ValueError(f"degree is 2 to 6, not {self.degree}")
         expected = len(u) - 1 if self.closed else len(u) + self.degree - 1
-        if P.shape != (expected, 2):
-            raise ValueError(f"{len(u)} knots ask for ({expected}, 2) control points, not {P.shape}")
+        if P.ndim != 2 or len(P) != expected or P.shape[1] < 2:
+            raise ValueError(f"{len(u)} knots ask for ({expected}, d) control points with d >= 2, not {P.shape}")
         object.__setattr__(self, "control_points", P)
         object.__setattr__(self, "knots", u)
 
@@ -63,7 +64,8 @@ class Spline:
         return spline
 
     def __repr__(self) -> str:
-        kind = "closed" if self.closed else "open"
+        kind, d = "closed" if self.closed else "open", self.control_points.shape[1]
+        kind = f"{kind}, in R^{d}" if d > 2 else kind
         points, (first, last) = counted(len(self.control_points), "control point"), self.knots[[0, -1]].tolist()
         return f"<Spline: {kind}, degree {self.degree}, {points}, t from {first:g} to {last:.6g}>"
 
@@ -87,7 +89,7 @@ class Spline:
         return bezier_pieces(self.full_knots, self.control_points[self.span_controls])
 
     def to_bezier(self) -> FloatArray:
-        """The curve as Bézier pieces, one per knot span, in curve order: (pieces, degree + 1, 2)."""
+        """The curve as Bézier pieces, one per knot span, in curve order: (pieces, degree + 1, d)."""
         return self._bezier.copy()
 
     def _locate(self, t: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -99,7 +101,7 @@ class Spline:
         return span, (t - u[span]) / h, h
 
     def __call__(self, t: ArrayLike, derivative: int = 0) -> FloatArray:
-        """The curve or one of its derivatives at t: shape ``t.shape + (2,)``.
+        """The curve or one of its derivatives at t: shape ``t.shape + (d,)``.
 
         The domain is from ``knots[0]`` to ``knots[-1]``. Beyond it a closed curve repeats itself with its
         :attr:`period`; an open one stays at the point of the nearer end, with the derivatives there.
@@ -118,8 +120,43 @@ class Spline:
         """Signed curvature at t, in 1/unit: positive where the curve turns left, infinite where the speed is zero.
 
         The domain, and what lies beyond it, are as for calling the spline.
+
+        Raises:
+            OptionError: the spline is not in the plane.
         """
+        self._require_plane("curvature with a sign")
         return signed_curvature(self(t, derivative=1), self(t, derivative=2))
+
+    def _require_plane(self, what: str) -> None:
+        d = self.control_points.shape[1]
+        if d != 2:
+            raise OptionError(f"{what} needs a spline in the plane, not in R^{d}; project(weights) gives one")
+
+    def project(self, weights: ArrayLike) -> Spline:
+        """The planar spline of a blend of masters, for a spline of K masters side by side: x_1, y_1, x_2, y_2, …
+
+        Args:
+            weights: (K,) of the masters, d = 2K; (1, 0, …, 0) is the first one.
+
+        Raises:
+            OptionError: weights of another shape, or not finite.
+
+        Example:
+            >>> from glyphspline import Spline
+            >>> light, bold = [[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 0], [3, 0], [3, 1], [0, 1]]
+            >>> both = Spline([[*a, *b] for a, b in zip(light, bold)], [0, 1, 2, 3, 4])
+            >>> both
+            <Spline: closed, in R^4, degree 3, 4 control points, t from 0 to 4>
+            >>> both.project([0.5, 0.5]).control_points.tolist()
+            [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+        """
+        given, d = np.asarray(weights, dtype=np.float64), self.control_points.shape[1]
+        if d % 2 or given.shape != (d // 2,) or not np.isfinite(given).all():
+            raise OptionError(
+                f"a spline in R^2K is projected by K finite weights, one in R^{d} not by {given.tolist()}"
+            )
+        controls = np.einsum("nkc,k->nc", self.control_points.reshape(len(self.control_points), -1, 2), given)
+        return Spline(controls, self.knots, self.degree, self.closed)
 
     def basis(self, t: ArrayLike) -> FloatArray:
         """(len(t), control points) the collocation matrix: every basis function at every t."""
@@ -135,7 +172,11 @@ class Spline:
 
         Other degrees become cubics within ``tolerance`` of the curve, compared at equal parameters (default: 1e-5 of
         the control polygon's extent).
+
+        Raises:
+            OptionError: the spline is not in the plane.
         """
+        self._require_plane("drawing")
         pieces = self._bezier
         if self.degree > 3:
             extent = float(np.ptp(self.control_points, axis=0).max())

@@ -1,4 +1,4 @@
-"""Algorithms 1, 2 and 3 for any degree and variant, one polygon at a time, with the history of all passes.
+"""Algorithms 1, 2 and 3 for any degree, variant and dimension, one polygon at a time, with the history of all passes.
 
 The passes are compiled (:mod:`.kernels.any_degree_pass`); the loop is in :mod:`.driver`.
 """
@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..curves.bspline import Spline, full_knots, span_controls
-from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
+from ..curves.parameters import closed_knots, lengths, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose
 from .driver import Anderson, iterate
 from .intervals import Intervals
 from .method import SETTLED, Method, Tangents
-from .polygon import clean_polygon
+from .polygon import as_tangent, clean_polygon
 from .result import Interpolation
 
 NO_INTERVALS = np.empty(0)
@@ -33,7 +33,7 @@ def interpolate_any_degree(
     *,
     keep_history: bool = False,
 ) -> Interpolation:
-    """Interpolate one polygon; ``knots`` are its parameters if the method has no rule.
+    """Interpolate one polygon (n, d); ``knots`` are its parameters if the method has no rule.
 
     ``keep_history`` keeps the passes without the norms and spectral radii of ``method.diagnostics``.
     """
@@ -141,11 +141,12 @@ class Scaled:
         self.knot_unit = 0.5 ** np.floor(np.log2(u[-1] / len(p)))
         self.knots, self.degree, self.closed, self.at_once = u, method.degree, method.closed, method.variant == 4
         q = (p - self.origin) * self.unit
-        natural, base = np.zeros(2), np.zeros((2, 2))
+        natural, base = np.zeros(2), np.zeros((2, p.shape[1]))
         if self.closed:
             self.P = q.copy()
         else:
-            slopes = [None if t is None else np.asarray(t) * (self.unit / self.knot_unit) for t in tangents]
+            scale = self.unit / self.knot_unit
+            slopes = [None if t is None else as_tangent(t, q.shape[1]) * scale for t in tangents]
             natural, base = _ends(q, np.diff(u) * self.knot_unit, slopes)
             beside = base + natural[:, None] * q[[1, -2]]
             self.P = np.concatenate([q[:1], beside[:1], q[1:-1], beside[1:], q[-1:]])
@@ -204,12 +205,12 @@ class Scaled:
             if not self.closed:
                 P[[1, -2]] = v.base + v.natural[:, None] * P[[2, -3]]
         e = v.points - B @ P
-        return P, float(np.hypot(*e.T).max() / self.unit)
+        return P, float(lengths(e).max() / self.unit)
 
 
 def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tuple[FloatArray, FloatArray]:
     """Weights and rests of the control points beside the ends: base + weight times the free one next to them."""
-    natural, base = _natural_weights(h, tangents), np.zeros((2, 2))
+    natural, base = _natural_weights(h, tangents), np.zeros((2, q.shape[1]))
     for end, (near, beyond, sign) in enumerate(((0, 1, 1.0), (-1, -2, -1.0))):
         tangent = tangents[end]
         if tangent is not None:

@@ -15,7 +15,7 @@ from ..types import FloatArray
 from .any_degree import interpolate_any_degree, interpolate_any_vertex
 from .batched import explain, interpolate_batch, interpolate_one, over_threads
 from .method import Fallback, Finish, Method, Tangents, method_of
-from .polygon import as_points
+from .polygon import as_points, as_tangent
 from .result import Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
@@ -42,7 +42,9 @@ def interpolate(
     its vertex from its footpoint, the nearest point of the current curve on an interval around its knot.
 
     Args:
-        points: (n, 2) vertices in order, the first not repeated at the end. Consecutive duplicates are merged.
+        points: (n, d) vertices in order, d ≥ 2, the first not repeated at the end. Consecutive duplicates are merged.
+            Nothing in the method or its proofs needs the plane. Polygons with as many vertices, as the masters of a
+            variable outline are, can be interpolated as one, side by side: they share knots and footpoints then.
         variant: where footpoints are sought (Table 1): 0 (u_{i-2}, u_{i+2}); 1 (u_{i-1}, u_{i+1}); 2 the interval
             of Lemma 2, which guarantees convergence; 3 only u_i; 4 as 2, but each control point is updated at
             once (Algorithm 3 instead of 2).
@@ -55,11 +57,11 @@ def interpolate(
         fallback: what to do where B_i nowhere exceeds 1/2. "knot" is the paper's Remark 3, t_i = u_i, and may not
             converge on very uneven chords. "peak" takes {B_i ≥ min(1/2 + c, 0.9 max B_i)} for every vertex.
         residual_tolerance: distance, in the units of ``points``, that the largest error has to fall below; None for
-            1e-6 of the polygon's extent (the larger of its width and height).
+            1e-6 of the polygon's extent (the larger of its width and height, or the largest of all d ranges).
         max_iterations: maximum number of updates.
         closed: a closed curve, or an arc from the first vertex to the last, clamped at both.
-        end_tangents: of an open arc, the derivatives (τ_0, τ_1) by chord length at its ends, unit vectors as a rule;
-            None for a natural end (no curvature there).
+        end_tangents: of an open arc, the derivatives (τ_0, τ_1) by chord length at its ends, (d,) unit vectors as a
+            rule; None for a natural end (no curvature there).
         finish: "iterate" is the paper's limit. "solve" freezes the footpoints once the largest error is below 3/1000 of
             the mean chord and solves for the control points: another curve through the same vertices, beside the first
             by some 5e-4 of the mean chord. "accelerate" combines each pass with the five before it (Anderson), and
@@ -91,9 +93,11 @@ def interpolate(
         raise OptionError("end_tangents belong to an open arc (closed=False)")
     p = as_points(points)
     given = _as_knots(knots, p, closed) if own else None
-    if method.stepwise:
+    if method.stepwise or p.shape[1] > 2:
         return interpolate_any_degree(p, method, given, end_tangents)
-    result = interpolate_one(p, method, given, None if end_tangents is None else _as_tangents([end_tangents]))
+    result = interpolate_one(
+        p, method, given, None if end_tangents is None else _as_tangents([end_tangents], p.shape[1])
+    )
     if result is None:
         raise explain(p, given if own else method.knots, closed)
     return result
@@ -134,7 +138,7 @@ def interpolate_many(
     """Interpolate each polygon of a list, over threads; other options, and the results, are as for :func:`interpolate`.
 
     Args:
-        polygons: K arrays (n, 2).
+        polygons: K arrays (n, d), d the same for all.
         variant: as for one polygon.
         knots: a rule, or an array for each polygon.
         end_tangents: of open arcs, a pair for each polygon.
@@ -186,6 +190,8 @@ def _interpolated(
     for k, points in enumerate(polygons):
         try:
             p = as_points(points)
+            if parts and p.shape[1] != parts[0].shape[1]:
+                raise PolygonError(f"{p.shape[1]} coordinates a vertex, where those before have {parts[0].shape[1]}")
             if own_knots is not None:
                 given.append(_as_knots(own_knots[k], p, method.closed))
         except PolygonError as error:
@@ -197,7 +203,7 @@ def _interpolated(
         return results
     pairs = None if tangents is None else [tangents[k] for k in good]
     found: list[Any]
-    if method.stepwise:
+    if method.stepwise or parts[0].shape[1] > 2:
 
         def one(j: int) -> Interpolation | PolygonError:
             try:
@@ -213,7 +219,8 @@ def _interpolated(
         batch = interpolate_batch(
             parts[0] if len(parts) == 1 else np.concatenate(parts), offsets, method,
             knots=np.concatenate(given) if given else None,
-            end_tangents=None if method.closed or pairs is None else _as_tangents(pairs), threads=threads,
+            end_tangents=None if method.closed or pairs is None else _as_tangents(pairs, parts[0].shape[1]),
+            threads=threads,
         )  # fmt: skip
         found = cast(list[Any], batch.results())
         for j in range(len(found)) if None in found else ():
@@ -236,13 +243,13 @@ def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:
     return given
 
 
-def _as_tangents(tangents: Sequence[Tangents | None]) -> FloatArray:
-    """(K, 2, 2), NaN for natural ends."""
-    array = np.full((len(tangents), 2, 2), np.nan)
+def _as_tangents(tangents: Sequence[Tangents | None], d: int) -> FloatArray:
+    """(K, 2, d), NaN for natural ends."""
+    array = np.full((len(tangents), 2, d), np.nan)
     for k, pair in enumerate(tangents):
         for end, tangent in enumerate(pair or ()):
             if tangent is not None:
-                array[k, end] = tangent
+                array[k, end] = as_tangent(tangent, d)
     return array
 
 
@@ -260,7 +267,7 @@ def interpolate_vertex(
     ``rate_bound`` = 1 - min B_k. ``parameters`` and ``intervals`` of the result have the one row of p_k.
 
     Args:
-        points: (n, 2) the polygon.
+        points: (n, d) the polygon.
         k: which vertex; duplicates are merged before counting.
         whole_curve: seek the footpoint on the whole curve, which may fail to converge (Remark 2).
         residual_tolerance: distance that the error has to fall below; None for 1e-6 of the polygon's extent.

@@ -123,11 +123,11 @@ def interpolate_batch(
     """Cubic interpolation of many polygons laid end to end. A bad polygon has a status and raises no exception.
 
     Args:
-        points: (N, 2) float64, contiguous; offsets: (K + 1,) int64, where each polygon begins, and N.
+        points: (N, d) float64, contiguous, d ≥ 2; offsets: (K + 1,) int64, where each polygon begins, and N.
         method: of degree 3, without diagnostics.
         knots: given parameters of all polygons end to end (n + 1 each if closed, n if open), unless the method has a
             rule.
-        end_tangents: (K, 2, 2) of open arcs, NaN for natural ends; None: all are natural.
+        end_tangents: (K, 2, d) of open arcs, NaN for natural ends; None: all are natural.
         by_knot: (K,) polygons with ``fallback="knot"`` instead of the method's.
         residual_tolerances: (K,) in place of the method's.
         threads: number of threads; None for one a core. Results do not depend on it.
@@ -137,10 +137,10 @@ def interpolate_batch(
     peak_shares.fill(method.peak_share)
     if by_knot is not None:
         peak_shares[by_knot] = 0.0
-    if method.stepwise:
-        return _gathered(points, offsets, method, peak_shares, threads)
-    run = _compiled()
     closed = method.closed
+    if method.stepwise or points.shape[1] > 2:
+        return _gathered(points, offsets, method, peak_shares, knots, end_tangents, residual_tolerances, threads)
+    run = _compiled()
     tangents = NO_TANGENTS
     if not closed:
         tangents = np.full((count, 2, 2), np.nan) if end_tangents is None else end_tangents
@@ -148,7 +148,7 @@ def interpolate_batch(
     if residual_tolerances is None:
         tolerances.fill(np.nan if method.residual_tolerance is None else method.residual_tolerance)
     exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
-    out = _results(total, count, closed)
+    out = _results(total, count, closed, 2)
 
     def work(part: tuple[int, int]) -> Any:
         return run(
@@ -175,7 +175,7 @@ def interpolate_one(
     It makes the same compiled call without arrays of one row, which took 24 of 57 us for 20 vertices.
     """
     n, closed, tolerance = len(points), method.closed, method.residual_tolerance
-    out = _results(n, 1, closed)
+    out = _results(n, 1, closed, 2)
     tolerances = np.array((np.nan if tolerance is None else tolerance,))
     tangents = NO_TANGENTS
     if not closed:
@@ -201,36 +201,43 @@ def interpolate_one(
 
 
 def _gathered(
-    points: FloatArray, offsets: IntArray, method: Method, peak_shares: FloatArray, threads: int | None
-) -> BatchedInterpolation:
-    """A batch by the passes of any variant, one polygon at a time; closed polygons with a rule for the knots."""
-    total, count = int(offsets[-1]), len(offsets) - 1
-    by_knot = replace(method, fallback="knot")
-    out = _results(total, count, True)
+    points: FloatArray, offsets: IntArray, method: Method, peak_shares: FloatArray, knots: FloatArray | None,
+    end_tangents: FloatArray | None, residual_tolerances: FloatArray | None, threads: int | None,
+) -> BatchedInterpolation:  # fmt: skip
+    """A batch by the passes of any variant and dimension, one polygon at a time."""
+    (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
+    out = _results(total, count, closed, d)
     u, P, parameters, bounds, kept, whole, rates = out
     whole[:] = np.array([1, 0, -1, 0, 0, 0])
     tolerances, residuals = np.zeros(count), [np.empty(0)] * count
 
     def one(k: int) -> None:
         a, b = offsets[k : k + 2].tolist()
+        own = replace(method, fallback="peak" if peak_shares[k] > 0.0 else "knot")
+        if residual_tolerances is not None:
+            own = replace(own, residual_tolerance=float(residual_tolerances[k]))
+        given = None if knots is None or method.knots else knots[a + k * closed : b + (k + 1) * closed]
+        tangents: Any = None
+        if end_tangents is not None and not closed:
+            tangents = tuple(None if np.isnan(each).any() else each for each in end_tangents[k])
         try:
-            r = interpolate_any_degree(points[a:b], method if peak_shares[k] > 0.0 else by_knot)
+            r = interpolate_any_degree(points[a:b], own, given, tangents)
         except PolygonError:
             return
-        n = len(r.parameters)
-        u[a + k : a + k + n + 1], P[a : a + n] = r.spline.knots, r.spline.control_points
+        n, first, start = len(r.parameters), a + k * closed, a + 2 * k * (not closed)
+        u[first : first + n + closed], P[start : start + n + 2 * (not closed)] = r.spline.knots, r.spline.control_points
         parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
         kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
         whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified
         rates[k], residuals[k] = r.rate_bound, r.residuals
-        tolerances[k] = method.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
+        tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
 
     over_threads(one, range(count), threads)
     residual_offsets = np.zeros(count + 1, dtype=np.int64)
     np.cumsum(whole[:, 2] + 1, out=residual_offsets[1:])
     joined = np.concatenate([*residuals, np.empty(0)])
     return BatchedInterpolation(
-        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, True
+        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, closed
     )
 
 
@@ -267,11 +274,11 @@ def _blocks(offsets: IntArray, first: int, stop: int) -> FloatArray:
     return np.empty(-(-most // LANES) * BLOCK)
 
 
-def _results(total: int, count: int, closed: bool) -> tuple[Any, ...]:
+def _results(total: int, count: int, closed: bool, d: int) -> tuple[Any, ...]:
     """Empty arrays for knots, control points, parameters, intervals, vertices kept, whole numbers and rates."""
     return (
         np.empty(total + count if closed else total),
-        np.empty((total if closed else total + 2 * count, 2)),
+        np.empty((total if closed else total + 2 * count, d)),
         np.empty(total),
         np.empty((total, 2)),
         np.empty(total, dtype=np.int64),

@@ -16,36 +16,43 @@ With a much smaller value, sums of chords in floating point would give them the 
 """
 
 
-def as_points(points: ArrayLike, planar: bool = True) -> FloatArray:
-    """Vertices as (n, 2) float64, contiguous; a PolygonError if they are not numbers or of another shape.
-
-    If not ``planar``, (n, d) with d ≥ 2.
-    """
+def as_points(points: ArrayLike) -> FloatArray:
+    """Vertices as (n, d) float64, d ≥ 2, contiguous; a PolygonError if they are not numbers or of another shape."""
     try:
         p = np.ascontiguousarray(points, dtype=np.float64)
     except (TypeError, ValueError) as cause:
-        raise PolygonError("a polygon is an array of numbers of shape (n, 2)") from cause
-    if p.ndim != 2 or (p.shape[1] != 2 if planar else p.shape[1] < 2):
-        raise PolygonError(f"a polygon has shape (n, 2), not {p.shape}")
+        raise PolygonError("a polygon is an array of numbers of shape (n, d) with d >= 2") from cause
+    if p.ndim != 2 or p.shape[1] < 2:
+        raise PolygonError(f"a polygon has shape (n, d) with d >= 2, not {p.shape}")
     return p
 
 
-def clean_polygon(points: ArrayLike, closed: bool = True, planar: bool = True) -> tuple[FloatArray, IntArray]:
+def as_tangent(tangent: ArrayLike, d: int) -> FloatArray:
+    """An end tangent as (d,) float64; a PolygonError if it is not so many numbers."""
+    try:
+        given = np.asarray(tangent, dtype=np.float64)
+    except (TypeError, ValueError) as cause:
+        raise PolygonError("an end tangent is an array of numbers") from cause
+    if given.shape != (d,):
+        raise PolygonError(f"an end tangent of a polygon (n, {d}) has shape ({d},), not {given.shape}")
+    return given
+
+
+def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, IntArray]:
     """Check a polygon and merge consecutive duplicates.
 
     Args:
-        points: (n, 2) vertices in order, the first not repeated at the end.
+        points: (n, d) vertices in order, d ≥ 2, the first not repeated at the end.
         closed: whether the last vertex is followed by the first.
-        planar: whether vertices have two coordinates; otherwise two or more, (n, d).
 
     Returns:
-        The vertices kept, (n', 2) float64, and the indices of those dropped, each a duplicate of a kept one before it.
+        The vertices kept, (n', d) float64, and the indices of those dropped, each a duplicate of a kept one before it.
 
     Raises:
-        PolygonError: not of shape (n, 2); a coordinate is NaN or infinite, or so large that distances overflow;
+        PolygonError: not of shape (n, d); a coordinate is NaN or infinite, or so large that distances overflow;
             fewer than three distinct vertices (two for an open arc).
     """
-    p = as_points(points, planar)
+    p = as_points(points)
     bad = np.flatnonzero(~np.isfinite(p).all(axis=1))
     if len(bad):
         raise PolygonError(f"vertex {bad[0]} is not finite: ({', '.join(map(str, p[bad[0]]))})")

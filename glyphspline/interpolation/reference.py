@@ -166,7 +166,7 @@ def prepare(
     end_tangents: Tangents | None = None,
 ) -> Problem:
     """Check the input and lay out knots, intervals and free control points."""
-    p, merged = clean_polygon(points, closed, planar=False)
+    p, merged = clean_polygon(points, closed)
     if len(merged) and not isinstance(knots, str):
         knots = np.delete(np.asarray(knots, dtype=np.float64), merged)
     s = vertex_parameters(p, knots, closed)

@@ -15,7 +15,7 @@ from ...curves.bspline import bezier_pieces, full_knots
 from ...types import FloatArray, IntArray
 from ..intervals import BISECTIONS
 from ..method import TIE_DISTANCE
-from .footpoint import MAX_DEGREE, WORK, search_piece
+from .footpoint import MAX_DEGREE, WORK, reduce, search_piece
 from .one_interval import end_interval, near_end, value_at_knot
 
 KNOTS = MAX_DEGREE + 2
@@ -28,7 +28,7 @@ class Layout(NamedTuple):
     """A polygon in the units of the compiled passes: origin at its first vertex, extent and mean knot interval near 1.
 
     Attributes:
-        points: (f, 2) the vertices with a free control point; vertex j's is ``controls[first + j]``.
+        points: (f, d) the vertices with a free control point; vertex j's is ``controls[first + j]``.
         bounds, centres: (f, 2), (f,) search intervals of the footpoints.
         spans: (f, 2) first and last span of each interval; numbers continue through the periods.
         starts: (spans,) left knots; period: T, 0 if open.
@@ -36,7 +36,7 @@ class Layout(NamedTuple):
         indices: (spans, degree + 1) which control points.
         first: index of the first free control point.
         natural: (2,) weight of the first (last) free control point in the fixed one beside it.
-        base: (2, 2) the rest of those two fixed ones.
+        base: (2, d) the rest of those two fixed ones.
     """
 
     points: FloatArray
@@ -65,24 +65,58 @@ def power_matrices(u: FloatArray, degree: int, closed: bool) -> FloatArray:
 
 
 @compiled(internal=True)
-def _coefficients(span: int, P: FloatArray, px: float, py: float, v: Layout, c: FloatArray) -> None:
-    """Coefficients of the piece about p: c[axis, k] of (t - start)^k."""
-    order = v.matrices.shape[1]
+def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatArray) -> None:
+    """Coefficients of the piece about p: b[k] of (t - start)^k."""
+    order, size = b.shape
     for k in range(order):
         x, y = 0.0, 0.0
+        for axis in range(2, size):
+            b[k, axis] = 0.0
         for j in range(order):
-            weight = v.matrices[span, k, j]
-            x += weight * (P[v.indices[span, j], 0] - px)
-            y += weight * (P[v.indices[span, j], 1] - py)
-        c[0, k] = x
-        c[1, k] = y
+            weight, i = v.matrices[span, k, j], v.indices[span, j]
+            x += weight * (P[i, 0] - p[0])
+            y += weight * (P[i, 1] - p[1])
+            for axis in range(2, size):
+                b[k, axis] += weight * (P[i, axis] - p[axis])
+        b[k, 0], b[k, 1] = x, y
+
+
+@compiled(internal=True)
+def _for_search(b: FloatArray, c: FloatArray) -> None:
+    """The coefficients as :func:`search_piece` takes them, c[axis, k]; of many coordinates as few as have to be.
+
+    Overwrites b.
+    """
+    order, size = b.shape
+    if size > order:
+        reduce(b, c)
+        return
+    for k in range(order):
+        for axis in range(size):
+            c[axis, k] = b[k, axis]
+
+
+@compiled(internal=True)
+def _error(b: FloatArray, y: float, e: FloatArray) -> float:
+    """Write minus the piece's value at y to e; returns its length."""
+    d, size = b.shape[0] - 1, b.shape[1]
+    squares = 0.0
+    for axis in range(size):
+        q = b[d, axis]
+        for k in range(d - 1, -1, -1):
+            q = q * y + b[k, axis]
+        e[axis] = -q
+        if axis > 1:
+            squares += q * q
+    distance = np.hypot(e[0], e[1])
+    return np.hypot(distance, np.sqrt(squares)) if size > 2 else distance
 
 
 @compiled(internal=True)
 def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
     """The fixed control points beside natural ends, which follow the first and last free ones."""
     if count > 0 and v.period == 0.0:
-        for axis in range(2):
+        for axis in range(P.shape[1]):
             P[1, axis] = v.base[0, axis] + v.natural[0] * P[2, axis]
             P[count + 2, axis] = v.base[1, axis] + v.natural[1] * P[count + 1, axis]
 
@@ -94,11 +128,12 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
     With ``at_once`` (Algorithm 3) each control point is moved before the next footpoint is computed. Returns the
     largest error before the update, and the number of footpoints that are not certified: all, if one is not finite.
     """
-    n, d, count = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape[0]
-    c, work, e = np.empty((2, d + 1)), np.empty(WORK), np.empty((count, 2))
+    n, d, (count, size) = v.starts.shape[0], v.matrices.shape[1] - 1, v.points.shape
+    b, c, work = np.empty((d + 1, size)), np.empty((min(size, d + 1), d + 1)), np.empty(WORK)
+    e = np.empty((count, size))
     largest, uncertified = 0.0, 0
     for i in range(count):
-        px, py = v.points[i, 0], v.points[i, 1]
+        p = v.points[i]
         low, high = v.bounds[i, 0], v.bounds[i, 1]
         before, D = min(max(t[i], low), high), np.inf
         x, certified = before, True
@@ -114,34 +149,30 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
             end = (v.starts[span + 1] if span + 1 < n else np.inf) + lap * v.period
             if span + 1 == n and v.period > 0.0:
                 end = (lap + 1) * v.period
-            a, b = max(low, origin) - origin, min(high, end) - origin
-            if b < a:
+            left, right = max(low, origin) - origin, min(high, end) - origin
+            if right < left:
                 continue
-            _coefficients(span, P, px, py, v, c)
-            x, D, whole = search_piece(c, d, origin, a, b, v.centres[i], x, D, TIED, work)
+            _coefficients(span, P, p, v, b)
+            _for_search(b, c)
+            x, D, whole = search_piece(c, d, origin, left, right, v.centres[i], x, D, TIED, work)
             certified &= whole
         uncertified += not certified
         for k in range(first, last + 1):
             if v.starts[k % n] + (k // n) * v.period <= x or k == first:
                 here = k
-        _coefficients(here % n, P, px, py, v, c)
-        y = x - (v.starts[here % n] + (here // n) * v.period)
-        qx, qy = c[0, d], c[1, d]
-        for k in range(d - 1, -1, -1):
-            qx, qy = qx * y + c[0, k], qy * y + c[1, k]
-        t[i], e[i, 0], e[i, 1] = x, -qx, -qy
-        distance = np.hypot(qx, qy)
+        _coefficients(here % n, P, p, v, b)
+        t[i], distance = x, _error(b, x - (v.starts[here % n] + (here // n) * v.period), e[i])
         if not np.isfinite(distance):
             return np.inf, count
         largest = max(largest, distance)
         if at_once:
-            P[v.first + i, 0] -= qx
-            P[v.first + i, 1] -= qy
+            for axis in range(size):
+                P[v.first + i, axis] += e[i, axis]
             _follow_ends(P, count, v)
     if not at_once:
         for i in range(count):
-            P[v.first + i, 0] += e[i, 0]
-            P[v.first + i, 1] += e[i, 1]
+            for axis in range(size):
+                P[v.first + i, axis] += e[i, axis]
         _follow_ends(P, count, v)
     return largest, uncertified
 

@@ -1,7 +1,7 @@
 """The nearest point of a polynomial piece, certified to be the global one.
 
-With the vertex p moved to the origin a piece is a plane polynomial q(y) of degree d, and D = |q|² is the squared
-distance. Expand it about any y0, with x = y - y0:
+With the vertex p moved to the origin a piece is a polynomial q(y) = Σ c_k y^k of degree d, in the plane or in space of
+any dimension, and D = |q|² is the squared distance. Expand it about any y0, with x = y - y0:
 
     D(y) = e_0 + e_1 x + e_2 x² + … + e_2d x^2d        e_0 = D(y0),  e_1 = 2 q·q',  e_2 = |q'|² + q·q'', …
          = D(y0) + e_1 x + x² Q(x)                     Q a polynomial of degree 2d - 2.
@@ -21,6 +21,12 @@ if the certificate holds for its own local minimum, or if its lower bound is bel
 the nearest point (p is the centre of curvature, D' has a triple zero), as D is flat there. The ends and the middle of
 each part are candidates too: there Newton's method may stop far from the minimum.
 
+**Any dimension.** D depends on the coefficient vectors c_0, …, c_d only through their inner products, so that any
+isometry leaves all of this as it is. The d + 1 vectors span at most d + 1 dimensions. In a space of more
+:func:`reduce` turns them into R^(d+1) by an orthogonal reduction, as in a QR decomposition; the search has m ≤ d + 1
+coordinates then, whatever the dimension. The inner products themselves would not do: D as a sum of them loses half of
+the digits where it is almost 0. The reduced vectors have rounding errors like those of the coordinates.
+
 **What is certified.** No point of the interval is nearer than the one returned by more than 1e-12 of the size of the
 piece, the largest distance of its Bézier points from p. Squared distances that differ by less than ``EQUAL`` of them,
 or by less than ``tie``, count as equal, and the parameter nearest the vertex's own, ``centre``, is taken: a nearer
@@ -39,7 +45,7 @@ from math import comb
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...types import FloatArray
 from ..method import TIE
 
@@ -70,15 +76,59 @@ for _d in range(MAX_DEGREE + 1):
         for _i in range(_j + 1):
             PRODUCTS[_d, _i, _j] = (1 + (_i < _j)) * comb(_d, _i) * comb(_d, _j) / comb(2 * _d, _i + _j)
 
-WORK = (8, MOST_PARTS + 2)
-"""Shape of the scratch array: shifted x and y, squared distance, Bézier points, and ends and lower bounds of parts."""
+MOST_COORDINATES = MAX_DEGREE + 1
+
+SQUARED, SCALED, LEFT, RIGHT, BOUNDS, SHIFTED, BEZIER = 0, 1, 2, 3, 4, 5, 5 + MOST_COORDINATES
+WORK = (5 + 2 * MOST_COORDINATES, MOST_PARTS + 2)
+"""Shape of the scratch array. Its rows: coefficients of D about y, those of Q scaled to a length; ends and lower bounds
+of parts; the shifted coordinates of q, from ``SHIFTED`` on; those of its Bézier points, from ``BEZIER`` on.
+"""
+
+
+@inlined
+def product(x: FloatArray, y: FloatArray, rows: FloatArray, i: int, j: int, m: int) -> float:
+    """The inner product of columns i and j of m rows, of which x and y are the first two."""
+    total = x[i] * x[j] + y[i] * y[j]
+    for axis in range(2, m):
+        total += rows[axis, i] * rows[axis, j]
+    return total
+
+
+@compiled(internal=True)
+def reduce(b: FloatArray, c: FloatArray) -> None:
+    """Turn d + 1 coefficient vectors, the rows of b (d + 1, more than d + 1), into the columns of c (d + 1, d + 1).
+
+    By Gram and Schmidt's orthogonalisation in its modified form, c_0 last, so that b is destroyed. Whether the vectors
+    are independent or not, inner products of the result are those of vectors within some 1e-16 of the given ones.
+    """
+    order, size = b.shape
+    for step in range(order):
+        k = step + 1 if step + 1 < order else 0
+        squared = 0.0
+        for axis in range(size):
+            squared += b[k, axis] * b[k, axis]
+        length = np.sqrt(squared)
+        for row in range(order):
+            c[row, k] = c[row, k] if row < step else 0.0
+        c[step, k] = length
+        inverse = 1.0 / length if length > 0.0 else 0.0
+        for axis in range(size):
+            b[k, axis] *= inverse
+        for later in range(step + 1, order):
+            other = later + 1 if later + 1 < order else 0
+            along = 0.0
+            for axis in range(size):
+                along += b[k, axis] * b[other, axis]
+            c[step, other] = along
+            for axis in range(size):
+                b[other, axis] -= along * b[k, axis]
 
 
 @compiled(internal=True)
 def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
-    """Coefficients of q about y into work[0], work[1]."""
-    for axis in range(2):
-        s = work[axis]
+    """Coefficients of q about y into the rows of ``work`` from ``SHIFTED`` on."""
+    for axis in range(c.shape[0]):
+        s = work[SHIFTED + axis]
         for k in range(d + 1):
             s[k] = c[axis, k]
         for k in range(d):
@@ -88,17 +138,18 @@ def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
 
 @compiled(internal=True)
 def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
-    """Coefficients of q about y into work[0], work[1], and those of |q|² into work[2]."""
+    """Coefficients of q about y, and those of |q|², into their rows of ``work``."""
     shift(c, d, y, work)
-    u, v = work[0], work[1]
+    rows, m = work[SHIFTED:], c.shape[0]
+    u, v = rows[0], rows[1]
     for k in range(2 * d + 1):
         total = 0.0
         for i in range(max(0, k - d), (k + 1) // 2):
-            total += u[i] * u[k - i] + v[i] * v[k - i]
+            total += product(u, v, rows, i, k - i, m)
         total *= 2.0
         if k % 2 == 0:
-            total += u[k // 2] * u[k // 2] + v[k // 2] * v[k // 2]
-        work[2, k] = total
+            total += product(u, v, rows, k // 2, k // 2, m)
+        work[SQUARED, k] = total
 
 
 @compiled(internal=True)
@@ -109,29 +160,36 @@ def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> 
     the rounding errors of the largest power.
     """
     shift(c, d, a, work)
-    u, v, x, y, power = work[0], work[1], work[3], work[4], 1.0
+    rows, points, m, power = work[SHIFTED:], work[BEZIER:], c.shape[0], 1.0
+    u, v, x, y = rows[0], rows[1], points[0], points[1]
     for k in range(1, d + 1):
         power *= b - a
         u[k] *= power
         v[k] *= power
+        for axis in range(2, m):
+            rows[axis, k] *= power
     largest = 0.0
     for j in range(d + 1):
         x[j], y[j] = u[0], v[0]
         for k in range(1, j + 1):
             x[j] += BERNSTEIN[d, j, k] * u[k]
             y[j] += BERNSTEIN[d, j, k] * v[k]
-        largest = max(largest, x[j] * x[j] + y[j] * y[j])
+        for axis in range(2, m):
+            points[axis, j] = rows[axis, 0]
+            for k in range(1, j + 1):
+                points[axis, j] += BERNSTEIN[d, j, k] * rows[axis, k]
+        largest = max(largest, product(x, y, points, j, j, m))
     least = np.inf
     for k in range(2 * d + 1):
         value = 0.0
         for i in range(max(0, k - d), k // 2 + 1):
-            value += PRODUCTS[d, i, k - i] * (x[i] * x[k - i] + y[i] * y[k - i])
+            value += PRODUCTS[d, i, k - i] * product(x, y, points, i, k - i, m)
         least = min(least, value)
-    return least - ROUNDING * largest, x[0] * x[0] + y[0] * y[0], x[d] * x[d] + y[d] * y[d]
+    return least - ROUNDING * largest, product(x, y, points, 0, 0, m), product(x, y, points, d, d, m)
 
 
 @compiled(internal=True)
-def proven(work: FloatArray, d: int, L: float, allowed: float) -> bool:
+def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float) -> bool:
     """Whether D ≥ D(y0) - allowed between 0 and L (either sign), for the expansion about y0 in ``work``.
 
     Rounding errors of the coefficients of Q are a share of |q'|², |q''|² L², … or of D(y0)/L². The latter are as good
@@ -139,14 +197,15 @@ def proven(work: FloatArray, d: int, L: float, allowed: float) -> bool:
     """
     if L == 0.0:
         return True
-    e, scaled, slope, m = work[2], work[3], work[2, 1], 2 * d - 1
+    e, scaled, rows, m = work[SQUARED], work[SCALED], work[SHIFTED:], 2 * d - 1
+    u, v, slope = rows[0], rows[1], e[1]
     power = 1.0
     for k in range(m):
         scaled[k] = e[2 + k] * power
         power *= L
     squares, power = 0.0, ROUNDING
     for k in range(1, d + 1):
-        squares += (work[0, k] * work[0, k] + work[1, k] * work[1, k]) * power
+        squares += product(u, v, rows, k, k, coordinates) * power
         power *= L * L
     least, rises = np.inf, slope * L > 0.0
     for j in range(m):
@@ -169,7 +228,15 @@ def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> f
             y2, y1, y0 = y2 * y + y1, y1 * y + y0, y0 * y + c[1, k]
         slope = x0 * x1 + y0 * y1
         speed = x1 * x1 + y1 * y1
-        bend = speed + 2 * (x0 * x2 + y0 * y2)
+        lever = x0 * x2 + y0 * y2
+        for axis in range(2, c.shape[0]):
+            x0, x1, x2 = c[axis, d], 0.0, 0.0
+            for k in range(d - 1, -1, -1):
+                x2, x1, x0 = x2 * y + x1, x1 * y + x0, x0 * y + c[axis, k]
+            slope += x0 * x1
+            speed += x1 * x1
+            lever += x0 * x2
+        bend = speed + 2 * lever
         if not bend > 0.05 * speed:
             bend = speed
         if not bend > 0.0:
@@ -200,7 +267,7 @@ def search_piece(
     """Improve the candidate (x, D) by all that the piece has on [low, high].
 
     Args:
-        c: (2, d + 1) coefficients of q by ascending powers of y; parameters are ``origin + y``.
+        c: (m, d + 1) coefficients of q by ascending powers of y, 2 ≤ m ≤ d + 1; parameters are ``origin + y``.
         x, D: the best so far, D = inf if there is none.
 
     Returns:
@@ -211,13 +278,16 @@ def search_piece(
     start = min(max(x - origin, low), high)
     y = local_minimum(c, d, low, high, start)
     expand(c, d, y, work)
-    x, D = better(x, D, origin + y, work[2, 0], centre, tie)
-    allowed = SLACK * work[2, 0] + tie
-    if proven(work, d, high - y, allowed) and proven(work, d, low - y, allowed):
+    x, D = better(x, D, origin + y, work[SQUARED, 0], centre, tie)
+    allowed, m = SLACK * work[SQUARED, 0] + tie, c.shape[0]
+    if proven(work, d, m, high - y, allowed) and proven(work, d, m, low - y, allowed):
         return x, D, True
     shift(c, d, start, work)
-    probe, D_probe = start, work[0, 0] * work[0, 0] + work[1, 0] * work[1, 0]  # not a local minimum: loses ties
-    left, right, bounds = work[5], work[6], work[7]
+    probe, D_probe = (
+        start,
+        product(work[SHIFTED], work[SHIFTED + 1], work[SHIFTED:], 0, 0, m),
+    )  # not a local minimum: loses ties
+    left, right, bounds = work[LEFT], work[RIGHT], work[BOUNDS]
     left[0], right[0], bounds[0] = low, high, -np.inf
     count, parts, certified = 1, 0, True
     while count > 0:
@@ -233,11 +303,11 @@ def search_piece(
         if parts > 0:
             y = local_minimum(c, d, a, b, 0.5 * (a + b))
             expand(c, d, y, work)
-            x, D = better(x, D, origin + y, work[2, 0], centre, tie)
+            x, D = better(x, D, origin + y, work[SQUARED, 0], centre, tie)
             if bound >= min(D, D_probe) * (1 - SLACK) - tie:
                 continue
-            allowed = SLACK * work[2, 0] + tie
-            if proven(work, d, b - y, allowed) and proven(work, d, a - y, allowed):
+            allowed = SLACK * work[SQUARED, 0] + tie
+            if proven(work, d, m, b - y, allowed) and proven(work, d, m, a - y, allowed):
                 continue
         parts += 1
         if parts > MOST_PARTS or not b - a > SHORTEST * (high - low):
