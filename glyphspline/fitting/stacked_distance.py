@@ -7,18 +7,27 @@ instance v.
 
 The *plain* bound of a pair is the largest ``|A_vk - B_vk|`` of its Bézier points, as in :mod:`.certified_distance`:
 being convex it holds in between. But it charges the result for running along the outline at another pace, which
-instances do in different ways, and no pairing of places suits all of them. The *slip* bound does not. Let e be the
-direction of the pair's chords, the same for all instances, and n its normal. Let
+instances do in different ways, and no pairing of places suits all of them. The *slip* bound does not.
 
-    ν = max |n·(A_vk - B_vk)|,   σ = max |e·(A_vk - B_vk)|,   m = max |n·h| / e·h
+Let e be the direction of the pair's chords, the same for all instances, D = A - B, and σ the largest ``|e·D|``. The
+chain of B is followed beyond both ends of the section until it extends by σ along e in every instance. Let all its
+derivatives h have e·h > 0. A point A(t) lies at the height along e of some point B(s) of the chain, and from B(t) to
+there the chain has somewhere, at a parameter ξ, the direction of its chord (the mean value theorem). Hence
 
-over all instances, where h runs over the Bézier points of the derivatives of B_v, and of the chain before and after it
-for as long as its extent along e is below σ in some instance, and all e·h are positive. A point of A_v has a point of
-B_v at the same parameter that is at most σ farther or less far along e. From there to the point of the chain at the
-same height along e the chain rises by at most mσ. So every point of A_v has a point of the chain within ν + mσ. With
-the roles exchanged the same holds for the points of B_v. All of it is linear in the weights, or a quotient of
-linear functions whose denominator is positive, so it holds for every convex combination. Where an arc ends, both chains
-end at the same point: there they are both followed to it, and nothing lies beyond.
+    |A(t) - B(s)| = |h(ξ) × D(t)| / e·h(ξ)
+
+In an instance with weights λ the numerator is Σ λ_u λ_v h_u(ξ) × D_v(t), and the denominator Σ λ_u e·h_u(ξ). With the
+Bézier points h_ui and D_vk of a part of the chain and of the section, the quotient is a mean of
+
+    q_uv = |h_ui × D_vk + h_vi × D_uk| / (e·h_ui + e·h_vi)
+
+with weights λ_u λ_v (e·h_ui + e·h_vi)/2 and those of the Bernstein polynomials. Where a master slips along its own
+outline h_u is parallel to D_u, and q_uu is the distance across; q_uv is what mixing two masters costs that slip apart
+and run in different directions. The weights of all q_uu together are at least 2√r/(V (1 + r)), where r is the largest
+quotient of the e·h_ui of two instances (the inequalities of Cauchy and Kantorovich), so that the largest q_uu and q_uv
+bound the distance of A's points from B. With the roles exchanged the same holds for the points of B.
+
+Where an arc ends, both chains end at the same point: there they are both followed to it, and nothing lies beyond.
 """
 
 from __future__ import annotations
@@ -42,27 +51,28 @@ STEPS = 6
 PARTS = 24
 """Most parts of a chain that are looked at beyond either end of a section."""
 
+FIRST_PART = 1 / 64
+"""The first of them, as a share of a segment; each is twice as long as the one before."""
+
 FLAT = 1e-9
 """Least extent of a derivative along a chord, as a share of its length, that counts as positive."""
 
 
 @compiled
 def pair_stacks(
-    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray,
-    sharpness: float, limit: float,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Certified bounds of the spans of one contour, and the largest distances seen across it.
+    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray, limit: float
+) -> FloatArray:
+    """Certified bounds of the spans of one contour.
 
     Args:
         results: (V, r, 4, 2) and sources: (V, m, 4, 2) closed chains in all instances.
         anchors: (r + 1, 2) places on both where each span of the result begins, and the first a lap later.
         ranges: (r, 4) first and last place on the result and on the source of the arc that each span belongs to.
         laps: (r,) whether that arc is the whole contour, which has no ends.
-        sharpness: halve sections until a bound exceeds the distances seen by no more than this, or
-        limit: until it is below this.
+        limit: sections are halved until their bounds are below this.
     """
     V, spans = len(results), len(laps)
-    bounds, gaps = np.empty(spans), np.zeros(spans)
+    bounds = np.empty(spans)
     work, marks = np.empty((2, DEEPEST + 2, V, 4, 2)), np.empty((DEEPEST + 2, 5))
     rounding = 0.0
     for v in range(V):
@@ -88,11 +98,8 @@ def pair_stacks(
             while top >= 0:
                 A, B = work[0, top], work[1, top]
                 x0, x1, y0, y1, depth = marks[top]
-                most, seen = _bound_of_pair(
-                    A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, max(limit, bound)
-                )
-                gaps[k] = max(gaps[k], seen)
-                enough = max(limit, bound, gaps[k] + sharpness)
+                enough = max(limit, bound)
+                most = _bound_of_pair(A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, enough)
                 if most <= enough or depth >= DEEPEST or halvings >= MOST_HALVINGS:
                     bound = max(bound, most)
                     top -= 1
@@ -111,74 +118,95 @@ def pair_stacks(
                 marks[top, 4] = depth + 1
             x, y = cut, stop
         bounds[k] = bound + rounding
-    return bounds, gaps
+    return bounds
 
 
 @compiled(internal=True)
 def _bound_of_pair(
     A: FloatArray, B: FloatArray, results: FloatArray, sources: FloatArray, x0: float, x1: float, y0: float, y1: float,
     arc: FloatArray, ring: bool, enough: float,
-) -> tuple[float, float]:  # fmt: skip
-    """The smaller of the two bounds of a pair of sections (V, 4, 2), and the largest distance across seen at its ends.
-
-    The slip bound is left out where the plain one is enough.
-    """
-    plain = ex = ey = 0.0
-    for v in range(len(A)):
+) -> float:  # fmt: skip
+    """The smaller of the two bounds of sections (V, 4, 2); the slip bound only where the plain one is not enough."""
+    V, plain, ex, ey = len(A), 0.0, 0.0, 0.0
+    D = A - B
+    for v in range(V):
         for k in range(4):
-            plain = max(plain, length(A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]))
+            plain = max(plain, length(D[v, k, 0], D[v, k, 1]))
         ex += A[v, 3, 0] - A[v, 0, 0] + B[v, 3, 0] - B[v, 0, 0]
         ey += A[v, 3, 1] - A[v, 0, 1] + B[v, 3, 1] - B[v, 0, 1]
     size = length(ex, ey)
     if plain <= enough or size <= 0.0:
-        return plain, plain if size <= 0.0 else 0.0
+        return plain
     ex, ey = ex / size, ey / size
-    across = along = seen = 0.0
-    for v in range(len(A)):
+    reach = 0.0
+    for v in range(V):
         for k in range(4):
-            x, y = A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]
-            across, along = max(across, abs(ex * y - ey * x)), max(along, abs(ex * x + ey * y))
-            if k == 0 or k == 3:
-                seen = max(seen, abs(ex * y - ey * x))
-    slope = max(_slope(A, ex, ey), _slope(B, ex, ey))
+            reach = max(reach, abs(ex * D[v, k, 0] + ey * D[v, k, 1]))
+    slip = np.zeros((2, 4))
+    slip[:, 2] = np.inf
+    if not (_add_part(A, D, ex, ey, slip[0]) and _add_part(B, D, ex, ey, slip[1])):
+        return plain
     for side in range(2):
-        if not across + slope * along < plain:
-            break
+        if _slip_bound(slip, V) >= plain:
+            return plain
         x, y = (x1, y1) if side else (x0, y0)
         x_end, y_end = (arc[1], arc[3]) if side else (arc[0], arc[2])
-        slope, ended = _slope_beyond(sources, side, y, y_end, ring, along, ex, ey, slope)
-        slope, also = _slope_beyond(results, side, x, x_end, ring, np.inf if ended else along, ex, ey, slope)
-        if also and not ended:
-            slope, _ = _slope_beyond(sources, side, y, y_end, ring, np.inf, ex, ey, slope)
-    return min(plain, across + slope * along), min(seen, plain)
+        good, ended = _follow(sources, D, side, y, y_end, ring, reach, ex, ey, slip[1])
+        fine, also = _follow(results, D, side, x, x_end, ring, np.inf if ended else reach, ex, ey, slip[0])
+        if good and fine and also and not ended:
+            good, _ = _follow(sources, D, side, y, y_end, ring, np.inf, ex, ey, slip[1])
+        if not (good and fine):
+            return plain
+    return min(plain, _slip_bound(slip, V))
 
 
 @compiled(internal=True)
-def _slope(b: FloatArray, ex: float, ey: float) -> float:
-    """The largest |n·h| / e·h of the derivatives of cubics (V, 4, 2); infinite unless all e·h are positive."""
+def _slip_bound(slip: FloatArray, V: int) -> float:
+    """The larger bound of both directions, from what :func:`_add_part` gathered."""
     most = 0.0
-    for v in range(len(b)):
-        for k in range(3):
-            x, y = b[v, k + 1, 0] - b[v, k, 0], b[v, k + 1, 1] - b[v, k, 1]
-            ahead, aside = ex * x + ey * y, abs(ex * y - ey * x)
-            if not ahead > FLAT * (abs(x) + abs(y)):
-                return np.inf
-            most = max(most, aside / ahead)
+    for n in range(2):
+        alone, mixed, ratio = slip[n, 0], slip[n, 1], slip[n, 3] / slip[n, 2]
+        share = 2 * np.sqrt(ratio) / (V * (1 + ratio))
+        most = max(most, alone if mixed <= alone else share * alone + (1 - share) * mixed)
     return most
 
 
 @compiled(internal=True)
-def _slope_beyond(
-    chains: FloatArray, side: int, first: float, last: float, ring: bool, reach: float, ex: float, ey: float,
-    slope: float,
-) -> tuple[float, bool]:  # fmt: skip
-    """The slope with what chains (V, m, 4, 2) have beyond a place, until they extend by ``reach`` or their arc ends.
+def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArray) -> bool:
+    """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and the least and largest e·h; False unless
+    all e·h are positive.
+    """
+    V = len(b)
+    for i in range(3):
+        for u in range(V):
+            ux, uy = b[u, i + 1, 0] - b[u, i, 0], b[u, i + 1, 1] - b[u, i, 1]
+            ahead = ex * ux + ey * uy
+            if not ahead > FLAT * (abs(ux) + abs(uy)):
+                return False
+            slip[2], slip[3] = min(slip[2], ahead), max(slip[3], ahead)
+            for k in range(4):
+                slip[0] = max(slip[0], abs(ux * D[u, k, 1] - uy * D[u, k, 0]) / ahead)
+            for v in range(u):
+                vx, vy = b[v, i + 1, 0] - b[v, i, 0], b[v, i + 1, 1] - b[v, i, 1]
+                both = ahead + ex * vx + ey * vy
+                for k in range(4):
+                    cross = ux * D[v, k, 1] - uy * D[v, k, 0] + vx * D[u, k, 1] - vy * D[u, k, 0]
+                    slip[1] = max(slip[1], abs(cross) / both)
+    return True
+
+
+@compiled(internal=True)
+def _follow(
+    chains: FloatArray, D: FloatArray, side: int, first: float, last: float, ring: bool, reach: float, ex: float,
+    ey: float, slip: FloatArray,
+) -> tuple[bool, bool]:  # fmt: skip
+    """Take in what chains (V, m, 4, 2) have beyond a place, until they extend by ``reach`` or their arc ends.
 
     Args:
         side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end, unless it is a ``ring``.
 
     Returns:
-        The slope, infinite if the chains do not get that far; and whether the arc ended.
+        Whether the chains get that far along e, and whether the arc ended.
     """
     V, m = len(chains), chains.shape[1]
     part, start = np.empty((V, 4, 2)), np.empty((V, 2))
@@ -186,9 +214,9 @@ def _slope_beyond(
     at = first
     for turn in range(PARTS):
         if not ring and (at >= last if side else at <= last):
-            return slope, True
+            return True, True
         s = int(np.floor(at)) if side else int(np.ceil(at)) - 1
-        step = min(s + 1 - at if side else at - s, 0.125 * 2.0 ** (turn // 4))
+        step = min(s + 1 - at if side else at - s, FIRST_PART * 2.0**turn)
         a, b = (at, at + step) if side else (at - step, at)
         if not ring:
             a, b = (a, min(b, last)) if side else (max(a, last), b)
@@ -199,11 +227,12 @@ def _slope_beyond(
                 start[v, 0], start[v, 1] = part[v, near, 0], part[v, near, 1]
             x, y = part[v, far, 0] - start[v, 0], part[v, far, 1] - start[v, 1]
             least = min(least, abs(ex * x + ey * y))
-        slope = max(slope, _slope(part, ex, ey))
-        if slope == np.inf or least >= reach:
-            return slope, False
+        if not _add_part(part, D, ex, ey, slip):
+            return False, False
+        if least >= reach:
+            return True, False
         at = b if side else a
-    return np.inf, False
+    return False, False
 
 
 @compiled(internal=True)
@@ -290,7 +319,10 @@ def regular(chains: FloatArray) -> BoolArray:
                     size = max(length(part[v, 3, 0] - part[v, 0, 0], part[v, 3, 1] - part[v, 0, 1]), 1e-300)
                     ex += (part[v, 3, 0] - part[v, 0, 0]) / size
                     ey += (part[v, 3, 1] - part[v, 0, 1]) / size
-                fine = fine and _slope(part, ex, ey) < np.inf
+                for v in range(V):
+                    for i in range(3):
+                        x, y = part[v, i + 1, 0] - part[v, i, 0], part[v, i + 1, 1] - part[v, i, 1]
+                        fine = fine and ex * x + ey * y > FLAT * (abs(x) + abs(y))
             if fine:
                 break
             pieces *= 2

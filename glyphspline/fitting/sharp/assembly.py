@@ -139,16 +139,16 @@ def certify(
 
 def certify_masters(
     contours: SplitContours, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
-    mixes: FloatArray, sharpness: float, limit: float,
-) -> tuple[FloatArray, FloatArray, BoolArray]:  # fmt: skip
-    """The same in a whole design space, and whether the curves have speed everywhere; (P,) each.
+    mixes: FloatArray, limit: float,
+) -> tuple[FloatArray, BoolArray]:  # fmt: skip
+    """(P,) certified bounds in a whole design space, and whether the curves have speed everywhere.
 
     Args:
         curves: (K, M, 4, 2) the curves in all masters; offsets: (C + 1,) where each contour begins in them.
         mixes: (V, K) weights of the masters at the corners of the design space's grid.
     """
     results, sources = (np.einsum("vk,kmpc->vmpc", mixes, cubics) for cubics in (curves, contours.cubics))
-    bounds, gaps = np.empty(segments[-1]), np.empty(segments[-1])
+    bounds = np.empty(segments[-1])
     first = pieces.starts[:-1]
     for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
         own = np.flatnonzero(pieces.where[:, CONTOUR] == c)
@@ -174,7 +174,7 @@ def certify_masters(
                     places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
         anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
         rings = np.full(r, closed).astype(np.int64)
-        bounds[a:b], gaps[a:b] = pair_stacks(result, source, anchors, ranges, rings, sharpness, limit)
+        bounds[a:b] = pair_stacks(result, source, anchors, ranges, rings, limit)
     good = regular(results)
     each = segments[:-1]
-    return np.maximum.reduceat(bounds, each), np.maximum.reduceat(gaps, each), np.logical_and.reduceat(good, each)
+    return np.maximum.reduceat(bounds, each), np.logical_and.reduceat(good, each)

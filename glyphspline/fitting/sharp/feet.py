@@ -18,6 +18,10 @@ NOTICED = 0.5
 """Points of the curve between two feet count from this share of the tolerance on."""
 
 
+LONGEST_LEVER = 2.0
+"""Most that a unit of slip counts."""
+
+
 class Samples(NamedTuple):
     """The stretch of outline that a curve follows.
 
@@ -45,6 +49,9 @@ class Rows(NamedTuple):
         used: (K, 1) rows in use; the others are (K, room). span, x: span and local parameter; spans count on around a
             closed curve.
         e: distance from the curve to the outline, along the normal (nx, ny).
+        slip: (K, samples) how far a sample's foot in a master is ahead, along the curve, of the place that is nearest
+            to the sample in all masters together. lever: what a unit of it may cost, in between, across the curve.
+            Both have no columns if there is one master.
     """
 
     used: IntArray
@@ -53,22 +60,24 @@ class Rows(NamedTuple):
     e: FloatArray
     nx: FloatArray
     ny: FloatArray
+    slip: FloatArray
+    lever: FloatArray
 
 
 @compiled(internal=True)
 def empty_rows(masters: int, samples: int) -> Rows:
     """Room for the rows of so many samples."""
-    room = (masters, (1 + EXTRA) * samples)
+    room, apart = (masters, (1 + EXTRA) * samples), (masters, samples if masters > 1 else 0)
     return Rows(
         np.zeros((masters, 1), dtype=np.int64), np.empty(room, dtype=np.int64), np.empty(room), np.empty(room),
-        np.empty(room), np.empty(room),
+        np.empty(room), np.empty(room), np.zeros(apart), np.zeros(apart),
     )  # fmt: skip
 
 
 @compiled(internal=True)
 def rows_of(rows: Rows, v: int) -> Rows:
     """The rows of master v, in arrays of one dimension."""
-    return Rows(rows.used[v], rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v])
+    return Rows(rows.used[v], rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v], rows.lever[v])
 
 
 @compiled(internal=True)
@@ -77,6 +86,45 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
     worst = 0.0
     for v in range(len(samples.Q)):
         worst = max(worst, _measure(samples.Q[v], curve, curve.b[v], near, rows_of(known, v), rows_of(rows, v)))
+    if len(samples.Q) > 1:
+        worst = max(worst, _measure_slip(curve, rows))
+    return worst
+
+
+@compiled(internal=True)
+def _measure_slip(curve: Curve, rows: Rows) -> float:
+    """How far the feet of a sample are apart along the curve, and the largest distance that this may make in between.
+
+    Between the masters, points of the curve are mixed that lie at one parameter. Where the feet are apart and the
+    masters run in different directions, or bend, the mixture is off; what it is off by, to first order, counts as
+    distance. Where they run side by side it costs nothing, and the masters need not agree on a parametrisation.
+    """
+    k, h, masters, n = curve.size[0], curve.h, len(rows.used), rows.slip.shape[1]
+    knots = np.zeros(k + 1)
+    for s in range(k):
+        knots[s + 1] = knots[s] + h[s + 2]
+    at, speed, bend, worst = np.empty(masters), np.empty(masters), np.empty(masters), 0.0
+    for j in range(n):
+        mean = total = nx = ny = 0.0
+        for v in range(masters):
+            s, x = rows.span[v, j], rows.x[v, j]
+            own = _wrapped(s, k)
+            _, _, dx, dy, ax, ay = jet(curve.b[v], own, x)
+            at[v] = knots[own] + x * h[own + 2] + (s - own) // k * knots[k]
+            size = length(dx, dy)
+            speed[v] = size / h[own + 2]
+            bend[v] = abs(dx * ay - dy * ax) / max(size, 1e-9) ** 3
+            mean += speed[v] ** 2 * at[v]
+            total += speed[v] ** 2
+            nx += speed[v] * rows.nx[v, j]
+            ny += speed[v] * rows.ny[v, j]
+        size = max(length(nx, ny), 1e-12)
+        for v in range(masters):
+            slip = (at[v] - mean / total) * speed[v] if total > 0.0 else 0.0
+            aside = abs(nx * rows.ny[v, j] - ny * rows.nx[v, j]) / size
+            lever = min(2 * (1 - 1 / masters) * aside + bend[v] * abs(slip), LONGEST_LEVER)
+            rows.slip[v, j], rows.lever[v, j] = slip, lever
+            worst = max(worst, abs(rows.e[v, j]) + lever * abs(slip))
     return worst
 
 
@@ -236,6 +284,8 @@ def copy_rows(source: Rows, target: Rows) -> None:
         for r in range(source.used[v, 0]):
             target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
             target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
+        for j in range(source.slip.shape[1]):
+            target.slip[v, j], target.lever[v, j] = source.slip[v, j], source.lever[v, j]
 
 
 @compiled(internal=True)
@@ -245,7 +295,10 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
             s = _wrapped(rows.span[v, r], k)
-            errors[s] = max(errors[s], abs(rows.e[v, r]))
+            error = abs(rows.e[v, r])
+            if r < rows.slip.shape[1]:
+                error += rows.lever[v, r] * abs(rows.slip[v, r])
+            errors[s] = max(errors[s], error)
     return errors
 
 

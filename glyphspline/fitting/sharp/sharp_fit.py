@@ -113,8 +113,8 @@ class SharpFit:
         offsets: (C + 1,) where in ``pieces`` each contour begins.
         splines: the interpolations of those arcs that have more than one span, by their piece.
         curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
-        bounds, gaps: (P,) certified distance of each piece from the source, and the largest one seen; of a single
-            master as it is written, and of several in the whole design space.
+        bounds: (P,) certified distance of each piece from the source: of a single master as it is written, and of
+            several in the whole design space. gaps: (P,) the largest one seen; NaN for several masters.
         regular: (P,) whether the curve has speed everywhere, in the whole design space; not looked at for a single one.
     """
 
@@ -246,9 +246,8 @@ def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options:
         regular = np.ones(len(bounds), dtype=np.bool_)
     else:
         cubics = np.stack([all_cubics(curve) for curve in curves])
-        bounds, gaps, regular = certify_masters(
-            split, pieces, segments, cubics, curves[0].offsets, mixes, SHARPNESS * tolerance, tolerance
-        )
+        bounds, regular = certify_masters(split, pieces, segments, cubics, curves[0].offsets, mixes, tolerance)
+        gaps = np.full(len(bounds), np.nan)
     offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
 

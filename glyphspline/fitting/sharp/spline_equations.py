@@ -188,6 +188,10 @@ def _add_master(fit: Fit, v: int, scale: float, minimax: bool, wobble: float) ->
         weight = (2 * square + 0.02 if minimax else 1.0) / scale**2
         s = rows.span[r] % k
         _add_row(gram[s], J, moves[s], B, rows.nx[r], rows.ny[r], rows.e[r], weight)
+        if r < len(rows.slip):
+            square = (rows.lever[r] * rows.slip[r] / scale) ** 2
+            weight = (2 * square + 0.02 if minimax else 1.0) * (rows.lever[r] / scale) ** 2
+            _add_row(gram[s], J, moves[s], B, rows.ny[r], -rows.nx[r], rows.slip[r], weight)
     if wobble > 0.0:
         B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
         for s in range(k):
@@ -214,6 +218,9 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
             square = (rows.e[v, r] / scale) ** 2
+            total += square * square + 0.02 * square if minimax else square
+        for r in range(rows.slip.shape[1]):
+            square = (rows.lever[v, r] * rows.slip[v, r] / scale) ** 2
             total += square * square + 0.02 * square if minimax else square
     first, stop = inner_vertices(curve)
     for s in range(first, stop):

@@ -1,0 +1,155 @@
+"""From the masters of a glyph to one curve for all of them: every instance is as smooth as the masters.
+
+The K masters of an arc are one curve in R^{2K}, interpolated there by variant 2 on one knot vector. An instance is a
+linear combination of the masters, and so a C2 spline on the same knots. The certificate holds at every location: see
+:mod:`.stacked_distance`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import GlyphsplineError, OptionError
+from ..outlines.contour_arrays import ContourArrays, offsets_of
+from ..outlines.masters import MasterContour, Masters
+from ..outlines.outline import Outline
+from ..types import BoolArray, FloatArray, counted, rounded_up
+from .options import Options
+
+SHARP = Options(corners="sharp")
+
+
+@dataclass(frozen=True, eq=False)
+class MastersContourResult:
+    """One contour of a glyph in all masters.
+
+    Attributes:
+        source: the contour as the font has it. curve: the result, lines and cubics, in the source's direction.
+        inner: (m,) whether segment j of the result begins inside an arc: no instance has a kink or a jump of curvature
+            there.
+        places: (m + 1,) places of the source near which the segments of the result begin, and the first a lap later.
+        iterations: of variant 2, the most of all arcs; None if no arc has two spans.
+        rate_bound: largest certified factor a step; None likewise.
+        deviation_bound: certified bound of the two-sided distance to the source at every location, in font units.
+        within_tolerance: whether it is within the tolerance.
+        regular: whether the curve is proven to have speed everywhere, at every location. It may lack it where the
+            source's contour collapses.
+    """
+
+    source: MasterContour
+    curve: MasterContour
+    inner: BoolArray
+    places: FloatArray
+    iterations: int | None
+    rate_bound: float | None
+    deviation_bound: float
+    within_tolerance: bool
+    regular: bool
+
+
+@dataclass(frozen=True, eq=False)
+class MastersResult:
+    """A glyph converted in all masters at once.
+
+    Attributes:
+        masters: the source. options: how it was converted. contours: results of its contours.
+        notes: what a user should know.
+    """
+
+    masters: Masters
+    options: Options
+    contours: tuple[MastersContourResult, ...]
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        segments = sum(len(contour.curve) for contour in self.contours)
+        bound = rounded_up(max((contour.deviation_bound for contour in self.contours), default=0.0), 3)
+        counts = f"{counted(len(self.masters), 'master')}, {counted(len(self.contours), 'contour')}"
+        return f"<MastersResult {self.masters.name!r}: {counts}, {segments} segments, certified within {bound:g} units>"
+
+    def instance(self, location: Mapping[str, float]) -> Outline:
+        """The result at a location, axis tag to user-space value: an outline that every function of outlines takes."""
+        return self.mixed(self.masters.weights(location))
+
+    def mixed(self, weights: FloatArray) -> Outline:
+        """The result with (K,) weights of the masters."""
+        m = self.masters
+        contours = [contour.curve.mixed(weights) for contour in self.contours]
+        return Outline(m.name, m.gid, m.unicodes, float(m.advances @ weights), contours, m.metrics, self.notes)
+
+
+def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult:
+    """Put one curve through all masters of a glyph.
+
+    Args:
+        masters: of the glyph; see :meth:`.Source.masters`. options: how; the tolerance holds at every location.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be interpolated, or a design space with too many grid corners; it names
+            the glyph.
+        OptionError: options that are for single outlines.
+    """
+    from .sharp.sharp_fit import Source, fit_sharp
+
+    if options.is_fixed or options.corners != "sharp" or options.continuity != "c2":
+        raise OptionError('masters are converted with corners="sharp", continuity="c2" and a tolerance')
+    em = masters.metrics.units_per_em
+    tolerance = options.tolerance_for(em)
+    kept = [c for c, contour in enumerate(masters.contours) if _encloses(contour)]
+    notes = [
+        f"contour {c} has fewer than three distinct points and is left out"
+        for c in range(len(masters.contours))
+        if c not in kept
+    ]
+    if not kept:
+        return MastersResult(masters, options, (), tuple(notes))
+    sources = [masters.contours[c] for c in kept]
+    degrees = np.concatenate([source.degrees for source in sources])
+    offsets = offsets_of([len(source) for source in sources])
+    starts = offsets_of([source.points.shape[1] for source in sources])
+    points = np.concatenate([source.points[0] for source in sources])
+    cubics = np.concatenate([source.cubics() for source in sources], axis=1)
+    try:
+        mixes = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
+        source = Source(ContourArrays(points, degrees, offsets, starts), cubics, mixes)
+        fit = fit_sharp(source, options, tolerance, em)
+    except GlyphsplineError as error:
+        raise error.locate(glyph=masters.name) from error.__cause__
+    results = []
+    for c in range(len(kept)):
+        a, b = fit.offsets[c], fit.offsets[c + 1]
+        arcs = [fit.splines[q] for q in range(a, b) if q in fit.splines]
+        bound = float(fit.bounds[a:b].max())
+        counts = np.maximum(fit.pieces.where[a:b, 3], 1)
+        inner = np.ones(int(counts.sum()), dtype=np.bool_)
+        if not fit.pieces.where[a, 4]:
+            inner[np.cumsum(counts) - counts] = False
+        first = fit.pieces.starts[a:b]
+        places = np.concatenate([fit.pieces.places[s : s + n] for s, n in zip(first, counts, strict=True)])
+        results.append(
+            MastersContourResult(
+                sources[c],
+                MasterContour(np.stack([_part(curve, c)[0] for curve in fit.curves]), _part(fit.curves[0], c)[1]),
+                inner,
+                np.append(places, places[0] + len(sources[c])),
+                max((arc.iterations for arc in arcs), default=None),
+                max((arc.rate_bound for arc in arcs), default=None),
+                bound,
+                bound <= tolerance,
+                bool(fit.regular[a:b].all()),
+            )
+        )
+    return MastersResult(masters, options, tuple(results), tuple(notes))
+
+
+def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, FloatArray]:
+    part = contours.part(c, c + 1)
+    return part.points, part.degrees
+
+
+def _encloses(contour: MasterContour) -> bool:
+    """Whether three of a contour's points are distinct in some master."""
+    return any(len(np.unique(points, axis=0)) >= 3 for points in contour.points)
