@@ -16,7 +16,7 @@ from ..errors import GlyphsplineError, OptionError
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
-from ..types import BoolArray, FloatArray, counted, rounded_up
+from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
 from .options import Options
 
 SHARP = Options(corners="sharp")
@@ -145,7 +145,7 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
     return MastersResult(masters, options, tuple(results), tuple(notes))
 
 
-def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, FloatArray]:
+def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, IntArray]:
     part = contours.part(c, c + 1)
     return part.points, part.degrees
 
