@@ -20,6 +20,9 @@ NAMED = 3
 MADE = 0.5
 """Degrees made by interpolation from which they have one."""
 
+STEPS = 240
+"""Of the lines of single joints."""
+
 COLOURS = ("#e8590c", "#1098ad", "#9c36b5")
 
 
@@ -42,11 +45,12 @@ def _draw(axes: Any, source: VariableSource, found: AxisKinks) -> None:
     for position in found.positions:
         axes.axvline(position, color="0.6", linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
     for colour, kink in zip(COLOURS, worst(found), strict=False):
-        at = np.union1d(values, [value for value, _ in kink.at_masters])
+        at = np.union1d(np.linspace(values[0], values[-1], STEPS + 1), [value for value, _ in kink.at_masters])
         axes.plot(at, joint_turns(source.masters(kink.glyph), kink, at), color=colour, linewidth=1.2, label=words(kink))
         axes.plot(*zip(*kink.at_masters, strict=True), "o", color=colour, markersize=3.5)
         axes.plot(kink.location[kink.axis], kink.turn, "o", color=colour, markersize=6, markerfacecolor="white")
-    axes.set(xlim=(values[0], values[-1]), ylim=(0, max(1.0, 1.12 * float(largest.max()))))
+    margin = 0.01 * (values[-1] - values[0])
+    axes.set(xlim=(values[0] - margin, values[-1] + margin), ylim=(0, max(1.0, 1.12 * float(largest.max()))))
     axes.set_xlabel(f"{ascii_text(found.axis.name)} ({found.axis.tag}), masters dashed", fontsize=8)
     axes.set_ylabel("turn in degrees", fontsize=8)
     axes.tick_params(labelsize=7)
