@@ -116,6 +116,13 @@ def test_cut_regions_say_the_same() -> None:
     assert told_apart(regions) == regions
 
 
+@pytest.mark.parametrize("other", [(0.0, 0.5, 0.5), (0.5, 0.5, 1.0)])
+def test_regions_that_end_abruptly_cannot_be_cut(other: tuple[float, float, float]) -> None:
+    with pytest.raises(GlyphsplineError, match="two regions of one peak"):
+        told_apart([((0.0, 0.5, 1.0),), (other,)])
+    assert told_apart([(other,)]) == [(other,)]
+
+
 def test_segments_that_vanish_in_one_master_stay(tmp_path: Path) -> None:
     """The second point is at the first at the default, the last one in the bold; the third is always double."""
     points = [(0, 0), (0, 0), (400, 0), (400, 0), (400, 300), (0, 300)]

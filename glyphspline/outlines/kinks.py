@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from pathlib import Path
 from typing import Any, Protocol, overload
 
 import numpy as np
@@ -46,6 +47,7 @@ AT_ONCE = 64
 class Source(Protocol):
     """What kinks are measured of: :class:`glyphspline.Font`, or any other source of a variable font."""
 
+    path: Path
     axes: tuple[DesignAxis, ...]
     glyph_names: tuple[str, ...]
     location: Mapping[str, float]
@@ -206,9 +208,9 @@ def kinks(
     """
     tags = [of_font.tag for of_font in source.axes]
     if not tags:
-        raise GlyphsplineError("not a variable font: it has no axes")
+        raise GlyphsplineError("not a variable font: it has no axes", font=str(source.path))
     if axis is not None and axis not in tags:
-        raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}")
+        raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}", font=str(source.path))
     require(is_positive(corner_angle, 180), "corner_angle is above 0 and up to 180 degrees", corner_angle)
     chosen = [k for k, tag in enumerate(tags) if axis in (None, tag)]
     parts: list[list[_Measured]] = [[] for _ in chosen]
