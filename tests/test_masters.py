@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont, newTable
+from fontTools.ttLib.tables import otTables
 
 from glyphspline import FontError, GlyphsplineError, open_font
 from glyphspline.outlines.masters import Masters, region_scalars, told_apart
@@ -213,9 +214,19 @@ def test_more_masters_than_can_be_weighed_are_refused(tmp_path: Path, monkeypatc
         open_font(FONTS / "variable.ttf").masters("o")
 
 
-def test_glyphs_of_variable_components_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    font = open_font(FONTS / "variable.ttf")
-    font._variations._composed.add("o")
-    with pytest.raises(GlyphsplineError, match="glyph 'o': made of variable components"):
-        font.masters("o")
-    assert isinstance(font.masters("i"), Masters)
+def test_glyphs_of_variable_components_are_refused(tmp_path: Path) -> None:
+    tables = TTFont(FONTS / "variable.ttf")
+    tables["VARC"] = newTable("VARC")
+    tables["VARC"].table = composed_of = otTables.VARC()
+    composed_of.Version, composed_of.Coverage = 0x00010000, otTables.Coverage()
+    composed_of.Coverage.glyphs = ["mirror"]
+    composed_of.MultiVarStore = composed_of.ConditionList = composed_of.AxisIndicesList = None
+    component = otTables.VarComponent()
+    component.glyphName = "o"
+    composed_of.VarCompositeGlyphs = otTables.VarCompositeGlyphs()
+    composed_of.VarCompositeGlyphs.VarCompositeGlyph = [otTables.VarCompositeGlyph([component])]
+    tables.save(tmp_path / "v.ttf")
+    font = open_font(tmp_path / "v.ttf")
+    with pytest.raises(GlyphsplineError, match="glyph 'mirror': made of variable components"):
+        font.masters("mirror")
+    assert isinstance(font.masters("o"), Masters)

@@ -37,8 +37,8 @@ GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 STEPS = 32
 """Steps of golden section from two samples' distance: to 1e-7 of it."""
 
-PROFILE = 32
-"""Intervals of each side of an axis at whose ends the largest turn of all joints is kept."""
+PROFILE = 96
+"""Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
 
 AT_ONCE = 64
 """Glyphs that are measured in one pass."""
@@ -294,10 +294,11 @@ def ticks_of(masters: Masters, axis: int) -> FloatArray:
 
 
 def grid_of(axis: DesignAxis) -> FloatArray:
-    """Normalised values of an axis, evenly on each side of its default."""
-    values = np.linspace(-1.0, 1.0, 2 * PROFILE + 1)
-    low, high = -1.0 * (axis.minimum < axis.default), 1.0 * (axis.maximum > axis.default)
-    return values[(values >= low) & (values <= high)]
+    """Normalised values of an axis, even in user space, with those where its mapping bends."""
+    users = [*np.linspace(axis.minimum, axis.maximum, PROFILE + 1).tolist(), axis.default]
+    low, high = axis.normalised(axis.minimum), axis.normalised(axis.maximum)
+    bends = [after for _, after in axis.mapping if low <= after <= high]
+    return np.unique([*(axis.normalised(value) for value in users), *bends])
 
 
 def masters_on(masters: Masters, axis: int, base: FloatArray, ticks: FloatArray) -> BoolArray:

@@ -236,9 +236,7 @@ def told_apart(regions: Iterable[Region]) -> list[Region]:
         cut = [_cut(region, ticks) if region in shared else [region] for region in found]
         pieces = dict.fromkeys(piece for of_region in cut for piece in of_region)
         if pieces.keys() == found.keys():
-            raise GlyphsplineError(
-                "two regions of one peak, where one ends: masters cannot be told apart"
-            )
+            raise GlyphsplineError("two regions of one peak, where one ends: masters cannot be told apart")
         found = pieces
 
 
