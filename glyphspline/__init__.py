@@ -14,6 +14,8 @@ from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
 from .notebook import plot
+from .outlines.kinks import AxisKinks, Kink, KinkReport, kinks
+from .outlines.masters import DesignAxis, MasterContour, Masters
 from .outlines.outline import Contour, FontMetrics, Outline
 from .outlines.sampling import sample
 
@@ -55,14 +57,20 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "AxisKinks",
     "Contour",
     "ContourResult",
+    "DesignAxis",
     "Font",
     "FontError",
     "FontMetrics",
     "GlyphResult",
     "GlyphsplineError",
     "Interpolation",
+    "Kink",
+    "KinkReport",
+    "MasterContour",
+    "Masters",
     "Measures",
     "OptionError",
     "Options",
@@ -76,6 +84,7 @@ __all__ = [
     "interpolate",
     "interpolate_many",
     "interpolate_vertex",
+    "kinks",
     "open_font",
     "open_source",
     "plot",

@@ -5,69 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pytest
-from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont, newTable
-from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
-from fontTools.ttLib.tables.ttProgram import Program
-from fontTools.ttLib.tables.TupleVariation import TupleVariation
+from fontTools.ttLib.tables import otTables
 
 from glyphspline import FontError, GlyphsplineError, open_font
 from glyphspline.outlines.masters import Masters, region_scalars, told_apart
 
+from .variable_fonts import Tuples, polygon, quadratic, variable_font
+
 FONTS = Path(__file__).parent.parent / "fonts_test"
-
-Support: TypeAlias = Mapping[str, tuple[float, float, float]]
-Tuples: TypeAlias = Mapping[str, Sequence[tuple[Support, Sequence[tuple[float, float]]]]]
-PHANTOMS = [(0, 0)] * 4
-
-
-def variable_font(
-    path: Path,
-    glyphs: Mapping[str, Any],
-    variations: Tuples,
-    axes: Sequence[tuple[str, float, float, float, str]] = (("wght", 100, 400, 900, "Weight"),),
-) -> Path:
-    """A TrueType font of glyphs and their deltas, which are those of the contours' points, without phantom points."""
-    empty = Glyph()
-    empty.numberOfContours = 0
-    glyphs = {".notdef": empty, **glyphs}
-    builder = FontBuilder(1000)
-    builder.setupGlyphOrder(list(glyphs))
-    builder.setupCharacterMap({ord(name): name for name in glyphs if len(name) == 1})
-    builder.setupGlyf(dict(glyphs))
-    builder.setupHorizontalMetrics({name: (600, getattr(glyph, "xMin", 0)) for name, glyph in glyphs.items()})
-    builder.setupHorizontalHeader(ascent=800, descent=-200)
-    builder.setupNameTable({"familyName": "Masters", "styleName": "Regular"})
-    builder.setupFvar(list(axes), [])
-    tuples = {
-        name: [TupleVariation(dict(support), [*deltas, *PHANTOMS]) for support, deltas in of_glyph]
-        for name, of_glyph in variations.items()
-    }
-    builder.setupGvar(tuples)
-    builder.setupOS2()
-    builder.setupPost()
-    builder.save(path)
-    return path
-
-
-def quadratic(points: Sequence[tuple[float, float]], on: Sequence[bool]) -> Glyph:
-    glyph = Glyph()
-    glyph.numberOfContours = 1
-    glyph.coordinates = GlyphCoordinates(points)
-    glyph.endPtsOfContours = [len(points) - 1]
-    glyph.flags = bytearray(on)
-    glyph.program = Program()
-    glyph.program.fromBytecode(b"")
-    return glyph
-
-
-def polygon(*points: tuple[float, float]) -> Glyph:
-    return quadratic(points, [True] * len(points))
 
 
 def composed(*components: tuple[str, float, float]) -> Any:
@@ -166,6 +117,13 @@ def test_cut_regions_say_the_same() -> None:
     assert told_apart(regions) == regions
 
 
+@pytest.mark.parametrize("other", [(0.0, 0.5, 0.5), (0.5, 0.5, 1.0)])
+def test_regions_that_end_abruptly_cannot_be_cut(other: tuple[float, float, float]) -> None:
+    with pytest.raises(GlyphsplineError, match="two regions of one peak"):
+        told_apart([((0.0, 0.5, 1.0),), (other,)])
+    assert told_apart([(other,)]) == [(other,)]
+
+
 def test_segments_that_vanish_in_one_master_stay(tmp_path: Path) -> None:
     """The second point is at the first at the default, the last one in the bold; the third is always double."""
     points = [(0, 0), (0, 0), (400, 0), (400, 0), (400, 300), (0, 300)]
@@ -256,9 +214,19 @@ def test_more_masters_than_can_be_weighed_are_refused(tmp_path: Path, monkeypatc
         open_font(FONTS / "variable.ttf").masters("o")
 
 
-def test_glyphs_of_variable_components_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    font = open_font(FONTS / "variable.ttf")
-    font._variations._composed.add("o")
-    with pytest.raises(GlyphsplineError, match="glyph 'o': made of variable components"):
-        font.masters("o")
-    assert isinstance(font.masters("i"), Masters)
+def test_glyphs_of_variable_components_are_refused(tmp_path: Path) -> None:
+    tables = TTFont(FONTS / "variable.ttf")
+    tables["VARC"] = newTable("VARC")
+    tables["VARC"].table = composed_of = otTables.VARC()
+    composed_of.Version, composed_of.Coverage = 0x00010000, otTables.Coverage()
+    composed_of.Coverage.glyphs = ["mirror"]
+    composed_of.MultiVarStore = composed_of.ConditionList = composed_of.AxisIndicesList = None
+    component = otTables.VarComponent()
+    component.glyphName = "o"
+    composed_of.VarCompositeGlyphs = otTables.VarCompositeGlyphs()
+    composed_of.VarCompositeGlyphs.VarCompositeGlyph = [otTables.VarCompositeGlyph([component])]
+    tables.save(tmp_path / "v.ttf")
+    font = open_font(tmp_path / "v.ttf")
+    with pytest.raises(GlyphsplineError, match="glyph 'mirror': made of variable components"):
+        font.masters("mirror")
+    assert isinstance(font.masters("o"), Masters)

@@ -29,9 +29,10 @@ look_option = partial(typer.Option, rich_help_panel="How drawings look")
 run_option = partial(typer.Option, rich_help_panel="The run")
 method_option = partial(typer.Option, rich_help_panel="The method, in the paper's terms")
 
-FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO or SVG; - is standard input."
+FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
 FONTS_HELP = (
-    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, SVG; - is standard input), folders, globs, or @file with one a line."
+    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, or @file "
+    "with one a line."
 )
 
 
@@ -232,6 +233,15 @@ WhereNone = Annotated[
     Fallback, method_option("--fallback", help="Where chords are too uneven for a guarantee (Lemma 2 has no interval).")
 ]
 
+AxisTag = Annotated[str | None, typer.Option("--axis", metavar="TAG", help="Only along this axis. Without it, all.")]
+Least = Annotated[
+    float, typer.Option("--least", parser=number, metavar="DEGREES", help="The smallest turn that is listed.")
+]
+Rows = Annotated[int, typer.Option("--rows", parser=natural, metavar="N", help="Lines of the table.")]
+Plot = Annotated[
+    Path | None,
+    typer.Option("--plot", parser=place, metavar="FILE", help="Draw the largest turn against the axis: SVG, PNG, PDF."),
+]
 AtlasFile = Annotated[Path, typer.Option("--out", "-o", parser=place, metavar="FILE", help="PDF to write.")]
 Profiles = Annotated[
     str | None, typer.Option("--profiles", help="Characters that get a page with κ(s); of up to 12 glyphs, all.")

@@ -11,6 +11,7 @@ from typing import Any
 import typer
 
 from ..fitting.options import Options
+from ..outlines.sampling import CORNER_ANGLE
 from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption
@@ -202,6 +203,55 @@ def atlas(
         if not quiet:
             say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
     raise typer.Exit(1 if failed else 0)
+
+
+@app.command()
+def check(
+    font: opt.FontFile,
+    axis: opt.AxisTag = None,
+    text: opt.Text = None,
+    text_file: opt.TextFile = None,
+    unicodes: opt.Unicodes = None,
+    glyphs: opt.Glyphs = None,
+    gids: opt.Gids = None,
+    every: opt.Every = False,
+    face_index: opt.FaceIndex = 0,
+    location: opt.Location = None,
+    corner_angle: opt.CornerAngle = CORNER_ANGLE,
+    least: opt.Least = 0.5,
+    rows: opt.Rows = 20,
+    plot: opt.Plot = None,
+    as_json: opt.Json = False,
+) -> None:
+    """Find kinks of a variable font: smooth joints that turn along an axis. Nothing is converted.
+
+    The joints whose turn interpolation makes most come first. All glyphs are checked unless some are asked for. Other
+    axes are at --location, or at their default.
+    """
+    given = dict(locals())
+    with errors():
+        from ..outlines.kinks import kinks
+        from ..readers import open_source
+        from . import checking
+
+        checking.require_figure(plot)
+        source = open_source(font, face_index, opt.location_of(location))
+        names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
+        if not names:
+            stop("none of the glyphs asked for is in the font")
+        report = kinks(source, names, axis, corner_angle=corner_angle)
+        if not report.glyphs:
+            stop(f"{font}, glyph {report.failed[0][0]!r}: {report.failed[0][1]}")
+        found = checking.kinks_over(report, least)
+        if plot is not None:
+            checking.write_plot(plot, source, report)
+    if as_json:
+        typer.echo(json.dumps(checking.facts(str(font), report, found), indent=1, ensure_ascii=False))
+        return
+    if found:
+        typer.echo(checking.table(found, rows))
+    for line in checking.sentences(report, found, rows, least):
+        say(line)
 
 
 @app.command()

@@ -218,6 +218,9 @@ def told_apart(regions: Iterable[Region]) -> list[Region]:
     Where components of a glyph have unlike intermediate masters, regions of one peak differ in their extents: from 0
     to 1 peaking at 1, and from 0.6 to 1. Such are cut at the ticks of all regions on an axis: into one from 0 to 1
     peaking at 0.6, and one from 0.6 to 1. A region of no peak, whose scalar is 1, is the default's and left out.
+
+    Raises:
+        GlyphsplineError: a region ends abruptly at its peak, where another one goes on.
     """
     found = dict.fromkeys(region for region in regions if any(peak for _, peak, _ in region))
     while True:
@@ -231,7 +234,10 @@ def told_apart(regions: Iterable[Region]) -> list[Region]:
             sorted({0.0, *(value for region in found for value in region[a])}) for a in range(len(next(iter(found))))
         ]
         cut = [_cut(region, ticks) if region in shared else [region] for region in found]
-        found = dict.fromkeys(piece for pieces in cut for piece in pieces)
+        pieces = dict.fromkeys(piece for of_region in cut for piece in of_region)
+        if pieces.keys() == found.keys():
+            raise GlyphsplineError("two regions of one peak, where one ends: masters cannot be told apart")
+        found = pieces
 
 
 def _cut(region: Region, ticks: Sequence[Sequence[float]]) -> list[Region]:

@@ -47,7 +47,7 @@ def face_facts(face: Face | Source) -> dict[str, Any]:
         "family": face.family,
         "style": face.style,
         **asdict(face.metrics),
-        "axes": [axis_facts(axis) for axis in face.axes] if isinstance(face, Face | Designspace) else [],
+        "axes": [axis_facts(axis) for axis in face.axes],
         "instances": face.instances if isinstance(face, Face | Designspace) else {},
         "location": dict(face.location),
         "glyphs": glyphs,

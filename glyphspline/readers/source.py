@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 from ..errors import FontError, GlyphsplineError
-from ..outlines.masters import Masters, alone
+from ..outlines.masters import DesignAxis, Masters, alone
 from ..outlines.outline import FontMetrics, Outline
 from ..types import counted
 from .selection import Request, Selection, select
@@ -38,6 +38,7 @@ class Source(ABC):
         path: the file, as given. format: the kind of file.
         face_index: which font of a collection; 0 otherwise. num_faces: number of fonts.
         location: place in the design space, axis tag to user-space value; empty at the default.
+        axes: of the design space; empty if there is none. Their mappings are known to :meth:`masters`.
         family, style: never empty.
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
@@ -49,6 +50,7 @@ class Source(ABC):
     face_index: int = 0
     num_faces: int = 1
     location: Mapping[str, float] = MappingProxyType({})
+    axes: tuple[DesignAxis, ...] = ()
     family: str
     style: str
     metrics: FontMetrics

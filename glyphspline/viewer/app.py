@@ -19,6 +19,7 @@ from starlette.routing import Route
 from .. import compiling
 from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS, Options
+from ..readers.facts import axis_facts
 from ..report.gallery import measures, palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
@@ -86,7 +87,7 @@ def font_facts(work: Work) -> dict[str, Any]:
         "style": font.style,
         "glyphs": len(font.glyph_names),
         "metrics": asdict(font.metrics),
-        "axes": [asdict(axis) for axis in font.axes],
+        "axes": [axis_facts(axis) for axis in font.axes],
         "first": first_glyph(work),
         "defaults": defaults(work.em),
         "measures": measures(),

@@ -34,7 +34,7 @@ class Face:
     Attributes:
         path: the file, as given. face_index: which face of a collection. num_faces: number of faces.
         format: the kind of file.
-        axes: of a variable font, else empty; their mappings are known to its masters.
+        axes: of a variable font, else empty; their mappings are known to :meth:`Font.masters`.
         instances: named instances, name to location.
         location: axis tag to user-space value, clamped to the axes' limits. Axes not in it are at their default.
         family, style: from the name table; by default the file's name and "Regular".

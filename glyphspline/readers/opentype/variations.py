@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from fontTools.misc.psCharStrings import SimpleT2Decompiler
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import SCALED_COMPONENT_OFFSET, USE_MY_METRICS, flagCubic, flagOnCurve
 from fontTools.varLib.iup import iup_delta
@@ -180,12 +181,14 @@ class Variations:
     def _from_cff2(self, head: Head) -> Masters:
         top = self._tables["CFF2"].cff.topDictIndex[0]
         string = top.CharStrings[head.name]
-        string.decompile()
         store = getattr(top.CharStrings, "varStore", None)
-        used = _Used()
-        string.draw(StackPen(1), used)  # which of the store's lists of regions the char string blends
-        stored = [] if store is None or used.index is None else self._regions_of(store.otVarStore, used.index)
-        masters, scalars = self._empty(head, self._regions_of_advance(head) if used.index is None else stored)
+        reader = SimpleT2Decompiler(getattr(string.private, "Subrs", []), string.globalSubrs, string.private)
+        reader.execute(string)
+        if store is None or reader.numRegions is None:  # it blends nothing
+            stored = self._regions_of_advance(head)
+        else:
+            stored = self._regions_of(store.otVarStore, reader.vsIndex)
+        masters, scalars = self._empty(head, stored)
         pen = StackPen(len(masters))
         string.draw(pen, lambda _, deltas: scalars[:, 1:] @ np.array(deltas, dtype=np.float64))
         pen.closePath()
@@ -247,16 +250,6 @@ class _Parts:
     def layer(self, region: Region | None) -> FloatArray:
         """The points, or the deltas of a region."""
         return self.points if region is None else self.deltas.get(region, np.zeros_like(self.points))
-
-
-class _Used:
-    """A blender of char strings that keeps the index of the regions they ask for, and blends nothing."""
-
-    index: int | None = None
-
-    def __call__(self, index: int, deltas: Sequence[float]) -> float:
-        self.index = index
-        return 0.0
 
 
 def _draw_quadratics(pen: StackPen, points: FloatArray, on: BoolArray) -> None:

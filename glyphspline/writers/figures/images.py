@@ -1,4 +1,4 @@
-"""Figures of matplotlib and their bytes as PNG or PDF: the same figure gives the same bytes."""
+"""Figures of matplotlib and their bytes as PNG, PDF or SVG: the same figure gives the same bytes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import io
 from typing import Any, Literal
 
 ImageKind = Literal["png", "pdf"]
+"""Of drawings."""
+
+FigureKind = Literal["png", "pdf", "svg"]
+"""Of diagrams."""
 
 DPI = 200.0
 """Pixels an inch of a PNG that says none."""
@@ -24,9 +28,16 @@ def blank(width: float, height: float, **how: Any) -> Any:
     return figure
 
 
-def saved(figure: Any, kind: ImageKind, dpi: float = DPI) -> bytes:
-    """The figure as a PNG of ``dpi`` pixels an inch, or as a one-page PDF."""
-    how = {"metadata": UNDATED} if kind == "pdf" else {"dpi": dpi, "metadata": {"Software": None}}
+def saved(figure: Any, kind: FigureKind, dpi: float = DPI) -> bytes:
+    """The figure as a PNG of ``dpi`` pixels an inch, as a one-page PDF, or as an SVG."""
+    from matplotlib import rc_context
+
+    how: dict[FigureKind, dict[str, Any]] = {
+        "png": {"dpi": dpi, "metadata": {"Software": None}},
+        "pdf": {"metadata": UNDATED},
+        "svg": {"metadata": {"Date": None, "Creator": None}},
+    }
     file = io.BytesIO()
-    figure.savefig(file, format=kind, **how)
+    with rc_context({"svg.hashsalt": "glyphspline"}):  # the names of an SVG's parts
+        figure.savefig(file, format=kind, **how[kind])
     return file.getvalue()
