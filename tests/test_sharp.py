@@ -21,7 +21,7 @@ from glyphspline.fitting.sharp.cubic_fit import fit_cubic
 from glyphspline.fitting.sharp.cutting import choose, cut_all
 from glyphspline.fitting.sharp.pieces import Pieces
 from glyphspline.fitting.sharp.search_settings import SEARCHES
-from glyphspline.fitting.sharp.sharp_fit import refitted
+from glyphspline.fitting.sharp.sharp_fit import chords, refitted
 from glyphspline.fitting.sharp.spline_search import fit_splines
 from glyphspline.fitting.sharp.split_contours import Settings, SplitContours
 from glyphspline.outlines.outline import Contours
@@ -185,7 +185,7 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     split, pieces = cut(contours)
     assert pieces.where[0, [0, 1, 2, 4]].tolist() == [0, 0, len(contours[0]), 1]
     exact = refitted(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), SETTINGS)
-    assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)))
+    assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
     curve = assembly.curves
     bounds, _ = certify(split, exact, assembly.segments, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9

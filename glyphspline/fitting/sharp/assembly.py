@@ -32,13 +32,16 @@ class Assembly(NamedTuple):
 
 
 @compiled
-def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray) -> Assembly:
+def put_together(
+    pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray, chords: FloatArray
+) -> Assembly:
     """The curves of all pieces in one master.
 
     Args:
         pieces: of so many contours, in that master alone.
         knots, controls: of the splines of more than one span, one after the other: k + 1 knots each, and k + 3 control
             points of an arc or k of a closed curve.
+        chords: (P,) the chord of each piece in all masters: what the tangents of an arc of one span go by.
     """
     P = len(pieces.where)
     segments, arcs = np.zeros(P + 1, dtype=np.int64), 0
@@ -57,7 +60,7 @@ def put_together(pieces: Pieces, contours: int, knots: FloatArray, controls: Flo
         for axis in range(2):
             points[at, axis] = p[0, axis]
         if k == 1:
-            third = np.hypot(p[1, 0] - p[0, 0], p[1, 1] - p[0, 1]) / 3
+            third = chords[q] / 3
             for axis in range(2):
                 points[at + 1, axis] = p[0, axis] + third * tau[0, axis]
                 points[at + 2, axis] = p[1, axis] - third * tau[1, axis]

@@ -22,6 +22,9 @@ SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
 
 
+ONE_DIRECTION = 1e-9
+"""Masters' lines have one direction if they turn by no more than this from each other, in radians."""
+
 BEND, KINK = 0.004, 0.065
 """A spline whose vertices are h apart misses an outline by about BEND h⁴ κ³ where it bends, and by KINK h sin θ where
 it turns by θ."""
@@ -36,7 +39,10 @@ class Joints(NamedTuple):
         spacing: (N - 1,) wanted distance of vertices between each sample and the next.
         corner: (m + 1,) the outline turns by the corner angle or more.
         hard: (m + 1,) an arc has to end here: a corner that shows, or the end of a straight line that stays.
-        arriving, leaving: (K, m + 1, 2) unit tangents that arcs take up when they end here.
+        arriving, leaving: (K, m + 1, 2) unit tangents that arcs take up when they end here; at a tied joint, the line's
+            vectors in units of their root mean square.
+        tied: (m + 1,) an arc ends smoothly on a line whose direction is not the same in all masters. Between these it
+            stays smooth only if the arc's tangents are the line's vectors times one number.
         line: (m,) segment j is a line that stays.
     """
 
@@ -48,6 +54,7 @@ class Joints(NamedTuple):
     hard: BoolArray
     arriving: FloatArray
     leaving: FloatArray
+    tied: BoolArray
     line: BoolArray
 
 
@@ -100,7 +107,37 @@ def find_joints(
     corner[m], hard[m] = corner[0], hard[0]
     for v in range(masters):
         set_directions(cubics[v], bends, corner, line, arriving[v], leaving[v])
-    return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, line)
+    tied = tie_to_lines(cubics, bends, corner, line, arriving, leaving)
+    return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
+
+
+@compiled(internal=True)
+def tie_to_lines(
+    cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
+) -> BoolArray:
+    """Which joints are tied, see :class:`Joints`; the line's vectors take the place of the tangents there."""
+    masters, m = len(cubics), len(line)
+    tied = np.zeros(m + 1, dtype=np.bool_)
+    for j in range(m if masters > 1 else 0):
+        if corner[j] or line[j] == line[j - 1] or not bends[j] < SMOOTH_KINK:
+            continue
+        s, square, turn = j if line[j] else (j - 1) % m, 0.0, 0.0
+        for v in range(masters):
+            x, y = cubics[v, s, 3, 0] - cubics[v, s, 0, 0], cubics[v, s, 3, 1] - cubics[v, s, 0, 1]
+            square += x * x + y * y
+            turn = max(turn, abs(leaving[v, j, 0] * leaving[0, j, 1] - leaving[v, j, 1] * leaving[0, j, 0]))
+        if turn < ONE_DIRECTION:
+            continue
+        size, tied[j] = np.sqrt(square / masters), True
+        for v in range(masters):
+            for axis in range(2):
+                arriving[v, j, axis] = (cubics[v, s, 3, axis] - cubics[v, s, 0, axis]) / size
+                leaving[v, j, axis] = arriving[v, j, axis]
+    tied[m] = tied[0]
+    for v in range(masters):
+        for axis in range(2):
+            arriving[v, m, axis], leaving[v, m, axis] = arriving[v, 0, axis], leaving[v, 0, axis]
+    return tied
 
 
 @compiled(internal=True)

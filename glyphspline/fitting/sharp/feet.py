@@ -29,13 +29,15 @@ class Samples(NamedTuple):
         Q: (K, n, 2) points in order, in each master; the ends of an arc are the first and the last.
         places: (n,) their places on the contour.
         D: (n,) integral of the wanted vertex density up to each.
-        free: (2,) whether the end tangents of an arc may turn.
+        directions: (K, 2, 2) of the end tangents of an arc; free: (2,) what they may do. See
+            :class:`.stretches.Stretches`.
         lap: how far the places count on around a closed contour: its number of segments.
     """
 
     Q: FloatArray
     places: FloatArray
     D: FloatArray
+    directions: FloatArray
     free: IntArray
     lap: float
 

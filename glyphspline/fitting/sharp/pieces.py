@@ -28,8 +28,8 @@ class Pieces(NamedTuple):
         starts: (P + 1,) where in ``vertices`` each begins.
         vertices: (K, V, 2) of each piece in each master, both ends of a line or an arc among them. places: (V,) of
             their contour near which they lie; around a closed curve these count on.
-        tangents: (K, P, 2, 2) end tangents of arcs, derivatives by chord length; unset for others. Of an arc of one
-            span they go by its chord in the master; of others, by the root mean square of the chords in all.
+        tangents: (K, P, 2, 2) end tangents of arcs, derivatives by chord length: by the root mean square of the chords
+            in all masters. Unset for others.
         errors: (P,) largest distance of a sample of the outline.
     """
 
@@ -158,10 +158,13 @@ def add_source(pieces: Pieces, count: int, row: Row, cubics: FloatArray, degrees
     p, places, tangents = np.empty((masters, 2, 2)), np.empty(2), np.empty((masters, 2, 2))
     for s in range(row[FIRST], row[LAST]):
         places[0], places[1] = s, s + 1
+        square = 0.0
         for v in range(masters):
             own = cubics[v, s]
-            chord = np.hypot(own[3, 0] - own[0, 0], own[3, 1] - own[0, 1])
-            factor = 3 / chord if chord > 0 else 0.0
+            square += np.hypot(own[3, 0] - own[0, 0], own[3, 1] - own[0, 1]) ** 2
+        factor = 3 / np.sqrt(square / masters)
+        for v in range(masters):
+            own = cubics[v, s]
             for axis in range(2):
                 for end in range(2):
                     p[v, end, axis] = own[3 * end, axis]

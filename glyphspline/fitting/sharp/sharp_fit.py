@@ -47,6 +47,7 @@ ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
 
 RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
+RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0.6, True))
 """What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
 corners. In the end the source's own segments take their place.
 """
@@ -191,7 +192,7 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
     fit = _certified(split, choose(split, pieces, settings.near), source.mixes, options, tolerance)
-    tries = RETRIES[options.continuity]
+    tries = RETRIES[options.continuity] if len(source.cubics) == 1 else RETRIES_OF_MASTERS
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
@@ -238,7 +239,7 @@ def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options:
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
     controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
-    made = [put_together(of_master(pieces, v), count, knots, controls[v]) for v in range(masters)]
+    made = [put_together(of_master(pieces, v), count, knots, controls[v], chords(pieces)) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
     if masters == 1:
         written = curves[0].rounded(options.precision)
@@ -250,6 +251,14 @@ def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options:
         gaps = np.full(len(bounds), np.nan)
     offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
+
+
+def chords(pieces: Pieces) -> FloatArray:
+    """(P,) distance of each piece's first two vertices, the root mean square of those in the masters."""
+    first = pieces.starts[:-1]
+    steps = np.diff(pieces.vertices[:, first[:, None] + [0, 1]], axis=2)[:, :, 0]
+    squares: FloatArray = (np.hypot(steps[..., 0], steps[..., 1]) ** 2).mean(axis=0)
+    return np.sqrt(squares)
 
 
 def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:

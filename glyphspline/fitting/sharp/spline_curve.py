@@ -124,6 +124,24 @@ def set_handles(curve: Curve, tangents: FloatArray) -> None:
 
 
 @compiled(internal=True)
+def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
+    """Make the handles of tied ends the directions (K, 2, 2) times one number."""
+    k, X = curve.size[0], curve.X
+    for end in range(2):
+        if curve.size[1] or free[end] < 2:
+            continue
+        at, tip = (0, 1) if end == 0 else (k + 2, k + 1)
+        along = whole = 0.0
+        for v in range(len(X)):
+            for axis in range(2):
+                along += (X[v, tip, axis] - X[v, at, axis]) * directions[v, end, axis]
+                whole += directions[v, end, axis] * directions[v, end, axis]
+        for v in range(len(X)):
+            for axis in range(2):
+                X[v, tip, axis] = X[v, at, axis] + along / whole * directions[v, end, axis]
+
+
+@compiled(internal=True)
 def end_tangents(curve: Curve, tangents: FloatArray) -> None:
     """The end tangents (K, 2, 2) of an arc, derivatives by chord length; those of a closed curve stay as they are."""
     k, X, h = curve.size[0], curve.X, curve.h

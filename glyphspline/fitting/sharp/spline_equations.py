@@ -284,7 +284,7 @@ def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, wi
     for i in (0, k):
         if not closed and start <= i < start + width:
             r = 2 * (i - start)
-            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] else 1e9 * max(mean, 1.0))
+            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] == 1 else 1e9 * max(mean, 1.0))
 
 
 @compiled(internal=True)

@@ -13,7 +13,7 @@ from ...curves.cubics import length
 from ...types import FloatArray
 from .cholesky import solve
 from .feet import Samples, copy_rows, measure, measure_afresh
-from .spline_curve import Curve, copy_curve, inner_vertices, interpolate_cold, iterate, set_knots
+from .spline_curve import Curve, copy_curve, hold_tied, inner_vertices, interpolate_cold, iterate, set_knots
 from .spline_equations import (
     LARGEST_RATIO,
     Fit,
@@ -79,7 +79,7 @@ def improve(
                 equations(fit, samples, v, damping, start, width)
                 solve(fit.A, fit.step[v], fit.first, 2 * width)
             better = False
-            if _advance(fit, 0.5 if minimax else 1.0, start, width):
+            if _advance(fit, samples, 0.5 if minimax else 1.0, start, width):
                 iterate(trial, WARM * near, WARM_PASSES)
                 new = measure(samples, trial, near, rows, tried)
                 better = objective(trial, tried, error, minimax, wobble) < old
@@ -108,7 +108,7 @@ def is_graded(curve: Curve) -> bool:
 
 
 @compiled(internal=True)
-def _advance(fit: Fit, share: float, start: int, width: int) -> bool:
+def _advance(fit: Fit, samples: Samples, share: float, start: int, width: int) -> bool:
     """The trial: the curve with vertices, knots and control points moved by a share of the step.
 
     A vertex moves across the curve as the curve does at its footpoint. False if chords vanish.
@@ -141,6 +141,7 @@ def _advance(fit: Fit, share: float, start: int, width: int) -> bool:
             own = length(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
             if own > 0.0:
                 _limit_handle(curve.X[v], trial.X[v], end, tip, own)
+    hold_tied(trial, samples.directions, samples.free)
     return True
 
 

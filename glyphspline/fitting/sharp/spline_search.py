@@ -15,11 +15,20 @@ from .cubic_fit import fit_cubic
 from .feet import Samples, find_places, measure_afresh, span_errors
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
-from .spline_curve import Curve, chord, copy_curve, end_tangents, inner_vertices, interpolate_cold, set_handles
+from .spline_curve import (
+    Curve,
+    chord,
+    copy_curve,
+    end_tangents,
+    hold_tied,
+    inner_vertices,
+    interpolate_cold,
+    set_handles,
+)  # fmt: skip
 from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import SHORTEST_HANDLE as SHORTEST
 from .spline_fit import improve
-from .stretches import Stretches, samples_of
+from .stretches import FREE, TIED, Stretches, samples_of
 
 SOME_MORE = 30.0
 """A cubic that misses the tolerance by less than this factor is followed by a try with two spans."""
@@ -63,8 +72,7 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
         begun = k if given else 0 * k
         fit = empty_fit(masters, n, most_spans(samples, search, begun), closed)
         k, error = find_spline(
-            borrowed(fit), borrowed(samples), stretches.directions[:, s].copy(), near, search, begun, pieces.errors[q],
-            p, places, tangents,
+            borrowed(fit), borrowed(samples), near, search, begun, pieces.errors[q], p, places, tangents
         )  # fmt: skip
         keep_alive((fit, samples))
         count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, places, tangents, error)
@@ -86,8 +94,8 @@ def spans_wanted(samples: Samples, search: Search) -> int:
 
 @compiled(internal=True)
 def find_spline(
-    fit: Fit, samples: Samples, directions: FloatArray, near: float, search: Search, given: int, missed: float,
-    p: FloatArray, places: FloatArray, tangents: FloatArray,
+    fit: Fit, samples: Samples, near: float, search: Search, given: int, missed: float, p: FloatArray,
+    places: FloatArray, tangents: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Fit one spline to a stretch, of as few spans as the search finds.
 
@@ -95,7 +103,7 @@ def find_spline(
     more to compile.
 
     Args:
-        fit: scratch arrays. directions: (K, 2, 2) unit tangents at the ends. near: how near all samples have to be.
+        fit: scratch arrays. near: how near all samples have to be.
         given: spans to begin with, whose vertices and tangents are in p and ``tangents``; 0 for a first guess.
         missed: by how much a single cubic misses the samples.
         p: (K, n + 1, 2) receives the vertices, and places: (n + 1,) theirs. tangents: (K, 2, 2) receives the end
@@ -104,20 +112,18 @@ def find_spline(
     Returns:
         The number of spans and the largest distance of a sample; 0 and infinity if there is none.
     """
-    Q, curve, best = samples.Q, fit.curve, fit.best
-    n, closed = len(samples.places), curve.size[1]
-    if given == 1:
-        missed = 0.0
-        for v in range(len(Q)):
-            error = fit_cubic(
-                Q[v], directions[v, 0], samples.free[0] > 0, directions[v, 1], samples.free[1] > 0, near,
-                search.cubic_rounds, tangents[v, 0], tangents[v, 1],
-            )  # fmt: skip
-            missed = max(missed, error)
+    Q, curve, best, directions = samples.Q, fit.curve, fit.best, samples.directions
+    n, closed, alone = len(samples.places), curve.size[1], len(samples.Q) == 1
+    if given == 1 and alone:
+        missed = fit_cubic(
+            Q[0], directions[0, 0], samples.free[0] == FREE, directions[0, 1], samples.free[1] == FREE, near,
+            search.cubic_rounds, tangents[0, 0], tangents[0, 1],
+        )  # fmt: skip
         if missed <= near:
             return 1, missed
     wanted = spans_wanted(samples, search)
-    least = 4 if closed else 2
+    begun = given > 1 or (given == 1 and not alone)
+    least = 4 if closed else (2 if alone else 1)
     guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
     if max(guess, given) > min(search.most, n - 1):
         return 0, np.inf
@@ -128,16 +134,17 @@ def find_spline(
     while True:
         # What is tried, in ``curve``.
         possible = True
-        if what == BEGIN and given > 1:
+        if what == BEGIN and begun:
             begin_from(curve, given, p, tangents)
         elif what in (BEGIN, RESTART):
-            possible = place_vertices(curve, samples, directions, guess, fit.gram.shape[1] - 1)
+            possible = place_vertices(curve, samples, guess, fit.gram.shape[1] - 1)
         elif what == INSERT:
             insertions += 1
             possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
         else:
             remove_vertex(curve, best, at)
         error = np.inf
+        hold_tied(curve, directions, samples.free)
         if possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
             k = curve.size[0]
             rounds = search.few_rounds if k <= 3 else (search.removal_rounds if what == REMOVE else search.rounds)
@@ -155,7 +162,7 @@ def find_spline(
             last = error
             what = INSERT if possible and error < np.inf and slow < 3 else BEGIN
             if what == BEGIN:
-                if starts == STARTS or given > 1:
+                if starts == STARTS or begun:
                     return 0, np.inf
                 guess, starts, slow, insertions = max(wanted, guess + 2) + starts - 1, starts + 1, 0, 0 * n
             continue
@@ -163,7 +170,7 @@ def find_spline(
         # not, a new guess with one less.
         if what == REMOVE:
             mark_tried(tried, at, good, best.size[0])
-        elif not good or given > 1:
+        elif not good or begun:
             break
         if best.size[0] <= least:
             break
@@ -201,7 +208,7 @@ def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> Non
 
 
 @compiled(internal=True)
-def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: int, most: int) -> bool:
+def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
     """A curve of k spans with its vertices on the outline, as the density has them; False if there is no room."""
     Q, D, p, closed = samples.Q, samples.D, curve.p, curve.size[1]
     n = len(samples.places)
@@ -220,6 +227,7 @@ def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: in
             p[v, i, 1] = Q[v, j, 1] + share * (Q[v, after, 1] - Q[v, j, 1])
     if closed:
         return True
+    directions = samples.directions
     tangents = np.empty_like(directions)
     for v in range(len(Q)):
         p[v, k, 0], p[v, k, 1] = Q[v, n - 1, 0], Q[v, n - 1, 1]
@@ -228,7 +236,7 @@ def place_vertices(curve: Curve, samples: Samples, directions: FloatArray, k: in
         whole = chord(p, i, i + 1)
         for v in range(len(Q)):
             own = length(p[v, i + 1, 0] - p[v, i, 0], p[v, i + 1, 1] - p[v, i, 1])
-            share = max(own / whole, SHORTEST) if whole > 0.0 else 1.0
+            share = max(own / whole, SHORTEST) if whole > 0.0 and samples.free[end] != TIED else 1.0
             for axis in range(2):
                 tangents[v, end, axis] = share * directions[v, end, axis]
     set_handles(curve, tangents)

@@ -12,6 +12,9 @@ from .corners import Joints
 from .feet import Samples
 from .spline_curve import chord
 
+HELD, FREE, TIED = 0, 1, 2
+"""What the tangents at an end may do."""
+
 GROWTH = 1.35
 """How fast the wanted distance of vertices grows along the outline: by exp(1.35) < 4 from one to the next."""
 
@@ -25,7 +28,8 @@ class Stretches(NamedTuple):
         points: (K, N, 2) samples in each master, and (N,) places: where on the contour; at the end of a closed one the
             first again, a lap later.
         spacing: (N,) wanted distance of vertices after each sample.
-        directions: (K, S, 2, 2) unit tangents at the ends. free: (S, 2) whether these may turn.
+        directions: (K, S, 2, 2) unit tangents at the ends. free: (S, 2) whether these may turn (FREE), or
+            keep their directions (HELD) and, besides, the ratio of their lengths in the masters (TIED).
     """
 
     piece: IntArray
@@ -71,7 +75,8 @@ def add_stretch(stretches: Stretches, count: int, joints: Joints, i: int, j: int
                 stretches.points[v, at + r, axis] = joints.samples[v, a + r, axis]
             stretches.directions[v, count, 0, axis] = joints.leaving[v, i, axis]
             stretches.directions[v, count, 1, axis] = joints.arriving[v, j, axis]
-    stretches.free[count, 0], stretches.free[count, 1] = joints.corner[i], joints.corner[j]
+    for end, joint in ((0, i), (1, j)):
+        stretches.free[count, end] = FREE if joints.corner[joint] else (TIED if joints.tied[joint] else HELD)
     stretches.piece[count], stretches.starts[count + 1] = piece, at + b - a + 1
     return stretches
 
@@ -107,4 +112,11 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     D[0] = 0.0
     for r in range(n):
         D[r + 1] = D[r] + step[r] / h[r]
-    return Samples(Q[:, : n + 1 - closed].copy(), places[: n + 1 - closed], D, stretches.free[s], places[n])
+    return Samples(
+        Q[:, : n + 1 - closed].copy(),
+        places[: n + 1 - closed],
+        D,
+        stretches.directions[:, s].copy(),
+        stretches.free[s],
+        places[n],
+    )
