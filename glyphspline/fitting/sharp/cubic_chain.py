@@ -8,10 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import length
 from ...types import FloatArray, IntArray
 from .corners import Joints
 from .cubic_fit import fit_cubic
 from .pieces import ONLY, Pieces, add_piece
+from .spline_curve import chord
 from .split_contours import Settings
 
 SEGMENT_PRICE = 1.5
@@ -69,7 +71,14 @@ def fit_between(joints: Joints, i: int, j: int, tolerance: float, rounds: int, t
         )  # fmt: skip
         worst = max(worst, error)
         if worst == np.inf:
-            break
+            return worst
+    whole = chord(joints.samples, joints.first[i], joints.first[j])
+    for v in range(len(tangents) if len(tangents) > 1 else 0):
+        Q = joints.samples[v]
+        own = length(Q[joints.first[j], 0] - Q[joints.first[i], 0], Q[joints.first[j], 1] - Q[joints.first[i], 1])
+        for end in range(2):
+            for axis in range(2):
+                tangents[v, end, axis] *= own / whole
     return worst
 
 

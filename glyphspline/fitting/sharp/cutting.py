@@ -151,8 +151,8 @@ def _add_spline(
 def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int) -> int:
     """Add a line or a cubic between two joints, with its error.
 
-    It is infinite for a closed curve, and where cubics of several masters have to agree: these are stretches that need
-    a spline, which may have one span.
+    It is infinite for a closed curve, and beside a tied joint, where the cubics of the masters have to agree: these are
+    stretches that need a spline, which may have one span.
     """
     c, i, j, _, _, choice = row
     closed = i == 0 and j == len(joints.line) and not joints.hard[0]
@@ -161,7 +161,7 @@ def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, 
         return _add_line(joints, (c, i, j, 0 * c, 0, choice), pieces, count)
     (p, places), tangents = ends(joints, i, j), np.zeros((len(joints.samples), 2, 2))
     error = np.inf
-    if not closed and len(p) == 1:
+    if not (closed or joints.tied[i] or joints.tied[j]):
         error = fit_between(joints, i, j, settings.near, settings.search.cubic_rounds, tangents)
     return add_piece(pieces, count, (c, i, j, 1, int(closed), choice), p, places, tangents, error)
 

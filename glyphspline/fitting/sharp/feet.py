@@ -18,6 +18,9 @@ NOTICED = 0.5
 """Points of the curve between two feet count from this share of the tolerance on."""
 
 
+ASIDE, BENT = 1.0, 0.5
+"""What a unit of slip costs across the curve, by the sine of a master's angle to the others and by its bend."""
+
 LONGEST_LEVER = 2.0
 """Most that a unit of slip counts."""
 
@@ -105,9 +108,9 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
     knots = np.zeros(k + 1)
     for s in range(k):
         knots[s + 1] = knots[s] + h[s + 2]
-    at, speed, worst = np.empty(masters), np.empty(masters), 0.0
+    at, speed, bend, worst = np.empty(masters), np.empty(masters), np.empty(masters), 0.0
     for j in range(n):
-        mean = total = nx = ny = bend = apart = 0.0
+        mean = total = nx = ny = 0.0
         for v in range(masters):
             s, x = rows.span[v, j], rows.x[v, j]
             own = _wrapped(s, k)
@@ -115,20 +118,18 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
             at[v] = knots[own] + x * h[own + 2] + (s - own) // k * knots[k]
             size = length(dx, dy)
             speed[v] = size / h[own + 2]
-            bend = max(bend, abs(dx * ay - dy * ax) / max(size, 1e-9) ** 3)
+            bend[v] = abs(dx * ay - dy * ax) / max(size, 1e-9) ** 3
             mean += speed[v] ** 2 * at[v]
             total += speed[v] ** 2
             nx += speed[v] * rows.nx[v, j]
             ny += speed[v] * rows.ny[v, j]
         size = max(length(nx, ny), 1e-12)
         for v in range(masters):
-            rows.slip[v, j] = (at[v] - mean / total) * speed[v] if total > 0.0 else 0.0
-            apart = max(apart, abs(rows.slip[v, j]))
-        for v in range(masters):
+            slip = (at[v] - mean / total) * speed[v] if total > 0.0 else 0.0
             aside = abs(nx * rows.ny[v, j] - ny * rows.nx[v, j]) / size
-            lever = min(2 * (1 - 1 / masters) * aside + bend * apart, LONGEST_LEVER)
-            rows.lever[v, j] = lever
-            worst = max(worst, abs(rows.e[v, j]) + lever * abs(rows.slip[v, j]))
+            lever = min(ASIDE * (1 - 1 / masters) * aside + BENT * bend[v] * abs(slip), LONGEST_LEVER)
+            rows.slip[v, j], rows.lever[v, j] = slip, lever
+            worst = max(worst, abs(rows.e[v, j]) + lever * abs(slip))
     return worst
 
 
