@@ -7,11 +7,15 @@ inner products has no digits left where the curve almost passes through the vert
 come from the coordinates; the zeros of D' lose nothing.
 
 **Rounding.** A sum over d coordinates is off by at most ρ = (d + ``ROUNDINGS``) 2^-53 of the product of the lengths.
-With lengths e, v, w, z, of F and of the d_i's in place of E, V, W and Z, all taken as positive, a Bernstein
-coefficient of Q on a side of length L is off by at most ρ Σ_k≥2 2^k m_k L^(k-2), where the m_k are the coefficients of
-(e + v x + w x² + z x³)². That is added to the guard of ``newton_simd``. D' is off by at most s = 2 ρ M M', with M = e + v L + w L² + z L³,
-so that another point may be nearer by s²/4Q in D: less than 5e-13 M of the distance if that is at most a M (a M + 2 √D),
-a = ``LOST``. A vertex where one of these fails is flagged, and searched by coordinates.
+Let e, v, w, z be the lengths of E, V, W and Z with those of F and of the derivatives d_i in place of the vectors, all
+taken as positive, and M(x) = e + v x + w x² + z x³, M² = Σ m_k x^k.
+
+- A Bernstein coefficient of Q on a side of length L is off by at most ρ Σ_k≥2 2^k m_k L^(k-2), which is added to the
+  guard of ``newton_simd``.
+- D' is off by at most s = 2 ρ M M' at L, so that D may be too large by s²/4Q. Of the distance that is less than
+  ``LOST`` M if s²/4Q ≤ a (a + 2 √D), a = ``LOST`` M.
+
+A vertex where one of these fails is flagged, and searched by coordinates if a second look does not help.
 """
 
 from __future__ import annotations
@@ -28,19 +32,17 @@ from .certificate import BEYOND, GIVEN_UP, SEARCHED, proven_in_parts
 from .footpoint import BERNSTEIN, reduce, search_piece
 from .newton_simd import GUARD, LEFT, NEWTON_PASSES, SETTLED_STEP, least_quartic, least_rise
 
-P, Q, E = (np.uint64(k * STRIDE) for k in range(3))
-"""The fields of a coordinate: control points, vertices, errors p - C(t)."""
+PAIR = 2 * STRIDE
+"""Arrays of coordinates have a field of lanes for each: P of control points, Q of vertices, N of the next control
+points P_i + p_i - C(t_i). Coordinates are taken by twos, with one of zeros beside the last if d is odd.
+"""
 
-COORDINATE = 3 * STRIDE
-PAIR = 2 * COORDINATE
-"""Coordinates are taken by twos, with one of zeros beside the last if d is odd."""
+SECOND = np.uint64(STRIDE)
 
-P2, Q2, E2 = (np.uint64(COORDINATE + k * STRIDE) for k in range(3))
-
-# Fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and D_{i-1} to D_{i+2};
-# coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; the side as in newton_simd; what
-# D_{i-1} to D_{i+2} have to be multiplied by for C(t) - P_i; the last coefficients of D on the other side, |E|², and
-# the rounding error of Bernstein coefficients there; M; the least Bernstein coefficient of Q.
+# Fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and with D_{i-1} to
+# D_{i+2}; coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; the side as in
+# newton_simd; what D_{i-1} to D_{i+2} have to be multiplied by for C(t) - P_i; the last coefficients of D on the other
+# side, |E|², and the rounding error of Bernstein coefficients there; M; the least Bernstein coefficient of Q.
 (
     G0, G1, G2, FF, FM, F0, F1, F2, H0, H1, H2, H3, H4, H5, VV, VW, WW, VZ, WZ, ROUGH, LOSS, SLO, SHI, SY, SIDE, DONE,
     OTHER, BAD, KM, K0, K1, K2, O1, O2, O3, O4, EE, ODOUBT, REACH, LEAST,
@@ -48,7 +50,10 @@ P2, Q2, E2 = (np.uint64(COORDINATE + k * STRIDE) for k in range(3))
 SPACE_SCRATCH = 40
 
 ROUNDINGS = 40
+"""More than the number of roundings in a coefficient beside those of the sums over coordinates."""
+
 LOST = 5e-13
+"""Share of M by which another point may be nearer for rounding errors of D'."""
 
 
 @inlined
@@ -60,22 +65,19 @@ def _rough(e: float, v: float, w: float, z: float, L: float) -> float:
 
 
 @compiled(internal=True)
-def _products(T: FloatArray, S: FloatArray, pairs: int, m: int) -> None:
+def _products(P: FloatArray, Q: FloatArray, S: FloatArray, pairs: int, m: int) -> None:
     """The sums over the coordinates."""
     wide_vectors()
     for field in range(8):
         for j in range(np.uint64(field * STRIDE), np.uint64(field * STRIDE + m + 6)):
             S[j] = 0.0
     for pair in range(pairs):
-        c = T[pair * PAIR : (pair + 1) * PAIR + 2 * STRIDE]
+        p, q = P[pair * PAIR : (pair + 1) * PAIR], Q[pair * PAIR : (pair + 1) * PAIR]
         for j in range(TWO, np.uint64(m) + TWO + FOUR):
-            x, y = c[P + j], c[P2 + j]
-            xa, ya = c[P + j - ONE], c[P2 + j - ONE]
-            xb, yb = c[P + j + ONE], c[P2 + j + ONE]
-            fx, fy = x - c[Q + j], y - c[Q2 + j]
-            mx, my = xa - c[P + j - TWO], ya - c[P2 + j - TWO]
-            x0, y0, x1, y1 = x - xa, y - ya, xb - x, yb - y
-            x2, y2 = c[P + j + TWO] - xb, c[P2 + j + TWO] - yb
+            i = SECOND + j
+            x, y, xa, ya, xb, yb = p[j], p[i], p[j - ONE], p[i - ONE], p[j + ONE], p[i + ONE]
+            fx, fy, mx, my = x - q[j], y - q[i], xa - p[j - TWO], ya - p[i - TWO]
+            x0, y0, x1, y1, x2, y2 = x - xa, y - ya, xb - x, yb - y, p[j + TWO] - xb, p[i + TWO] - yb
             S[G0 + j] = fma(mx, mx, fma(my, my, S[G0 + j]))
             S[G1 + j] = fma(mx, x0, fma(my, y0, S[G1 + j]))
             S[G2 + j] = fma(mx, x1, fma(my, y1, S[G2 + j]))
@@ -250,21 +252,24 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> None:
 
 
 @compiled(internal=True)
-def _errors(B: FloatArray, T: FloatArray, S: FloatArray, pairs: int, m: int) -> tuple[int, int]:
-    """Write errors p - C(t) and squared distances, and the last flags; returns counts of flagged, not finite."""
+def _errors(
+    B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, pairs: int, m: int
+) -> tuple[int, int]:
+    """Write the next control points, squared distances and the last flags; returns counts of flagged, not finite."""
     wide_vectors()
     for j in range(TWO, np.uint64(m) + TWO):
         B[DD + j] = 0.0
     for pair in range(pairs):
-        c = T[pair * PAIR : (pair + 1) * PAIR]
+        p, q = P[pair * PAIR : (pair + 1) * PAIR], Q[pair * PAIR : (pair + 1) * PAIR]
+        following = N[pair * PAIR : (pair + 1) * PAIR]
         for j in range(TWO, np.uint64(m) + TWO):
+            i = SECOND + j
             km, k0, k1, k2 = S[KM + j], S[K0 + j], S[K1 + j], S[K2 + j]
-            x, y, xa, ya = c[P + j], c[P2 + j], c[P + j - ONE], c[P2 + j - ONE]
-            xb, yb = c[P + j + ONE], c[P2 + j + ONE]
-            ex = fma(k2, xb - c[P + j + TWO], fma(km, c[P + j - TWO] - xa, fma(k0, xa - x, c[Q + j] - x)))
-            ey = fma(k2, yb - c[P2 + j + TWO], fma(km, c[P2 + j - TWO] - ya, fma(k0, ya - y, c[Q2 + j] - y)))
+            x, y, xa, ya, xb, yb = p[j], p[i], p[j - ONE], p[i - ONE], p[j + ONE], p[i + ONE]
+            ex = fma(k2, xb - p[j + TWO], fma(km, p[j - TWO] - xa, fma(k0, xa - x, q[j] - x)))
+            ey = fma(k2, yb - p[i + TWO], fma(km, p[i - TWO] - ya, fma(k0, ya - y, q[i] - y)))
             ex, ey = fma(k1, x - xb, ex), fma(k1, y - yb, ey)
-            c[E + j], c[E2 + j] = ex, ey
+            following[j], following[i] = x + ex, y + ey
             B[DD + j] = fma(ex, ex, fma(ey, ey, B[DD + j]))
     bad, wild = 0, 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -278,30 +283,32 @@ def _errors(B: FloatArray, T: FloatArray, S: FloatArray, pairs: int, m: int) -> 
 
 
 @compiled(internal=True)
-def seek_space(B: FloatArray, T: FloatArray, S: FloatArray, d: int, m: int) -> tuple[int, int]:
-    """Write footpoints and errors to m lanes of a block; returns the numbers of flagged and of not finite ones.
+def seek_space(
+    B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int
+) -> tuple[int, int]:
+    """Write footpoints to m lanes of a block, and control points to N; returns counts of flagged and not finite ones.
 
     Where both ends of an interval are the same, the footpoint is that parameter.
 
     Args:
-        B: the block's weights, intervals and footpoints; T: its coordinates; S: scratch.
+        B: the block's weights, intervals and footpoints; P, Q, N: its coordinates; S: scratch.
     """
     pairs = (d + 1) // 2
-    _products(T, S, pairs, m)
+    _products(P, Q, S, pairs, m)
     _expand(B, S, m, (d + ROUNDINGS) * 2.0**-53)
     for _ in range(NEWTON_PASSES):
         if _newton(S, m) == 0:
             break
     _certify(B, S, m)
-    return _errors(B, T, S, pairs, m)
+    return _errors(B, P, Q, N, S, pairs, m)
 
 
 @compiled(internal=True)
-def _vectors(B: FloatArray, T: FloatArray, d: int, j: np.uint64, right: bool, b: FloatArray) -> None:
+def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: np.uint64, right: bool, b: FloatArray) -> None:
     """Rows E, V outwards, W and Z (4, d) of the curve to the right or to the left of the knot of a lane."""
     r0, r1, lam, s0 = B[RATE + j], B[RATE + j + ONE], B[LAMBDA + j], B[HALF + j]
     for axis in range(d):
-        c = T[axis * COORDINATE : (axis + 1) * COORDINATE]
+        c = P[axis * STRIDE : (axis + 1) * STRIDE]
         d0, d1 = r0 * (c[j] - c[j - ONE]), r1 * (c[j + ONE] - c[j])
         w = s0 * (d1 - d0)
         if right:
@@ -311,7 +318,7 @@ def _vectors(B: FloatArray, T: FloatArray, d: int, j: np.uint64, right: bool, b:
             beyond = B[HALF + j - ONE] * (d0 - B[RATE + j - ONE] * (c[j - ONE] - c[j - TWO]))
             b[3, axis] = (beyond - w) * B[THIRD + j - ONE]
         v = fma(lam, d1 - d0, d0)
-        b[0, axis] = fma(B[MOVE_A + j], d1, fma(-B[MOVE_B + j], d0, c[j] - c[Q + j]))
+        b[0, axis] = fma(B[MOVE_A + j], d1, fma(-B[MOVE_B + j], d0, c[j] - Q[np.uint64(axis * STRIDE) + j]))
         b[1, axis], b[2, axis] = (v if right else -v), w
 
 
@@ -331,8 +338,9 @@ def _proven_farther(S: FloatArray, j: np.uint64, D: float) -> bool:
 
 @compiled(internal=True)
 def flagged_space(
-    B: FloatArray, T: FloatArray, S: FloatArray, d: int, m: int, b: FloatArray, c: FloatArray, work: FloatArray
-) -> int:
+    B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int, b: FloatArray,
+    c: FloatArray, work: FloatArray,
+) -> int:  # fmt: skip
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
     These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``. b, c, work: scratch arrays (4, d), (m, 4) with
@@ -364,10 +372,10 @@ def flagged_space(
             right = (S[SIDE + j] > 0.0) == main
             sign = 1.0 if right else -1.0
             low, high = (S[SLO + j], S[SHI + j]) if main else (0.0, S[OTHER + j])
-            _vectors(B, T, d, j, right, b)
+            _vectors(B, P, Q, d, j, right, b)
             if d > 4:
                 reduce(b, c)
-                _vectors(B, T, d, j, right, b)
+                _vectors(B, P, Q, d, j, right, b)
             else:
                 for k in range(4):
                     for axis in range(d):
@@ -379,7 +387,8 @@ def flagged_space(
                 squared = 0.0
                 for axis in range(d):
                     error = -(((b[3, axis] * y + b[2, axis]) * y + b[1, axis]) * y + b[0, axis])
-                    T[np.uint64(axis * COORDINATE) + E + j] = error
+                    lane = np.uint64(axis * STRIDE) + j
+                    N[lane] = P[lane] + error
                     squared += error * error
                 B[DD + j] = squared
         B[X + j] = x
