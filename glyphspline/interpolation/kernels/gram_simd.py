@@ -304,7 +304,7 @@ def seek_space(
 
 
 @compiled(internal=True)
-def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: np.uint64, right: bool, b: FloatArray) -> None:
+def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: int, right: bool, b: FloatArray) -> None:
     """Rows E, V outwards, W and Z (4, d) of the curve to the right or to the left of the knot of a lane."""
     r0, r1, lam, s0 = B[RATE + j], B[RATE + j + ONE], B[LAMBDA + j], B[HALF + j]
     for axis in range(d):
@@ -323,7 +323,7 @@ def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: np.uint64, 
 
 
 @compiled(internal=True)
-def _proven_farther(S: FloatArray, j: np.uint64, D: float) -> bool:
+def _proven_farther(S: FloatArray, j: int, D: float) -> bool:
     """Whether all of the other side is farther than √D, by the Bernstein coefficients of the squared distance."""
     L, least = S[OTHER + j], np.inf
     for k in range(7):
