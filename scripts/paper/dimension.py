@@ -33,7 +33,8 @@ def dimensions(run: Run) -> None:
     dimensions, groups = (DIMENSIONS, GROUPS) if not run.quick else ((2, 8), (5, SHOWN))
     mean: dict[int, dict[str, dict[str, float]]] = {v: {f"n = {n}": {} for n in groups} for v in VARIANTS}
     most: dict[int, dict[str, dict[str, float]]] = {v: {f"n = {n}": {} for n in groups} for v in VARIANTS}
-    failures, fallbacks, above, doubtful, ratios = 0, 0, 0, 0, {}
+    failures = dict.fromkeys(VARIANTS, 0)
+    fallbacks, above, doubtful, ratios = 0, 0, 0, {}
     for n, d in product(groups, dimensions):
         count = run.size(COUNT if d < MANY else FEWER, 3)
         polygons = np.random.default_rng([SEED, n, d]).uniform(0, SIDE, (count, n, d))
@@ -42,7 +43,7 @@ def dimensions(run: Run) -> None:
             results = gs.interpolate_many(polygons, v, residual_tolerance=tolerance, max_iterations=MAX_ITERATIONS)
             iterations = [r.iterations for r in results]
             mean[v][f"n = {n}"][str(d)], most[v][f"n = {n}"][str(d)] = float(np.mean(iterations)), max(iterations)
-            failures += sum(not r.converged for r in results)
+            failures[v] += sum(not r.converged for r in results)
             doubtful += sum(r.uncertified or 0 for r in results)
             if v == 2:
                 fallbacks += sum(r.fallbacks for r in results)
@@ -59,7 +60,7 @@ def dimensions(run: Run) -> None:
         {
             "polygons of a size and dimension": run.size(COUNT, 3),
             f"polygons from d = {MANY} on": run.size(FEWER, 3),
-            "not converged": failures,
+            **{f"not converged, variant {v}": failures[v] for v in VARIANTS},
             "footpoints not certified": doubtful,
             "vertices without an interval": fallbacks,
             "steps of variant 2 above the bound": above,
@@ -69,9 +70,9 @@ def dimensions(run: Run) -> None:
         },
         "proven",
         f"Vertices uniform in [0, {SIDE:g}]^d, to {TOLERANCE:g} √(d/2). Lemma 2 is about knots; Theorem 2 uses row "
-        "sums, and that a nearest point is nearest; see the [proof](proofs.md#any-dimension). Iterations of variant 2 "
-        "hardly depend on d; those of variant 3 become fewer, as chords become more even. Their last factor tends to "
-        "the one of uniform knots, 2/3.",
+        "sums, and that a nearest point is nearest; see the [proof](../../docs/proofs.md#any-dimension). Iterations of "
+        "variant 2 hardly depend on d; those of variant 3 become fewer, as chords become more even. Their last factor "
+        "tends to the one of uniform knots, 2/3.",
         "dimension",
     )
     run.claim(
