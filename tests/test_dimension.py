@@ -9,6 +9,7 @@ import pytest
 from numba import njit
 
 import glyphspline as gs
+from glyphspline.interpolation.any_degree import interpolate_any_degree
 from glyphspline.interpolation.batched import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, reduce, search_piece
 from glyphspline.interpolation.method import Method
@@ -137,6 +138,52 @@ def test_batches_are_of_one_dimension() -> None:
     assert isinstance(good, gs.Interpolation)
     assert isinstance(bad, gs.PolygonError)
     assert "2 coordinates a vertex" in bad.message
+
+
+@pytest.mark.parametrize("d", [3, 5, 18])
+@pytest.mark.parametrize("closed", [True, False])
+def test_the_two_roads_agree(closed: bool, d: int) -> None:
+    """Blocks of several polygons, which end one after another, and polygons of several blocks."""
+    sizes = [3, 4, 5, 7, 12, 20, 20, 40, 9, 128, 129, 300, 6]
+    polygons = [polygon(n, d, 2) for n in sizes]
+    polygons[5][:, 1:] *= 1e-9  # almost a line, seen from the first coordinate
+    polygons[6] = polygons[6].round()
+    for options in ({}, {"variant": 1}, {"variant": 3}, {"finish": "solve"}, {"margin": 0.02, "fallback": "peak"}):
+        many = gs.interpolate_many(polygons, closed=closed, max_iterations=60, **options)
+        for p, found in zip(polygons, many, strict=True):
+            alone = interpolate_any_degree(p, Method(closed=closed, max_iterations=60, **options))
+            assert found.iterations == alone.iterations
+            assert found.fallbacks == alone.fallbacks
+            assert found.uncertified == 0
+            np.testing.assert_allclose(found.rate_bound, alone.rate_bound, atol=1e-9)
+            np.testing.assert_allclose(found.residuals, alone.residuals, rtol=1e-8, atol=1e-13)
+            np.testing.assert_allclose(found.intervals, alone.intervals, atol=1e-8)
+            np.testing.assert_allclose(found.spline.control_points, alone.spline.control_points, rtol=0, atol=5e-10)
+
+
+def test_cusps_and_repeated_places_are_certified() -> None:
+    """Curves with almost no speed, on which sums of inner products have few digits, are searched by coordinates."""
+    rng = np.random.default_rng(4)
+    searched = 0
+    for seed in range(40):
+        p = polygon(12, 3 + seed % 4, seed).round()
+        p[4:8] = p[[4, 5, 4, 5]] + 10.0 ** rng.uniform(-9, -1) * rng.normal(size=(4, p.shape[1]))
+        batch = interpolate_batch(p, np.array([0, len(p)]), Method(1, max_iterations=25))
+        alone = interpolate_any_degree(p, Method(1, max_iterations=25))
+        searched += int(batch.whole[0, 4])
+        assert batch[0].uncertified == 0
+        assert batch[0].iterations == alone.iterations
+        np.testing.assert_allclose(batch[0].residuals, alone.residuals, rtol=1e-6, atol=1e-11)
+    assert searched > 0
+
+
+def test_results_depend_neither_on_threads_nor_on_the_other_polygons() -> None:
+    polygons = [polygon(n, 6, 1) for n in range(5, 70)] * 3
+    one, two = (gs.interpolate_many(polygons, threads=threads) for threads in (1, 2))
+    for p, a, b in zip(polygons, one, two, strict=True):
+        alone = gs.interpolate(p)
+        for r in (a, b):
+            np.testing.assert_array_equal(r.spline.control_points, alone.spline.control_points)
 
 
 def test_batches_take_knots_tangents_and_tolerances() -> None:

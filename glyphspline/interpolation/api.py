@@ -93,7 +93,7 @@ def interpolate(
         raise OptionError("end_tangents belong to an open arc (closed=False)")
     p = as_points(points)
     given = _as_knots(knots, p, closed) if own else None
-    if method.stepwise or p.shape[1] > 2:
+    if method.stepwise(p.shape[1]):
         return interpolate_any_degree(p, method, given, end_tangents)
     result = interpolate_one(
         p, method, given, None if end_tangents is None else _as_tangents([end_tangents], p.shape[1])
@@ -203,7 +203,7 @@ def _interpolated(
         return results
     pairs = None if tangents is None else [tangents[k] for k in good]
     found: list[Any]
-    if method.stepwise or parts[0].shape[1] > 2:
+    if method.stepwise(parts[0].shape[1]):
 
         def one(j: int) -> Interpolation | PolygonError:
             try:

@@ -88,10 +88,10 @@ class Method:
         if self.diagnostics and self.finish == "accelerate":
             raise OptionError("diagnostics are of plain steps, not of finish='accelerate'")
 
-    @property
-    def stepwise(self) -> bool:
-        """Whether each polygon is iterated on its own, by the passes of any degree and variant."""
-        return self.degree != 3 or self.variant in STEPWISE or self.diagnostics
+    def stepwise(self, d: int) -> bool:
+        """Whether each polygon (n, d) is iterated on its own, by the passes of any degree and variant."""
+        accelerated = d > 2 and self.finish == "accelerate"
+        return self.degree != 3 or self.variant in STEPWISE or self.diagnostics or accelerated
 
     @property
     def peak_share(self) -> float:

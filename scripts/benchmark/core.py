@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
+from glyphspline.interpolation.any_degree import interpolate_any_degree
 from glyphspline.interpolation.batched import BatchedInterpolation, interpolate_batch
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
@@ -17,12 +18,22 @@ from .measure import Row, in_words, interleaved
 from .shapes import SHARE, glyph_polygons, random_polygon, smooth_polygon
 
 Results = gs.Interpolation | list[gs.Interpolation]
+DIMENSIONS = (2, 4, 6, 18, 48, 154)
+DIMENSION_LIMITS = {18: (2, 1.4), 48: (3, 2.1)}
 LIMITS = {20: (5, 6), 90: (2.5, 3), 300: (1.5, 2), 1000: (1.0, 1.2)}
 
 
 def rows() -> list[Row]:
     """All rows of this suite."""
-    return [*against_reference(), *against_kurbo(), *against_libraries(), *overhead(), *many(), *growth()]
+    return [
+        *against_reference(),
+        *against_kurbo(),
+        *against_libraries(),
+        *overhead(),
+        *many(),
+        *growth(),
+        *dimensions(),
+    ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,3 +234,33 @@ def growth() -> list[Row]:
     ratio = max(each[n] for n in sizes[1:]) / min(each[n] for n in sizes[1:])
     note = ", ".join(f"{n}: {in_words(seconds)}" for n, seconds in each.items())
     return [Row("a footpoint, slowest size against fastest, n = 10 to 100,000", ratio, must=1.5, more=False, note=note)]
+
+
+def dimensions() -> list[Row]:
+    """Time a footpoint of `interpolate_many` in R^d against the plane, and the same where each polygon goes alone."""
+    found = []
+    for n, count in ((20, 100), (90, 25)):
+        cases: dict[str, Any] = {}
+        counts = {}
+        for d in DIMENSIONS:
+            polygons = list(np.random.default_rng([n, d]).uniform(0, 5, (count, n, d)))
+            options: dict[str, Any] = {"residual_tolerance": 5 * SHARE * np.sqrt(d / 2), "threads": 1}
+            results = gs.interpolate_many(polygons, **options)
+            assert not any(r.uncertified for r in results)
+            counts[f"{d}"] = counts[f"{d} alone"] = sum((r.iterations + 1) * n for r in results)
+            cases[f"{d}"] = lambda p=polygons, o=options: gs.interpolate_many(p, **o)
+            cases[f"{d} alone"] = lambda p=polygons, o=options: [
+                interpolate_any_degree(q, Method(residual_tolerance=o["residual_tolerance"])) for q in p
+            ]
+        times = interleaved(cases, rounds=7)
+        each = {name: times[name] / counts[name] for name in cases}
+        for d in DIMENSIONS[1:]:
+            must, aim = DIMENSION_LIMITS.get(d, (None, None))
+            one, all_at_once = each[f"{d} alone"], each[f"{d}"]
+            note = (
+                f"{in_words(all_at_once)}, {in_words(each['2'])}; by the passes of any degree {in_words(one)}, "
+                f"{one / each['2 alone']:.3g} times the plane's"
+            )
+            what = f"a footpoint in R^{d} against one in the plane, n = {n}"
+            found.append(Row(what, all_at_once / each["2"], must=must, aim=aim, more=False, note=note))
+    return found

@@ -122,10 +122,7 @@ def lanes_used(group: Group, slots: int, b: int) -> int:
 @compiled(internal=True)
 def place(given: Given, found: Found, group: Group, slots: int) -> None:
     """Vertices, first control points, rates and weights of a group's polygons into their blocks."""
-    count = (group.table[0, COUNT] + LANES - 1) // LANES
-    for b in range(0, count, max(count - 1, 1)):
-        for j in range(b * BLOCK, (b + 1) * BLOCK):
-            group.blocks[j] = 0.0
+    clear(group)
     for q in range(slots):
         k, n, unit = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q, UNIT]
         start = given.offsets[k]
@@ -139,10 +136,28 @@ def place(given: Given, found: Found, group: Group, slots: int) -> None:
                 block[QX + lane] = block[PX + lane] = x
                 block[QY + lane] = block[PY + lane] = y
                 block[EX + lane] = block[EY + lane] = 0.0
-            h = group.h[group.table[q, INTERVALS] + b * LANES :]
-            _weights(block, h, np.uint64(first), np.uint64(inside))
+        place_weights(group, q)
         if not given.closed:
             _place_ends(given, group, q)
+
+
+@compiled(internal=True)
+def clear(group: Group) -> None:
+    """Zeros in the first and the last block, which have lanes that no vertex uses."""
+    count = (group.table[0, COUNT] + LANES - 1) // LANES
+    for b in range(0, count, max(count - 1, 1)):
+        for j in range(b * BLOCK, (b + 1) * BLOCK):
+            group.blocks[j] = 0.0
+
+
+@compiled(internal=True)
+def place_weights(group: Group, q: int) -> None:
+    """Rates and weights of polygon q."""
+    n, first = group.table[q, COUNT], group.table[q, LANE]
+    for b in range((n + LANES - 1) // LANES):
+        block, inside = group.blocks[b * BLOCK : (b + 1) * BLOCK], min(LANES, n - b * LANES)
+        h = group.h[group.table[q, INTERVALS] + b * LANES :]
+        _weights(block, h, np.uint64(first), np.uint64(inside))
 
 
 @compiled(internal=True)

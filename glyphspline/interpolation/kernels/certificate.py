@@ -57,7 +57,7 @@ def _least_distance(
 
 
 @compiled(internal=True)
-def _proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
+def proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
     """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
 
     Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
@@ -84,7 +84,7 @@ def _second_look(S: FloatArray, j: int) -> bool:
     qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
     c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
     guard = squares(speed, ax, ay, c4, S[SHI + j] - S[SLO + j])
-    return _proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and _proven_in_parts(
+    return proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and proven_in_parts(
         c0, c1, c2, c3, c4, S[SLO + j] - y, guard
     )
 

@@ -86,12 +86,24 @@ of parts; the shifted coordinates of q, from ``SHIFTED`` on; those of its Bézie
 
 
 @inlined
-def product(x: FloatArray, y: FloatArray, rows: FloatArray, i: int, j: int, m: int) -> float:
-    """The inner product of columns i and j of m rows, of which x and y are the first two."""
-    total = x[i] * x[j] + y[i] * y[j]
+def _square(rows: FloatArray, j: int, m: int) -> float:
+    """The squared length of column j of m ≥ 2 rows."""
+    total = rows[0, j] * rows[0, j] + rows[1, j] * rows[1, j]
     for axis in range(2, m):
-        total += rows[axis, i] * rows[axis, j]
+        total += rows[axis, j] * rows[axis, j]
     return total
+
+
+@compiled(internal=True)
+def _other_products(points: FloatArray, d: int, m: int, out: FloatArray) -> None:
+    """What coordinates beyond the first two, of Bézier points (m, d + 1), add to the Bernstein coefficients of D."""
+    for k in range(2 * d + 1):
+        out[k] = 0.0
+        for i in range(max(0, k - d), k // 2 + 1):
+            total = 0.0
+            for axis in range(2, m):
+                total += points[axis, i] * points[axis, k - i]
+            out[k] += PRODUCTS[d, i, k - i] * total
 
 
 @compiled(internal=True)
@@ -127,29 +139,40 @@ def reduce(b: FloatArray, c: FloatArray) -> None:
 @compiled(internal=True)
 def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y into the rows of ``work`` from ``SHIFTED`` on."""
-    for axis in range(c.shape[0]):
-        s = work[SHIFTED + axis]
+    u, v = work[SHIFTED], work[SHIFTED + 1]
+    for k in range(d + 1):
+        u[k], v[k] = c[0, k], c[1, k]
+    for k in range(d):
+        for i in range(d - 1, k - 1, -1):
+            u[i] += y * u[i + 1]
+            v[i] += y * v[i + 1]
+    for axis in range(2, c.shape[0]):
+        u = work[SHIFTED + axis]
         for k in range(d + 1):
-            s[k] = c[axis, k]
+            u[k] = c[axis, k]
         for k in range(d):
             for i in range(d - 1, k - 1, -1):
-                s[i] += y * s[i + 1]
+                u[i] += y * u[i + 1]
 
 
 @compiled(internal=True)
 def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y, and those of |q|², into their rows of ``work``."""
     shift(c, d, y, work)
-    rows, m = work[SHIFTED:], c.shape[0]
-    u, v = rows[0], rows[1]
+    u, v, out = work[SHIFTED], work[SHIFTED + 1], work[SQUARED]
     for k in range(2 * d + 1):
         total = 0.0
         for i in range(max(0, k - d), (k + 1) // 2):
-            total += product(u, v, rows, i, k - i, m)
+            total += u[i] * u[k - i] + v[i] * v[k - i]
         total *= 2.0
         if k % 2 == 0:
-            total += product(u, v, rows, k // 2, k // 2, m)
-        work[SQUARED, k] = total
+            total += u[k // 2] * u[k // 2] + v[k // 2] * v[k // 2]
+        out[k] = total
+    for axis in range(2, c.shape[0]):  # apart, which costs less in the plane
+        u = work[SHIFTED + axis]
+        for i in range(d + 1):
+            for j in range(d + 1):
+                out[i + j] += u[i] * u[j]
 
 
 @compiled(internal=True)
@@ -178,14 +201,18 @@ def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> 
             points[axis, j] = rows[axis, 0]
             for k in range(1, j + 1):
                 points[axis, j] += BERNSTEIN[d, j, k] * rows[axis, k]
-        largest = max(largest, product(x, y, points, j, j, m))
-    least = np.inf
+        largest = max(largest, _square(points, j, m))
+    least, rest = np.inf, work[SCALED]
+    if m > 2:
+        _other_products(points, d, m, rest)
     for k in range(2 * d + 1):
         value = 0.0
         for i in range(max(0, k - d), k // 2 + 1):
-            value += PRODUCTS[d, i, k - i] * product(x, y, points, i, k - i, m)
+            value += PRODUCTS[d, i, k - i] * (x[i] * x[k - i] + y[i] * y[k - i])
+        if m > 2:
+            value += rest[k]
         least = min(least, value)
-    return least - ROUNDING * largest, product(x, y, points, 0, 0, m), product(x, y, points, d, d, m)
+    return least - ROUNDING * largest, _square(points, 0, m), _square(points, d, m)
 
 
 @compiled(internal=True)
@@ -198,14 +225,14 @@ def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float)
     if L == 0.0:
         return True
     e, scaled, rows, m = work[SQUARED], work[SCALED], work[SHIFTED:], 2 * d - 1
-    u, v, slope = rows[0], rows[1], e[1]
+    slope = e[1]
     power = 1.0
     for k in range(m):
         scaled[k] = e[2 + k] * power
         power *= L
     squares, power = 0.0, ROUNDING
     for k in range(1, d + 1):
-        squares += product(u, v, rows, k, k, coordinates) * power
+        squares += _square(rows, k, coordinates) * power
         power *= L * L
     least, rises = np.inf, slope * L > 0.0
     for j in range(m):
@@ -285,7 +312,7 @@ def search_piece(
     shift(c, d, start, work)
     probe, D_probe = (
         start,
-        product(work[SHIFTED], work[SHIFTED + 1], work[SHIFTED:], 0, 0, m),
+        _square(work[SHIFTED:], 0, m),
     )  # not a local minimum: loses ties
     left, right, bounds = work[LEFT], work[RIGHT], work[BOUNDS]
     left[0], right[0], bounds[0] = low, high, -np.inf

@@ -36,7 +36,7 @@ SPARSE = 0.75
 
 
 @compiled(internal=True)
-def _largest(block: FloatArray, low: int, high: int) -> float:
+def largest(block: FloatArray, low: int, high: int) -> float:
     """The largest squared distance in lanes low to high - 1, by four, as each comparison waits for the one before."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     start, stop = DD + np.uint64(low), DD + np.uint64(high)
@@ -84,7 +84,7 @@ def _one_pass(given: Given, group: Group, slots: int) -> None:
             open_end = 0 if given.closed else 1
             low = open_end if b == 0 else 0
             high = n - open_end if b + 1 == count else n
-            D = _largest(block, first + low, first + high) if high > low else 0.0
+            D = largest(block, first + low, first + high) if high > low else 0.0
             numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
@@ -98,22 +98,30 @@ def _store(given: Given, found: Found, group: Group, q: int) -> None:
     """
     k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
     start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
-    at, u = start + found.kept[start], knots_of(given, found, k, n)
-    size, length, x0, y0 = 1.0 / row[UNIT], 1.0 / row[KNOT_UNIT], given.points[at, 0], given.points[at, 1]
-    running = group.table[q, STATE] == RUNNING
+    at = start + found.kept[start]
+    size, x0, y0 = 1.0 / row[UNIT], given.points[at, 0], given.points[at, 1]
     for i in range(n):
         block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(group.table[q, LANE] + i % LANES + HALO)
         found.controls[first + i, 0] = block[PX + lane] * size + x0
         found.controls[first + i, 1] = block[PY + lane] * size + y0
-        if running:
-            found.parameters[start + i] = u[i] + block[X + lane] * length
-            found.bounds[start + i, 0] = u[i] + block[LOW + lane] * length
-            found.bounds[start + i, 1] = u[i] + block[HIGH + lane] * length
-            block[LOW + lane] = block[HIGH + lane] = block[X + lane]
     if not given.closed:
         for axis in range(2):
             found.controls[first - 1, axis] = given.points[at, axis]
             found.controls[first + n, axis] = given.points[start + found.kept[start + n - 1], axis]
+    store_rest(given, found, group, q)
+
+
+@compiled(internal=True)
+def store_rest(given: Given, found: Found, group: Group, q: int) -> None:
+    """What does not depend on the dimension of the results of polygon q."""
+    k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
+    start, u, length = given.offsets[k], knots_of(given, found, k, n), 1.0 / row[KNOT_UNIT]
+    for i in range(n if group.table[q, STATE] == RUNNING else 0):
+        block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(group.table[q, LANE] + i % LANES + HALO)
+        found.parameters[start + i] = u[i] + block[X + lane] * length
+        found.bounds[start + i, 0] = u[i] + block[LOW + lane] * length
+        found.bounds[start + i, 1] = u[i] + block[HIGH + lane] * length
+        block[LOW + lane] = block[HIGH + lane] = block[X + lane]
     out = found.whole[k]
     out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, group.table[q, PASSES] - 1, group.table[q, FALLBACKS]
     out[SEARCHES], out[GIVEN_UP_ON] = group.table[q, SEARCHED], group.table[q, UNCERTIFIED]

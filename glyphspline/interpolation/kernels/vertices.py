@@ -25,7 +25,19 @@ STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHED, UNCERTIFIED = range(6)
 @inlined
 def distance(p: FloatArray, i: int, j: int) -> float:
     """Distance of two vertices. Squares do not overflow within the limits of extents; ``hypot`` doubles the time."""
-    return np.sqrt((p[i, 0] - p[j, 0]) * (p[i, 0] - p[j, 0]) + (p[i, 1] - p[j, 1]) * (p[i, 1] - p[j, 1]))
+    squared = (p[i, 0] - p[j, 0]) * (p[i, 0] - p[j, 0]) + (p[i, 1] - p[j, 1]) * (p[i, 1] - p[j, 1])
+    for axis in range(2, p.shape[1]):
+        squared += (p[i, axis] - p[j, axis]) * (p[i, axis] - p[j, axis])
+    return np.sqrt(squared)
+
+
+@inlined
+def _same(p: FloatArray, i: int, j: int) -> bool:
+    """Whether two vertices have the same coordinates."""
+    same = p[i, 0] == p[j, 0] and p[i, 1] == p[j, 1]
+    for axis in range(2, p.shape[1]):
+        same = same and p[i, axis] == p[j, axis]
+    return same
 
 
 @compiled(internal=True)
@@ -42,6 +54,13 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
             return -1, 0.0
         x0, x1, y0, y1 = min(x0, x), max(x1, x), min(y0, y), max(y1, y)
     extent = max(x1 - x0, y1 - y0)
+    for axis in range(2, points.shape[1]):
+        x0 = x1 = points[0, axis]
+        for i in range(n):
+            if not np.isfinite(points[i, axis]):
+                return -1, 0.0
+            x0, x1 = min(x0, points[i, axis]), max(x1, points[i, axis])
+        extent = max(extent, x1 - x0)
     if not SMALLEST <= extent <= LARGEST:
         return -1, extent
     apart = SAME_VERTEX * extent
@@ -61,8 +80,7 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
     a, b = kept[0], kept[1]
     for i in range(2, count):
         c = kept[i]
-        at_a = points[c, 0] == points[a, 0] and points[c, 1] == points[a, 1]
-        if not at_a and (points[c, 0] != points[b, 0] or points[c, 1] != points[b, 1]):
+        if not _same(points, c, a) and not _same(points, c, b):
             return count, extent
     return -1, extent
 
