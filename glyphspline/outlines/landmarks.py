@@ -1,0 +1,190 @@
+"""The landmarks of a contour, by which unlike masters of a glyph recognise each other: corners, extrema, smooth joints.
+
+A *place* j + x on a contour is local parameter x of its segment j; places count on past the number of segments.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ..curves.bezier import evaluate
+from ..curves.cubics import bernstein
+from ..types import BoolArray, FloatArray, IntArray
+from .extrema import extremal_places
+from .outline import Contour
+from .sampling import CORNER_ANGLE
+
+STEPS = 16
+"""Steps a segment of the tables of length and turn."""
+
+FULL_TURN = 60.0
+"""Degrees of turn from which a corner is as weighty as a corner can be."""
+
+CORNER = (0.4, 1.0)
+"""Weight of a corner of the least turn, and of a full one."""
+
+EXTREMUM, STRAIGHT_END, BREAK = 0.3, 0.25, 0.15
+"""Weights of joints that turn by less: at a horizontal or vertical tangent; where a straight line ends; where the
+curvature jumps. The rest, such as a point that someone inserted, have none."""
+
+STRAIGHT = 2.0
+"""Degrees of turn up to which a segment is straight."""
+
+SHOWS = 20.0
+"""Degrees of turn of a segment from which the end of a line next to it, or a jump of curvature, has its full weight."""
+
+CURVED = 5.0
+"""Degrees of turn from which a segment is curved enough to have an extremum of its own."""
+
+HEIGHT = 2e-3
+"""Of the em: the height by which a contour rises to an extremum and falls again."""
+
+NEAR, TILT = (6e-3, 25e-3), 5.0
+"""Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
+tangent is within so many degrees of that at the extremum."""
+
+
+class Landmarks:
+    """A closed contour with tables of its length and turn, and its landmarks.
+
+    Attributes:
+        contour: without segments of no length. cubics: (m, 4, 2) its segments.
+        places: (n,) of the landmarks, ascending; all joints are among them, and the extrema between joints.
+        weights: (n,) what it costs to leave a landmark without a partner; 0 for joints that nothing distinguishes.
+        points: (n, 2). before, after: (n,) direction of the tangent on both sides, in radians, unwrapped: how far the
+            contour turned from its start. lengths: (n,) along the contour, as parts of its whole length.
+    """
+
+    def __init__(self, contour: Contour, em: float) -> None:
+        self.contour = lasting_segments(contour)
+        self.cubics = cubics = self.contour.cubics()
+        self.em = em
+        m = len(cubics)
+        samples = np.einsum("ks,mkc->msc", bernstein(STEPS), cubics)
+        chords = np.diff(samples, axis=1)
+        ends = np.stack([first_direction(cubics), first_direction(-cubics[:, ::-1])], axis=1)
+        ways = np.concatenate([ends[:, :1], chords, ends[:, 1:]], axis=1)
+        angles = np.arctan2(ways[..., 1], ways[..., 0])
+        bends = wrapped(np.diff(angles, axis=1))
+        self.turns = wrapped(angles[:, 0] - np.roll(angles[:, -1], 1))
+        self.bent: FloatArray = np.abs(bends).sum(axis=1)
+        steps = np.zeros((m, STEPS + 1, 3))
+        steps[:, 1:, 0] = np.hypot(chords[..., 0], chords[..., 1])
+        steps[..., 1], steps[..., 2] = bends, np.abs(bends)
+        steps[1:, 0, 1] += self.turns[1:]
+        steps[1:, 0, 2] += np.abs(self.turns[1:])
+        rows = steps.reshape(-1, 3).cumsum(axis=0)
+        lap = rows[-1] + (0.0, self.turns[0], abs(self.turns[0]))
+        self.length: float = rows[-1, 0]
+        self.lap_turn: float = lap[1]
+        rows[:, 1] += angles[0, 0]
+        at = (np.arange(m)[:, None] + np.arange(STEPS + 1) / STEPS).ravel()
+        self._at: FloatArray = np.concatenate([at - m, at, at + m, at + 2 * m])
+        self._rows: FloatArray = np.concatenate([rows - lap, rows, rows + lap, rows + 2 * lap])
+        self._find()
+
+    def _find(self) -> None:
+        m = len(self.cubics)
+        joints = np.arange(float(m))
+        degrees = np.degrees(np.abs(self.turns))
+        share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
+        corner: BoolArray = degrees >= CORNER_ANGLE
+        straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
+        bent = np.minimum(np.degrees(np.maximum(self.bent, np.roll(self.bent, 1))) / SHOWS, 1.0)
+        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * bent, BREAK * self._jumps())
+        weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
+        table = self.rows(joints)[:, 0]
+        places = []
+        curved = self.bent >= np.radians(CURVED)
+        for k in (0, 1):
+            tilt = np.abs(np.sin(self.rows(joints)[:, 1] + (np.pi / 2 if k == 0 else 0.0)))
+            for place in extremal_places(self.cubics[..., k], HEIGHT * self.em):
+                along = (self.rows(np.array([place]))[0, 0] - table + self.length / 2) % self.length - self.length / 2
+                away = np.abs(along)
+                stands = (away < NEAR[0] * self.em) | ((away < NEAR[1] * self.em) & (tilt < np.sin(np.radians(TILT))))
+                if stands.any():
+                    nearest = int(np.argmin(np.where(stands, away, np.inf)))
+                    if not corner[nearest] and curved[nearest] and curved[nearest - 1]:
+                        weights[nearest] = max(EXTREMUM, weights[nearest])
+                elif curved[int(place)]:
+                    places.append(place)
+        every = np.concatenate([joints, places])
+        order = np.argsort(every, kind="stable")
+        self.places: FloatArray = every[order]
+        self.weights: FloatArray = np.concatenate([weights, np.full(len(places), EXTREMUM)])[order]
+        self.points: FloatArray = self.at(self.places)
+        self.before: FloatArray = self.rows(self.places, before=True)[:, 1]
+        self.after: FloatArray = self.rows(self.places)[:, 1]
+        self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
+
+    def _jumps(self) -> FloatArray:
+        """(m,) how much the curvature jumps at each joint: 0 to 1, of the larger one and of what shows."""
+        first, last = _curvatures(self.cubics), -_curvatures(self.cubics[:, ::-1])
+        one, other = np.roll(last, 1), first
+        largest = np.maximum(np.abs(one), np.abs(other))
+        spans = np.diff(self.rows(np.arange(len(self.cubics) + 1.0))[:, 0])
+        shown = largest * np.minimum(spans, np.roll(spans, 1)) / np.radians(SHOWS)
+        relative = np.abs(other - one) / np.where(largest > 0, largest, 1.0)
+        return np.minimum(relative, 1.0) * np.minimum(shown, 1.0)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    @property
+    def corners(self) -> IntArray:
+        """Indices of the landmarks that are corners."""
+        return np.flatnonzero(np.abs(self.after - self.before) >= np.radians(CORNER_ANGLE))
+
+    def at(self, places: FloatArray) -> FloatArray:
+        """(k, 2) points at places."""
+        segments = np.floor(places).astype(np.int64)
+        return evaluate(self.cubics[segments % len(self.cubics)], places - segments)
+
+    def rows(self, places: FloatArray, *, before: bool = False) -> FloatArray:
+        """(k, 3) length from the start, signed turn and sum of absolute turns at places; at joints after their turn."""
+        i = np.searchsorted(self._at, places, side="left" if before else "right") - 1
+        i = np.clip(i, 0, len(self._at) - 2)
+        low, high = self._at[i], self._at[i + 1]
+        share = np.where(high > low, (places - low) / np.where(high > low, high - low, 1.0), 1.0 * before)
+        return self._rows[i] + share[:, None] * (self._rows[i + 1] - self._rows[i])
+
+    def between(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
+        """Places from ``start`` to ``end`` and their rows, (k,) and (k, 3): the table's, joints twice, with both ends."""
+        low, high = np.searchsorted(self._at, start, side="right"), np.searchsorted(self._at, end, side="left")
+        head, tail = self.rows(np.array([start])), self.rows(np.array([end]), before=True)
+        at = np.concatenate([[start], self._at[low:high], [end]])
+        return at, np.concatenate([head, self._rows[low:high], tail])
+
+
+def lasting_segments(contour: Contour) -> Contour:
+    """The contour without its segments of no length."""
+    cubics = contour.cubics()
+    lasting = (cubics[:, 1:] != cubics[:, :1]).any(axis=(1, 2))
+    if lasting.all():
+        return contour
+    return Contour.from_segments(
+        segment for segment, keep in zip(contour.segments(), lasting.tolist(), strict=True) if keep
+    )
+
+
+def first_direction(cubics: FloatArray) -> FloatArray:
+    """(m, 2) from the first point of each cubic (m, 4, 2) to the nearest control point that is another."""
+    arms = cubics[:, 1:] - cubics[:, :1]
+    first = (arms != 0).any(axis=2).argmax(axis=1)
+    return arms[np.arange(len(cubics)), first]
+
+
+def _curvatures(cubics: FloatArray) -> FloatArray:
+    """(m,) signed curvature where each cubic begins; 0 where it begins without speed."""
+    d = cubics[:, 1] - cubics[:, 0]
+    e = cubics[:, 2] - cubics[:, 0]
+    speed = np.hypot(d[:, 0], d[:, 1])
+    safe = np.where(speed > 0, speed, 1.0)
+    return np.where(speed > 0, (d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]) / safe**3 * 2 / 3, 0.0)
+
+
+def wrapped(angles: FloatArray) -> FloatArray:
+    """Angles brought to -π … π."""
+    return (angles + np.pi) % (2 * np.pi) - np.pi
