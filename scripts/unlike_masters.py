@@ -45,10 +45,13 @@ IDEOGRAPHS = 50
 SHARES = (0.005, 0.01, 0.02)
 """Of the em: how far partners may be from the true ones."""
 
+SHAPES = (0.002, 0.005, 0.01)
+
 AT_CORNER = 2.0
 """Units from a corner to its joint in the result: noise moves it by up to 0.7."""
 
 NOISE = 0.5
+MIXTURES = ((0.75, 0.25), (0.5, 0.5), (0.25, 0.75))
 SPACING = 2.0
 """Units between points compared, at most."""
 
@@ -67,6 +70,7 @@ class Found(NamedTuple):
 
     task: Task
     error: float
+    seen: float
     corner: float
     refused: str
 
@@ -211,10 +215,10 @@ def measured(task: Task, pictures: Path | None = None) -> Found:
     outlines = [gs.Outline(task.name, 0, (), 0.0, contours, metrics) for contours, _ in unlike]
     try:
         masters = match_masters(outlines, [{"wght": value} for value in values], [axis])
-        error, corner = compared(originals, unlike[0][1], masters)
-        found = Found(task, error / em, corner, "")
+        error, seen, corner = compared(originals, unlike[0][1], masters)
+        found = Found(task, error / em, seen / em, corner, "")
     except gs.GlyphsplineError as failure:
-        found = Found(task, np.nan, np.nan, failure.message)
+        found = Found(task, np.nan, np.nan, np.nan, failure.message)
         masters = None
     if pictures is not None and not found.right(0.01):
         from scripts.unlike_pictures import picture
@@ -223,12 +227,12 @@ def measured(task: Task, pictures: Path | None = None) -> Found:
     return found
 
 
-def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: Masters) -> tuple[float, float]:
+def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: Masters) -> tuple[float, float, float]:
     """Largest distance of partners from the true ones, and of corners from joints, in units."""
-    error = corner = 0.0
+    error = seen = corner = 0.0
     for contour, which in zip(masters.contours, order, strict=True):
         true = [own[which] for own in originals]
-        here, there = dense([Chain(points, contour.degrees) for points in contour.points]), dense(true)
+        here, there = dense([gs.Contour(points, contour.degrees) for points in contour.points]), dense(true)
         trees = [cKDTree(points) for points in here]
         for k, tree in enumerate(trees):
             nearest = tree.query(there[k])[0]
@@ -236,16 +240,29 @@ def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: M
                 for other in range(len(trees)):
                     if other != k:
                         error = max(error, np.hypot(*(here[other][ball] - there[other][i]).T).min())
+        for weights in MIXTURES if len(true) == 2 else ():
+            one, other = np.tensordot(weights, here, 1), np.tensordot(weights, there, 1)
+            seen = max(seen, farthest(one, other), farthest(other, one))
         turned = [np.degrees(np.abs(joins(own).turns)) >= 12 for own in true]
         both = np.all(turned, axis=0)
         marks = np.stack([points[np.cumsum(contour.degrees) - contour.degrees] for points in contour.points])
         corners = np.stack([own.points[own.offsets] for own in true])[:, both]
         for j in range(corners.shape[1]):
             corner = max(corner, np.hypot(*np.moveaxis(marks - corners[:, j, None], 2, 0)).max(axis=0).min())
-    return float(error), float(corner)
+    return float(error), float(seen), float(corner)
 
 
-Chain = gs.Contour
+def farthest(points: FloatArray, polygon: FloatArray) -> float:
+    """The largest distance of points (n, 2) from a closed polygon, near whose vertices they are."""
+    nearest = cKDTree(polygon).query(points, k=3)[1]
+    best = np.full(len(points), np.inf)
+    for k in range(3):
+        for step in (-1, 1):
+            a, b = polygon[nearest[:, k]], polygon[(nearest[:, k] + step) % len(polygon)]
+            d = b - a
+            along = np.clip(((points - a) * d).sum(axis=1) / np.maximum((d * d).sum(axis=1), 1e-12), 0, 1)
+            best = np.minimum(best, np.hypot(*(points - a - along[:, None] * d).T))
+    return float(best.max())
 
 
 def dense(contours: Sequence[gs.Contour]) -> FloatArray:
@@ -289,12 +306,13 @@ def main() -> int:
         found = list(pool.map(measured, todo, [arguments.pictures] * len(todo), chunksize=16))
     for one in found:
         if not one.right(0.01):
-            task, words = one.task, one.refused or f"partners {100 * one.error:.2f} %, corners {one.corner:.1f} units"
+            task, words = one.task, one.refused or f"partners {100 * one.error:.2f} %, shape {100 * one.seen:.2f} %, corners {one.corner:.1f} units"
             print(f"{task.path.name} {task.name} seed {task.seed}: {words}")
-    print("| font | glyphs | right at 0.5 % | right at 1 % | right at 2 % | refused |\n|---|---|---|---|---|---|")
+    print("| font | glyphs | right at 0.5 % | right at 1 % | right at 2 % | shape .2 | .5 | 1 | refused |\n|---|---|---|---|---|---|---|---|---|")
     paths = list(dict.fromkeys(one.task.path for one in found))
     for label, those in [*((p.name, [o for o in found if o.task.path == p]) for p in paths), ("all", found)]:
         shares = [f"{100 * np.mean([o.right(share) for o in those]):.1f} %" for share in SHARES]
+        shares += [f"{100 * np.mean([o.seen <= share and o.corner <= AT_CORNER for o in those]):.1f} %" for share in SHAPES]
         print(f"| {label} | {len(those)} | {' | '.join(shares)} | {sum(bool(o.refused) for o in those)} |")
     return 0
 

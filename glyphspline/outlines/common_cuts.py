@@ -11,13 +11,20 @@ import numpy as np
 
 from ..curves.bezier import split
 from ..types import FloatArray, IntArray
-from .landmarks import Landmarks, wrapped
+from .landmarks import STRONG, Landmarks, wrapped
 from .outline import Contour
 from .pairing import cheapest_pairs
 
-POSITION, DIRECTION = 3.0, 0.5
-"""Cost of a pair: of the squared distance between its places in the contours' boxes, which are 1 wide and high, and of
-the squared differences of its unit tangents on both sides."""
+POSITION, DIRECTION, UNLIKE = 3.0, 0.5, 0.8
+"""Cost of a pair: of the squared distance between its places in the contours' boxes, which are 1 wide and high, of the
+squared differences of its unit tangents on both sides, and of the difference of its weights."""
+
+APART, KIND = 1.0, 0.15
+"""Cost of a pair inside an arc: of the squared distance of its places as shares of the arcs' lengths, instead of that
+in the boxes; and of a line on one side of a landmark where the other has a curve."""
+
+STRETCH = (1.0, 0.2)
+"""Cost of a stretch between two pairs that is longer by the whole contour's, or the whole arc's, length."""
 
 STARTS = (4, 5)
 """Landmarks from which alignments are tried, the most distinct ones, and partners tried for each."""
@@ -40,45 +47,78 @@ def common_cuts(one: Landmarks, other: Landmarks) -> tuple[FloatArray, FloatArra
 
     Returns:
         (k,) ascending places on one, and (k,) those on the other, ascending too and within a lap; and the cost of the
-        pairs of landmarks, a landmark.
+        pairs of strong landmarks, a landmark.
     """
-    pairs, cost = paired_landmarks(one, other)
-    u, v = one.places[pairs[:, 0]], other.places[pairs[:, 1]]
-    m = len(other.cubics)
-    v = v + m * np.concatenate([[0], np.cumsum(np.diff(v) < 0)])
+    pairs, cost = strong_pairs(one, other)
+    laps = len(one.cubics), len(other.cubics)
+    anchors = np.stack([one.places[pairs[:, 0]], other.places[pairs[:, 1]]], axis=1)
+    anchors[:, 1] += laps[1] * np.concatenate([[0], np.cumsum(np.diff(anchors[:, 1]) < 0)])
     cuts: list[tuple[float, float]] = []
-    ends = zip(pairwise([*u, u[0] + len(one.cubics)]), pairwise([*v, v[0] + m]), strict=True)
-    for (a, b), (c, d) in ends:
-        cuts += [(a, c), *_arc(one, a, b, other, c, d)]
+    for (a, c), (b, d) in pairwise([*anchors.tolist(), (anchors[0] + laps).tolist()]):
+        for (a0, c0), (b0, d0) in pairwise([(a, c), *weak_pairs(one, a, b, other, c, d), (b, d)]):
+            cuts += [(a0, c0), *_arc(one, a0, b0, other, c0, d0)]
     found = np.array(cuts)
-    lap = np.floor(found[:, 0] / len(one.cubics))
-    found -= lap[:, None] * (len(one.cubics), m)
+    found -= np.floor(found[:, :1] / laps[0]) * laps
     found = found[np.argsort(found[:, 0], kind="stable")]
     return found[:, 0], found[:, 1], cost
 
 
-def paired_landmarks(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
-    """(p, 2) indices of landmarks that correspond, at least one pair, and the cost of the alignment, a landmark."""
-    rows, columns = np.flatnonzero(one.weights > 0), np.flatnonzero(other.weights > 0)
-    costs = pair_costs(one, other)[np.ix_(rows, columns)]
+def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
+    """(p, 2) indices of strong landmarks that correspond, at least one pair, and the cost of the alignment, a landmark.
+
+    Without any, the nearest landmarks of all are a pair.
+    """
+    rows, columns = np.flatnonzero(one.weights >= STRONG), np.flatnonzero(other.weights >= STRONG)
+    costs = pair_costs(one, other)
     bars = one.weights[rows, None] + other.weights[columns]
-    allowed = np.where(costs < bars, costs, np.inf)
-    starts = _starts(allowed, bars)
-    tables = [
-        np.stack([of.weights, of.lengths, of.before, of.after], axis=1)[which]
-        for of, which in ((one, rows), (other, columns))
-    ]
-    cost, pairs = cheapest_pairs(allowed, *tables, np.array([one.lap_turn, other.lap_turn]), starts)
+    own = costs[np.ix_(rows, columns)]
+    allowed = np.where(own < bars, own, np.inf)
+    turns = np.array([one.lap_turn, other.lap_turn])
+    tables = one.table(rows), other.table(columns)
+    cost, pairs = cheapest_pairs(allowed, *tables, turns, _starts(allowed, bars), STRETCH[0])
     if not cost < np.inf:
-        costs = pair_costs(one, other)
-        return np.array([np.unravel_index(int(costs.argmin()), costs.shape)]), np.inf
+        return np.array([np.unravel_index(int(costs.argmin()), costs.shape)]), 0.0
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
+
+
+def weak_pairs(
+    one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: float
+) -> list[tuple[float, float]]:
+    """Places of landmarks that correspond inside two arcs, from a to b and from c to d, that do."""
+    mine, its = one.inside(a, b), other.inside(c, d)
+    if not len(mine) or not len(its):
+        return []
+    tables, turns = [], []
+    for of, start, end, which in ((one, a, b, mine), (other, c, d, its)):
+        ends, first = of.rows(np.array([start, end]), before=True), of.rows(np.array([start]))[0]
+        inner = np.stack([
+            of.weights[which % len(of)],
+            of.rows(of.lap_places(which))[:, 0],
+            of.rows(of.lap_places(which), before=True)[:, 1],
+            of.rows(of.lap_places(which))[:, 1],
+        ], axis=1)  # fmt: skip
+        table = np.concatenate([[[0.0, first[0], ends[0, 1], first[1]]], inner])
+        table[:, 1] = (table[:, 1] - first[0]) / (ends[1, 0] - first[0])
+        tables.append(table)
+        turns.append(ends[1, 1] - ends[0, 1])
+    apart = tables[0][:, None, 1] - tables[1][:, 1]
+    costs = APART * apart * apart + UNLIKE * np.abs(tables[0][:, None, 0] - tables[1][:, 0])
+    for k in (2, 3):
+        costs += DIRECTION * 2 * (1 - np.cos(tables[0][:, None, k] - tables[1][:, k]))
+    kinds = one.kinds[mine % len(one)][:, None] - other.kinds[its % len(other)]
+    costs[1:, 1:] += KIND * np.abs(kinds).sum(axis=2)
+    allowed = np.where(costs < tables[0][:, None, 0] + tables[1][:, 0], costs, np.inf)
+    allowed[0], allowed[:, 0] = np.inf, np.inf
+    allowed[0, 0] = 0.0
+    _, pairs = cheapest_pairs(allowed, *tables, np.array(turns), np.zeros((1, 2), dtype=np.int64), STRETCH[1])
+    pairs = pairs[pairs[:, 0] > 0] - 1
+    return list(zip(one.lap_places(mine[pairs[:, 0]]).tolist(), other.lap_places(its[pairs[:, 1]]).tolist(), strict=True))
 
 
 def pair_costs(one: Landmarks, other: Landmarks) -> FloatArray:
     """(n, m) costs of all pairs of landmarks."""
     apart = in_box(one)[:, None] - in_box(other)
-    total = POSITION * (apart * apart).sum(axis=2)
+    total = POSITION * (apart * apart).sum(axis=2) + UNLIKE * np.abs(one.weights[:, None] - other.weights)
     for mine, its in ((one.before, other.before), (one.after, other.after)):
         total += DIRECTION * 2 * (1 - np.cos(mine[:, None] - its))
     return total

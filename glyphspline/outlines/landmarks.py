@@ -25,15 +25,22 @@ FULL_TURN = 60.0
 CORNER = (0.4, 1.0)
 """Weight of a corner of the least turn, and of a full one."""
 
-EXTREMUM, STRAIGHT_END, BREAK = 0.3, 0.25, 0.15
-"""Weights of joints that turn by less: at a horizontal or vertical tangent; where a straight line ends; where the
-curvature jumps. The rest, such as a point that someone inserted, have none."""
+EXTREMUM, STRAIGHT_END, DRAWN_END, BREAK = 0.3, 0.25, 0.2, 0.15
+"""Weights of joints that turn by less: at a horizontal or vertical tangent; where a straight line ends; between a line
+and a cubic or quadratic, though it may be straight; where the curvature jumps. The rest, such as a point that someone
+inserted, have none."""
+
+STRONG = 0.3
+"""Weight from which landmarks are paired around the whole contour; the others are between two such pairs."""
 
 STRAIGHT = 2.0
 """Degrees of turn up to which a segment is straight."""
 
-SHOWS = 20.0
-"""Degrees of turn of a segment from which the end of a line next to it, or a jump of curvature, has its full weight."""
+WEAK = 0.02
+"""Weight up to which a landmark is none."""
+
+SHOWS, REACH = 12.0, 0.06
+"""Degrees of turn, within so much of the em, from which the end of a line or a jump of curvature has its full weight."""
 
 CURVED = 5.0
 """Degrees of turn from which a segment is curved enough to have an extremum of its own."""
@@ -53,6 +60,7 @@ class Landmarks:
         contour: without segments of no length. cubics: (m, 4, 2) its segments.
         places: (n,) of the landmarks, ascending; all joints are among them, and the extrema between joints.
         weights: (n,) what it costs to leave a landmark without a partner; 0 for joints that nothing distinguishes.
+        kinds: (n, 2) of the segments before and after: 0 for a line, 0.5 for a straight curve, 1 for another curve.
         points: (n, 2). before, after: (n,) direction of the tangent on both sides, in radians, unwrapped: how far the
             contour turned from its start. lengths: (n,) along the contour, as parts of its whole length.
     """
@@ -92,8 +100,10 @@ class Landmarks:
         share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
         corner: BoolArray = degrees >= CORNER_ANGLE
         straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
-        bent = np.minimum(np.degrees(np.maximum(self.bent, np.roll(self.bent, 1))) / SHOWS, 1.0)
-        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * bent, BREAK * self._jumps())
+        line = self.contour.degrees == 1
+        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * self._bends(), BREAK * self._jumps())
+        smooth = np.maximum(smooth, np.where(line != np.roll(line, 1), DRAWN_END, 0.0))
+        kinds = np.where(line, 0.0, np.where(straight, 0.5, 1.0))
         weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
         table = self.rows(joints)[:, 0]
         places = []
@@ -114,10 +124,22 @@ class Landmarks:
         order = np.argsort(every, kind="stable")
         self.places: FloatArray = every[order]
         self.weights: FloatArray = np.concatenate([weights, np.full(len(places), EXTREMUM)])[order]
+        sides = np.stack([np.roll(kinds, 1), kinds], axis=1)
+        self.kinds: FloatArray = np.concatenate([sides, np.ones((len(places), 2))])[order]
         self.points: FloatArray = self.at(self.places)
         self.before: FloatArray = self.rows(self.places, before=True)[:, 1]
         self.after: FloatArray = self.rows(self.places)[:, 1]
         self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
+
+    def _bends(self) -> FloatArray:
+        """(m,) how much the contour bends in ``REACH`` before or after each joint: 0 to 1, of what shows."""
+        ends = []
+        along = self._rows[:, 0]
+        here = self.rows(np.arange(float(len(self.cubics))))
+        for side in (-1, 1):
+            at = np.interp(here[:, 0] + side * REACH * self.em, along, self._at)
+            ends.append(np.abs(self.rows(at)[:, 2] - self.rows(np.arange(float(len(self.cubics))), before=side < 0)[:, 2]))
+        return np.minimum(np.degrees(np.maximum(*ends)) / SHOWS, 1.0)
 
     def _jumps(self) -> FloatArray:
         """(m,) how much the curvature jumps at each joint: 0 to 1, of the larger one and of what shows."""
@@ -125,7 +147,7 @@ class Landmarks:
         one, other = np.roll(last, 1), first
         largest = np.maximum(np.abs(one), np.abs(other))
         spans = np.diff(self.rows(np.arange(len(self.cubics) + 1.0))[:, 0])
-        shown = largest * np.minimum(spans, np.roll(spans, 1)) / np.radians(SHOWS)
+        shown = largest * np.minimum(np.minimum(spans, np.roll(spans, 1)), REACH * self.em) / np.radians(SHOWS)
         relative = np.abs(other - one) / np.where(largest > 0, largest, 1.0)
         return np.minimum(relative, 1.0) * np.minimum(shown, 1.0)
 
@@ -149,6 +171,20 @@ class Landmarks:
         low, high = self._at[i], self._at[i + 1]
         share = np.where(high > low, (places - low) / np.where(high > low, high - low, 1.0), 1.0 * before)
         return self._rows[i] + share[:, None] * (self._rows[i + 1] - self._rows[i])
+
+    def table(self, which: IntArray) -> FloatArray:
+        """(k, 4) weight, length and directions of landmarks, as :func:`.pairing.cheapest_pairs` takes them."""
+        return np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
+
+    def inside(self, start: float, end: float) -> IntArray:
+        """Indices of the landmarks with a weight between two places; they count on past the number of landmarks."""
+        every = np.arange(3 * len(self))
+        places = self.lap_places(every)
+        return every[(places > start) & (places < end) & (self.weights[every % len(self)] >= WEAK)]
+
+    def lap_places(self, which: IntArray) -> FloatArray:
+        """The places of landmarks whose indices count on past their number."""
+        return self.places[which % len(self)] + which // len(self) * len(self.cubics)
 
     def between(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
         """Places from ``start`` to ``end`` and their rows, (k,) and (k, 3): the table's, joints twice, with both ends."""

@@ -10,14 +10,13 @@ from ..types import FloatArray, IntArray
 REACH = 14
 """Landmarks that may be without a partner in a row, and one more."""
 
-LENGTH, TURN = 1.0, 0.5
-"""Cost of two arcs between neighbouring pairs: of a difference of their shares of the contours' lengths, and of their
-turns differing by half a circle, which counts by its square."""
+TURN = 0.5
+"""Cost of two arcs between neighbouring pairs whose turns differ by half a circle; it counts by its square."""
 
 
 @compiled
 def cheapest_pairs(
-    costs: FloatArray, one: FloatArray, other: FloatArray, turns: FloatArray, starts: IntArray
+    costs: FloatArray, one: FloatArray, other: FloatArray, turns: FloatArray, starts: IntArray, stretch: float
 ) -> tuple[float, IntArray]:
     """The cheapest cyclic alignment that has one of the pairs ``starts``.
 
@@ -26,6 +25,7 @@ def cheapest_pairs(
         one, other: (n, 4) and (m, 4) of the landmarks: the weight, which is the cost of having no partner, the length
             up to it as a part of the whole, and the direction before and after it, unwrapped.
         turns: (2,) of both contours as a whole. starts: (k, 2) pairs.
+        stretch: the cost of two arcs between neighbouring pairs whose shares of the lengths differ by 1.
 
     Returns:
         The cost, infinite if there is none, and (p, 2) indices of the pairs, ascending in the first.
@@ -56,7 +56,7 @@ def cheapest_pairs(
                         if before < np.inf:
                             shares = (a[i, 1] - a[i - di, 1]) - (b[j, 1] - b[j - dj, 1])
                             turn = ((a[i, 2] - a[i - di, 3]) - (b[j, 2] - b[j - dj, 3])) / np.pi
-                            cost = before + left_a + left_b + LENGTH * abs(shares) + TURN * turn * turn
+                            cost = before + left_a + left_b + stretch * abs(shares) + TURN * turn * turn
                             if cost < best:
                                 best, at = cost, di * (REACH + 1) + dj
                         left_b += b[j - dj, 0]
