@@ -19,11 +19,11 @@ POSITION, DIRECTION, UNLIKE = 3.0, 0.5, 0.8
 """Cost of a pair: of the squared distance between its places in the contours' boxes, which are 1 wide and high, of the
 squared differences of its unit tangents on both sides, and of the difference of its weights."""
 
-APART, KIND = 1.0, 0.15
+APART, KIND = 0.5, 0.15
 """Cost of a pair inside an arc: of the squared distance of its places as shares of the arcs' lengths, instead of that
 in the boxes; and of a line on one side of a landmark where the other has a curve."""
 
-STRETCH = (1.0, 0.2)
+STRETCH = (1.0, 0.1)
 """Cost of a stretch between two pairs that is longer by the whole contour's, or the whole arc's, length."""
 
 STARTS = (4, 5)
@@ -157,8 +157,15 @@ class _Course:
         sums = np.append(0.0, np.cumsum(np.diff(along) * (turned[1:] + turned[:-1]) / 2))
         ahead, behind = np.interp(along + reach, along, sums), np.interp(along - reach, along, sums)
         turned = np.where(reach > 0, (ahead - behind) / np.where(reach > 0, 2 * reach, 1.0), turned)
-        self.mixed: FloatArray = along / self.length + BEND * turned / (np.pi / 2)
-        self.mixed /= self.mixed[-1]
+        self.turned: FloatArray = turned
+        self.along = along / self.length
+        self.mixed = self.along
+
+    def mix(self, turn: float) -> None:
+        """Have the turn count for as much as ``turn``, in radians, though the arc may turn more."""
+        weight = BEND * turn / (np.pi / 2)
+        share = self.turned / self.turned[-1] if self.turned[-1] > 0 else self.along
+        self.mixed = (self.along + weight * share) / (1 + weight)
 
     def parameters(self, places: FloatArray) -> FloatArray:
         """The parameters of places inside the arc."""
@@ -175,6 +182,9 @@ def _arc(one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: floa
     if not len(mine) and not len(its):
         return []
     first, second = _Course(one, a, b), _Course(other, c, d)
+    turn = min(float(first.turned[-1]), float(second.turned[-1]))
+    first.mix(turn)
+    second.mix(turn)
     x, y = first.parameters(mine), second.parameters(its)
     pair = _nearest(one, mine, x, other, its, y, (first.length + second.length) / 2)
     if pair is not None:

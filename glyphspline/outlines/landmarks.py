@@ -101,7 +101,7 @@ class Landmarks:
         corner: BoolArray = degrees >= CORNER_ANGLE
         straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
         line = self.contour.degrees == 1
-        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * self._bends(), BREAK * self._jumps())
+        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * self._ends(), BREAK * self._jumps())
         smooth = np.maximum(smooth, np.where(line != np.roll(line, 1), DRAWN_END, 0.0))
         kinds = np.where(line, 0.0, np.where(straight, 0.5, 1.0))
         weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
@@ -131,15 +131,13 @@ class Landmarks:
         self.after: FloatArray = self.rows(self.places)[:, 1]
         self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
 
-    def _bends(self) -> FloatArray:
-        """(m,) how much the contour bends in ``REACH`` before or after each joint: 0 to 1, of what shows."""
-        ends = []
-        along = self._rows[:, 0]
-        here = self.rows(np.arange(float(len(self.cubics))))
-        for side in (-1, 1):
-            at = np.interp(here[:, 0] + side * REACH * self.em, along, self._at)
-            ends.append(np.abs(self.rows(at)[:, 2] - self.rows(np.arange(float(len(self.cubics))), before=side < 0)[:, 2]))
-        return np.minimum(np.degrees(np.maximum(*ends)) / SHOWS, 1.0)
+    def _ends(self) -> FloatArray:
+        """(m,) how much one of the segments at each joint bends more, in the mean, than the other: 0 to 1."""
+        spans = np.diff(self.rows(np.arange(len(self.cubics) + 1.0))[:, 0])
+        means = np.stack([self.bent / spans, np.roll(self.bent / spans, 1)])
+        most = np.where(means[0] > means[1], self.bent, np.roll(self.bent, 1))
+        contrast = 1 - means.min(axis=0) / np.maximum(means.max(axis=0), 1e-12)
+        return contrast * np.minimum(np.degrees(most) / SHOWS, 1.0)
 
     def _jumps(self) -> FloatArray:
         """(m,) how much the curvature jumps at each joint: 0 to 1, of the larger one and of what shows."""

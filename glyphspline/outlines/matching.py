@@ -19,7 +19,7 @@ from .landmarks import Landmarks
 from .masters import DesignAxis, MasterContour, Masters
 from .outline import Contour, Outline
 
-MOST_COST = 0.35
+MOST_COST = 0.7
 """Cost of a pair of contours, a landmark, from which they are not taken for the same."""
 
 
