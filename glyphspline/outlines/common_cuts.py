@@ -11,7 +11,7 @@ import numpy as np
 
 from ..curves.bezier import split
 from ..types import FloatArray, IntArray
-from .landmarks import STRONG, Landmarks, wrapped
+from .landmarks import CORNER, STRONG, WEAK, Landmarks, wrapped
 from .outline import Contour
 from .pairing import cheapest_pairs
 
@@ -107,7 +107,9 @@ def weak_pairs(
         costs += DIRECTION * 2 * (1 - np.cos(tables[0][:, None, k] - tables[1][:, k]))
     kinds = one.kinds[mine % len(one)][:, None] - other.kinds[its % len(other)]
     costs[1:, 1:] += KIND * np.abs(kinds).sum(axis=2)
-    allowed = np.where(costs < tables[0][:, None, 0] + tables[1][:, 0], costs, np.inf)
+    weights = tables[0][:, None, 0], tables[1][None, :, 0]
+    both = (np.minimum(*weights) >= WEAK) | (np.maximum(*weights) >= CORNER[0])
+    allowed = np.where(both & (costs < weights[0] + weights[1]), costs, np.inf)
     allowed[0], allowed[:, 0] = np.inf, np.inf
     allowed[0, 0] = 0.0
     _, pairs = cheapest_pairs(allowed, *tables, np.array(turns), np.zeros((1, 2), dtype=np.int64), STRETCH[1])

@@ -37,7 +37,7 @@ STRAIGHT = 2.0
 """Degrees of turn up to which a segment is straight."""
 
 WEAK = 0.02
-"""Weight up to which a landmark is none."""
+"""Weight up to which a landmark is nothing but a joint: only a corner takes it for a partner."""
 
 SHOWS, REACH = 12.0, 0.06
 """Degrees of turn, within so much of the em, from which the end of a line or a jump of curvature has its full weight."""
@@ -175,10 +175,10 @@ class Landmarks:
         return np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
 
     def inside(self, start: float, end: float) -> IntArray:
-        """Indices of the landmarks with a weight between two places; they count on past the number of landmarks."""
+        """Indices of the landmarks between two places; they count on past the number of landmarks."""
         every = np.arange(3 * len(self))
         places = self.lap_places(every)
-        return every[(places > start) & (places < end) & (self.weights[every % len(self)] >= WEAK)]
+        return every[(places > start) & (places < end)]
 
     def lap_places(self, which: IntArray) -> FloatArray:
         """The places of landmarks whose indices count on past their number."""

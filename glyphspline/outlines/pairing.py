@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 
-REACH = 14
+REACH = 24
 """Landmarks that may be without a partner in a row, and one more."""
 
 TURN = 0.5
