@@ -38,7 +38,7 @@ def paired_contours(one: Sequence[Landmarks], other: Sequence[Landmarks]) -> lis
         GlyphsplineError: the numbers of contours differ, the area of a contour turns round, or no assignment is near.
     """
     if len(one) != len(other):
-        raise GlyphsplineError(f"one master has {counted(len(one), 'contour')}, another {len(other)}")
+        raise GlyphsplineError(f"the default has {counted(len(one), 'contour')}, that one {len(other)}")
     if not one:
         return []
     mine, its = features(one), features(other)
@@ -50,13 +50,13 @@ def paired_contours(one: Sequence[Landmarks], other: Sequence[Landmarks]) -> lis
         if signs[0] * signs[1] < 0:
             words = ["counter-clockwise" if sign > 0 else "clockwise" for sign in signs]
             raise GlyphsplineError(
-                f"it runs {words[0]} in one master, and its nearest partner, contour {j}, {words[1]} in another",
+                f"it runs {words[0]} in the default, and its partner, contour {j}, {words[1]}, so that its ink flips",
                 contour=i,
             )
         if not costs[i, j] < FARTHEST**2:
             raise GlyphsplineError(
-                f"no contour of another master resembles it: the nearest left, contour {j}, is {costs[i, j] ** 0.5:.2f}"
-                f" of the glyph's size away in place, size and shape, more than {FARTHEST:g}",
+                f"no contour there resembles it: its partner, contour {j}, is {costs[i, j] ** 0.5:.2f} of the glyph's"
+                f" size away in place, size and shape, more than {FARTHEST:g}",
                 contour=i,
             )
     return chosen

@@ -47,7 +47,7 @@ def match_masters(
     first = outlines[order[0]]
     em = first.metrics.units_per_em
     try:
-        contours, scales = _matched([outlines[k] for k in order], em)
+        contours, scales = _matched([outlines[k] for k in order], [locations[k] for k in order], em)
     except GlyphsplineError as error:
         raise error.locate(glyph=first.name) from None
     advances = np.array([outlines[k].advance for k in order]) * scales
@@ -55,28 +55,39 @@ def match_masters(
     return Masters(first.name, first.gid, tuple(codes), tuple(axes), regions, contours, advances, first.metrics)
 
 
-def _matched(outlines: Sequence[Outline], em: float) -> tuple[list[MasterContour], FloatArray]:
+def _matched(
+    outlines: Sequence[Outline], locations: Sequence[Mapping[str, float]], em: float
+) -> tuple[list[MasterContour], FloatArray]:
+    """The contours in all masters, the default first, and the scales of the outlines."""
     scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
     masters = []
     for scale, outline in zip(scales.tolist(), outlines, strict=True):
         contours = directed(outline)
         masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
-    default = masters[0]
-    partners = [list(range(len(default))), *(paired_contours(default, other) for other in masters[1:])]
-    found = []
-    for i in range(len(default)):
-        found.append(_contour([own[which[i]] for own, which in zip(masters, partners, strict=True)], i))
-    return found, scales
+    parts = [[own.contour] for own in masters[0]]
+    for other, location in zip(masters[1:], locations[1:], strict=True):
+        try:
+            partners = paired_contours(masters[0], other)
+            parts = [_with(own, other[j], i) for i, (own, j) in enumerate(zip(parts, partners, strict=True))]
+        except GlyphsplineError as error:
+            place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
+            raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
+    return [_together(own) for own in parts], scales
 
 
-def _contour(masters: Sequence[Landmarks], index: int) -> MasterContour:
-    """One contour in all masters, which are cut like the default one after the other."""
-    parts = [masters[0].contour]
-    for other in masters[1:]:
-        u, v, cost = common_cuts(Landmarks(parts[0], other.em), other)
-        if not cost < MOST_COST:
-            raise GlyphsplineError(f"its corners resemble none of another master: they cost {cost:.2f}", contour=index)
-        parts = [*(cut(contour, u) for contour in parts), cut(other.contour, v)]
+def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contour]:
+    """One contour in one more master: those before it are cut like the default, the first of them."""
+    u, v, cost = common_cuts(Landmarks(parts[0], other.em), other)
+    if not cost < MOST_COST:
+        raise GlyphsplineError(
+            f"their corners resemble each other too little: they cost {cost:.2f} each, more than {MOST_COST:g}",
+            contour=index,
+        )
+    return [*(cut(contour, u) for contour in parts), cut(other.contour, v)]
+
+
+def _together(parts: Sequence[Contour]) -> MasterContour:
+    """One contour in all masters, of which the same segments are lines."""
     lines = np.all([contour.degrees == 1 for contour in parts], axis=0)
     kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
     return MasterContour(np.stack([contour.cubics()[kept] for contour in parts]), np.where(lines, 1, 3))
