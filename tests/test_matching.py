@@ -8,14 +8,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from drawings import L_SHAPE, METRICS, circle, polygon_contour
+from tests.drawings import L_SHAPE, circle, polygon_contour
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.bezier import split
 from glyphspline.outlines.common_cuts import common_cuts, cut
-from glyphspline.outlines.landmarks import Landmarks
+from glyphspline.outlines.landmarks import NEAR, Landmarks
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.matching import match_masters
 from glyphspline.readers.single_fonts import Unmatched, axis_of, masters_of_fonts
@@ -102,7 +102,7 @@ def test_a_corner_that_the_other_master_lacks_is_cut_into_it() -> None:
     assert marks.shape[1] == 8
     for corner, true in zip(L_SHAPE, np.delete(notched, [5, 6], axis=0), strict=True):
         np.testing.assert_allclose(partner(masters, corner), true, atol=1e-12)
-    assert distance(marks[0], polygon_contour(L_SHAPE)) < 1e-9
+    assert area(masters.master(0).contours[0]) == pytest.approx(area(polygon_contour(L_SHAPE)), rel=1e-12)
 
 
 def test_a_rounded_corner_takes_the_sharp_one_to_its_middle() -> None:
@@ -222,8 +222,8 @@ def test_a_contour_whose_area_flips() -> None:
 
 
 def test_contours_in_places_too_far_apart() -> None:
-    light = [polygon_contour(SQUARE), polygon_contour(SQUARE + (900, 0)), polygon_contour(SQUARE * (10, 1) + (0, 900))]
-    bold = [polygon_contour(SQUARE * (10, 1)), polygon_contour(SQUARE + (0, 900)), polygon_contour(SQUARE + (450, 950))]
+    light = [polygon_contour(SQUARE * (10, 1)), polygon_contour(SQUARE + (0, 900))]
+    bold = [polygon_contour(SQUARE * (1, 10)), polygon_contour(SQUARE + (900, 900))]
     with pytest.raises(gs.GlyphsplineError, match="no contour there resembles it"):
         matched(outline(*light), outline(*bold))
 
@@ -279,7 +279,10 @@ def test_a_glyph_that_a_font_lacks_is_named() -> None:
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=25, deadline=None)
 def test_a_contour_matches_itself_by_other_points(seed: int) -> None:
-    """Whatever joints are inserted, a contour is cut like itself: partners are the same points, and the curve stays."""
+    """Whatever joints are inserted, a contour is cut like itself, and the curve stays.
+
+    A partner is the same point, or one as near as joints may be to an extremum for which they stand.
+    """
     rng = np.random.default_rng(seed)
     angles = np.sort(rng.uniform(0, 2 * np.pi, 7)) + np.arange(7) * 0.2
     angles *= 2 * np.pi / (angles[-1] + 0.4)
@@ -296,6 +299,6 @@ def test_a_contour_matches_itself_by_other_points(seed: int) -> None:
     mine, its = cut(one, u), cut(other, v)
     assert np.all(np.diff(u) > 0)
     assert np.all(np.diff(v) > 0)
-    np.testing.assert_allclose(mine.points[::3], its.points[::3], atol=1.0)
+    assert np.hypot(*(mine.points[::3] - its.points[::3]).T).max() < 1000 * NEAR[1]
     assert area(mine) == pytest.approx(area(one), rel=1e-12)
     assert area(its) == pytest.approx(area(one), rel=1e-12)

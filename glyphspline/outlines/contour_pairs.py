@@ -16,7 +16,7 @@ from .outline import Contour, Outline
 FLAT = 0.02
 """Share of the area of a circle of the same length below which the sign of a contour's area says nothing."""
 
-FARTHEST = 1.2
+FARTHEST = 0.95
 """Largest distance of the features of two contours that are a pair, in the outlines' sizes."""
 
 CORNERS = 0.01

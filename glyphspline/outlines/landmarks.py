@@ -19,6 +19,10 @@ from .sampling import CORNER_ANGLE
 STEPS = 16
 """Steps a segment of the tables of length and turn."""
 
+_T = np.arange(STEPS + 1) / STEPS
+SLOPES = np.array([(1 - _T) ** 2, 2 * _T * (1 - _T), _T**2])
+"""(3, STEPS + 1) the quadratic Bernstein polynomials, of the derivative of a cubic, at the steps."""
+
 FULL_TURN = 60.0
 """Degrees of turn from which a corner is as weighty as a corner can be."""
 
@@ -48,7 +52,7 @@ CURVED = 5.0
 HEIGHT = 2e-3
 """Of the em: the height by which a contour rises to an extremum and falls again."""
 
-NEAR, TILT = (6e-3, 25e-3), 5.0
+NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
 tangent is within so many degrees of that at the extremum."""
 
@@ -72,15 +76,15 @@ class Landmarks:
         m = len(cubics)
         samples = np.einsum("ks,mkc->msc", bernstein(STEPS), cubics)
         chords = np.diff(samples, axis=1)
-        ends = np.stack([first_direction(cubics), first_direction(-cubics[:, ::-1])], axis=1)
-        ways = np.concatenate([ends[:, :1], chords, ends[:, 1:]], axis=1)
+        ways = np.einsum("ks,mkc->msc", SLOPES, np.diff(cubics, axis=1))
+        ways[:, 0], ways[:, -1] = first_direction(cubics), first_direction(-cubics[:, ::-1])
         angles = np.arctan2(ways[..., 1], ways[..., 0])
         bends = wrapped(np.diff(angles, axis=1))
         self.turns = wrapped(angles[:, 0] - np.roll(angles[:, -1], 1))
         self.bent: FloatArray = np.abs(bends).sum(axis=1)
         steps = np.zeros((m, STEPS + 1, 3))
         steps[:, 1:, 0] = np.hypot(chords[..., 0], chords[..., 1])
-        steps[..., 1], steps[..., 2] = bends, np.abs(bends)
+        steps[:, 1:, 1], steps[:, 1:, 2] = bends, np.abs(bends)
         steps[1:, 0, 1] += self.turns[1:]
         steps[1:, 0, 2] += np.abs(self.turns[1:])
         rows = steps.reshape(-1, 3).cumsum(axis=0)
