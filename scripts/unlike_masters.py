@@ -47,8 +47,8 @@ SHARES = (0.005, 0.01, 0.02)
 
 SHAPES = (0.002, 0.005, 0.01)
 
-AT_CORNER = 2.0
-"""Units from a corner to its joint in the result: noise moves it by up to 0.7."""
+AT_CORNER = 0.002
+"""Of the em: from a corner to its joint in the result, at most; noise moves it by up to 0.7 units."""
 
 NOISE = 0.5
 MIXTURES = ((0.75, 0.25), (0.5, 0.5), (0.25, 0.75))

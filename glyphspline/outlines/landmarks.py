@@ -52,6 +52,9 @@ CURVED = 5.0
 HEIGHT = 2e-3
 """Of the em: the height by which a contour rises to an extremum and falls again."""
 
+CHORD = 5e-3
+"""Of the em: length of the chords whose directions are those on both sides of a landmark; less where a segment ends."""
+
 NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
 tangent is within so many degrees of that at the extremum."""
@@ -65,8 +68,8 @@ class Landmarks:
         places: (n,) of the landmarks, ascending; all joints are among them, and the extrema between joints.
         weights: (n,) what it costs to leave a landmark without a partner; 0 for joints that nothing distinguishes.
         kinds: (n, 2) of the segments before and after: 0 for a line, 0.5 for a straight curve, 1 for another curve.
-        points: (n, 2). before, after: (n,) direction of the tangent on both sides, in radians, unwrapped: how far the
-            contour turned from its start. lengths: (n,) along the contour, as parts of its whole length.
+        points: (n, 2). before, after: (n,) direction on both sides, in radians, unwrapped: it tells how far the contour
+            turned from its start. lengths: (n,) along the contour, as parts of its whole length.
     """
 
     def __init__(self, contour: Contour, em: float) -> None:
@@ -131,9 +134,20 @@ class Landmarks:
         sides = np.stack([np.roll(kinds, 1), kinds], axis=1)
         self.kinds: FloatArray = np.concatenate([sides, np.ones((len(places), 2))])[order]
         self.points: FloatArray = self.at(self.places)
-        self.before: FloatArray = self.rows(self.places, before=True)[:, 1]
-        self.after: FloatArray = self.rows(self.places)[:, 1]
+        self.before, self.after = self._directions()
         self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
+
+    def _directions(self) -> tuple[FloatArray, FloatArray]:
+        """Directions before and after each landmark, of chords: a short handle, off by a unit, points anywhere."""
+        here, found = self.rows(self.places)[:, 0], []
+        for side, ends in ((-1, np.ceil(self.places) - 1), (1, np.floor(self.places) + 1)):
+            stop = self.rows(ends)[:, 0] - here
+            along = here + side * np.minimum(CHORD * self.em, np.abs(stop))
+            step = side * (self.at(np.interp(along, self._rows[:, 0], self._at)) - self.points)
+            direction = self.rows(self.places, before=side < 0)[:, 1]
+            turned = wrapped(np.arctan2(step[:, 1], step[:, 0]) - direction)
+            found.append(direction + np.where(step.any(axis=1), turned, 0.0))
+        return found[0], found[1]
 
     def _ends(self) -> FloatArray:
         """(m,) how much one of the segments at each joint bends more, in the mean, than the other: 0 to 1."""
@@ -159,7 +173,7 @@ class Landmarks:
     @property
     def corners(self) -> IntArray:
         """Indices of the landmarks that are corners."""
-        return np.flatnonzero(np.abs(self.after - self.before) >= np.radians(CORNER_ANGLE))
+        return np.flatnonzero(self.weights >= CORNER[0])
 
     def at(self, places: FloatArray) -> FloatArray:
         """(k, 2) points at places."""
