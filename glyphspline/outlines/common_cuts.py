@@ -81,9 +81,7 @@ def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
 
 
-def weak_pairs(
-    one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: float
-) -> list[tuple[float, float]]:
+def weak_pairs(one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: float) -> list[tuple[float, float]]:
     """Places of landmarks that correspond inside two arcs, from a to b and from c to d, that do."""
     mine, its = one.inside(a, b), other.inside(c, d)
     if not len(mine) or not len(its):
@@ -112,9 +110,13 @@ def weak_pairs(
     allowed = np.where(both & (costs < weights[0] + weights[1]), costs, np.inf)
     allowed[0], allowed[:, 0] = np.inf, np.inf
     allowed[0, 0] = 0.0
-    _, pairs = cheapest_pairs(allowed, *tables, np.array(turns), np.zeros((1, 2), dtype=np.int64), STRETCH[1])
+    _, pairs = cheapest_pairs(
+        allowed, tables[0], tables[1], np.array(turns), np.zeros((1, 2), dtype=np.int64), STRETCH[1]
+    )
     pairs = pairs[pairs[:, 0] > 0] - 1
-    return list(zip(one.lap_places(mine[pairs[:, 0]]).tolist(), other.lap_places(its[pairs[:, 1]]).tolist(), strict=True))
+    return list(
+        zip(one.lap_places(mine[pairs[:, 0]]).tolist(), other.lap_places(its[pairs[:, 1]]).tolist(), strict=True)
+    )
 
 
 def pair_costs(one: Landmarks, other: Landmarks) -> FloatArray:
@@ -221,8 +223,9 @@ def cut(contour: Contour, places: FloatArray) -> Contour:
     """
     cubics, m = contour.cubics(), len(contour)
     ends = np.concatenate([places[1:], [places[0] + m]])
-    segments = np.floor(places).astype(np.int64)
-    start, end = (places - segments)[:, None, None], (ends - segments)[:, None, None]
+    first: FloatArray = np.floor(places)
+    segments = first.astype(np.int64)
+    start, end = (places - first)[:, None, None], (ends - first)[:, None, None]
     pieces = split(split(cubics[segments % m], end)[0], start / end)[1]
     lines = contour.degrees[segments % m] == 1
     kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])

@@ -5,8 +5,6 @@ A *place* j + x on a contour is local parameter x of its segment j; places count
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
 from ..curves.bezier import evaluate
@@ -44,7 +42,8 @@ WEAK = 0.02
 """Weight up to which a landmark is nothing but a joint: only a corner takes it for a partner."""
 
 SHOWS, REACH = 12.0, 0.06
-"""Degrees of turn, within so much of the em, from which the end of a line or a jump of curvature has its full weight."""
+"""Degrees of turn from which the end of a line or a jump of curvature has its full weight; of a jump those within so
+much of the em."""
 
 CURVED = 5.0
 """Degrees of turn from which a segment is curved enough to have an extremum of its own."""
@@ -203,7 +202,7 @@ class Landmarks:
         return self.places[which % len(self)] + which // len(self) * len(self.cubics)
 
     def between(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
-        """Places from ``start`` to ``end`` and their rows, (k,) and (k, 3): the table's, joints twice, with both ends."""
+        """Places from ``start`` to ``end``, with both, and their rows, (k,) and (k, 3): the table's, joints twice."""
         low, high = np.searchsorted(self._at, start, side="right"), np.searchsorted(self._at, end, side="left")
         head, tail = self.rows(np.array([start])), self.rows(np.array([end]), before=True)
         at = np.concatenate([[start], self._at[low:high], [end]])

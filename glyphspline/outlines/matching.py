@@ -102,7 +102,9 @@ def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis
         for tag in location:
             if tag not in tags:
                 raise OptionError(f"no axis {tag!r}: there are {', '.join(tags)}")
-    peaks = np.array([[axis.normalised(location.get(axis.tag, axis.default)) for axis in axes] for location in locations])
+    peaks = np.array(
+        [[axis.normalised(location.get(axis.tag, axis.default)) for axis in axes] for location in locations]
+    )
     at_default = np.flatnonzero(~peaks.any(axis=1))
     if len(at_default) != 1:
         raise OptionError(f"one master is at the default of all axes, not {len(at_default)}")
@@ -111,14 +113,14 @@ def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis
     for row, k in enumerate(others):
         along = np.flatnonzero(peaks[k])
         if len(along) > 1:
-            raise OptionError(f"a master differs from the default along one axis, not {len(along)}: {dict(locations[k])}")
+            raise OptionError(f"a master leaves the default along one axis, not {len(along)}: {dict(locations[k])}")
         a = int(along[0])
         side = np.sign(peaks[k, a])
         own = np.sort(np.abs(peaks[others, a][peaks[others, a] * side > 0]))
         at = abs(float(peaks[k, a]))
         if own[-1] != 1 or (len(axes) > 1 and len(own) > 1) or (own == at).sum() > 1:
             raise OptionError(
-                f"axis {tags[a]} has one master at each end that is not its default, and more only if it is the one axis"
+                f"axis {tags[a]} has one master at each end but its default, and others only if there is no other axis"
             )
         low, high = own[own < at], own[own > at]
         region = [low[-1] if len(low) else 0.0, at, high[0] if len(high) else 1.0]

@@ -31,7 +31,8 @@ def cheapest_pairs(
         The cost, infinite if there is none, and (p, 2) indices of the pairs, ascending in the first.
     """
     n, m = costs.shape
-    least, chosen = np.inf, np.empty((0, 2), dtype=np.int64)
+    least = np.inf
+    chosen = np.empty((0, 2), dtype=np.int64)
     a, b = np.empty((n + 1, 4)), np.empty((m + 1, 4))
     reached, came = np.empty((n + 1, m + 1)), np.empty((n + 1, m + 1), dtype=np.int64)
     for s in range(len(starts)):
@@ -63,7 +64,7 @@ def cheapest_pairs(
                     left_a += a[i - di, 0]
                 reached[i, j], came[i, j] = best + own, at
         if reached[n, m] < least:
-            least = reached[n, m]
+            least = float(reached[n, m])
             chosen = _followed(came, n, m, i0, j0)
     return least, chosen
 

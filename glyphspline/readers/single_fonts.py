@@ -1,4 +1,4 @@
-"""Single fonts of a family, read together: a glyph's outlines in all of them, matched, are the masters of a design space."""
+"""Single fonts of a family, read together: the outlines of a glyph, matched, are masters of a design space."""
 
 from __future__ import annotations
 

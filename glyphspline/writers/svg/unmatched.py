@@ -88,9 +88,7 @@ def _contour(contour: Contour, index: int, em: float) -> list[str]:
         f'L{number(tip[0], 2)} {number(-tip[1], 2)}"/>\n',
     ]
     for k, point in enumerate(found.points[found.of("corner", 0.0)]):
-        lines.append(
-            f'<text x="{number(point[0], 2)}" y="{number(-point[1], 2)}" fill="{colour}">{index}:{k}</text>\n'
-        )
+        lines.append(f'<text x="{number(point[0], 2)}" y="{number(-point[1], 2)}" fill="{colour}">{index}:{k}</text>\n')
     return lines
 
 
