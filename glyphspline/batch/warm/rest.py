@@ -1,4 +1,4 @@
-"""What single options or measures need: the check of united contours, joins, the variation of curvature, unlike masters."""
+"""What single options or measures need: united contours, joins, the variation of curvature, unlike masters."""
 
 from ...curves.fairness import curvature_variation
 from ...outlines.common_cuts import common_cuts
