@@ -4,7 +4,7 @@
 
 FOLDER has variable fonts with a weight axis. Static instances at the ends of that axis (with ``--masters 3`` and a
 default inside it also there) correspond point by point, so every point's true partner is known. Then each instance is
-changed by itself, at random: joints are moved along the curve where the change stays below half a unit, inserted, and
+changed by itself, at random: joints that are no corners are moved along the curve where that changes it by less than half a unit, inserted, and
 removed where that is exact; contours are put in another order, start elsewhere, all run the other way round; quadratics
 become cubics in one instance; and every point moves by up to half a unit in x and in y.
 
@@ -44,6 +44,7 @@ from glyphspline.curves.bezier import as_cubic, evaluate, split
 from glyphspline.outlines.joins import joins
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.matching import match_masters
+from glyphspline.outlines.sampling import CORNER_ANGLE
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.unmatched import to_unmatched_svg
 
@@ -180,18 +181,26 @@ def merged(segments: list[FloatArray], rng: np.random.Generator) -> list[FloatAr
 
 
 def moved(segments: list[FloatArray], rng: np.random.Generator) -> list[FloatArray]:
-    """Some joints of two smooth cubics move along the curve, into the one after it."""
+    """Some joints of two cubics that are no corners move along the curve, into the one after it."""
     for j in range(len(segments)):
         k = (j + 1) % len(segments)
         one, two = segments[j], segments[k]
         if len(one) == len(two) == 4 and k != j and rng.random() < 0.4:
             share = rng.uniform(0.1, 0.35)
+            if turned(one, two) >= CORNER_ANGLE:
+                continue
             head, tail = (part for part in split(two, share))
             curve = fitted(np.concatenate([evaluate(np.tile(part, (21, 1, 1)), np.linspace(0, 1, 21))[first:]
                                            for first, part in ((0, one), (1, head))]), one, head)  # fmt: skip
             if curve is not None:
                 segments[j], segments[k] = curve, tail
     return segments
+
+
+def turned(one: FloatArray, two: FloatArray) -> float:
+    """Degrees by which a cubic turns into the next."""
+    (a, b), (c, d) = one[3] - one[2], two[1] - two[0]
+    return float(np.degrees(abs(np.arctan2(a * d - b * c, a * c + b * d))))
 
 
 def fitted(points: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray | None:
@@ -268,8 +277,8 @@ def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: M
             for weight in MIXTURES:
                 mine, its = ((1 - weight) * points[one] + weight * points[two] for points in (here, there))
                 shape = max(shape, farthest(mine, its), farthest(its, mine))
-        turned = [np.degrees(np.abs(joins(own).turns)) >= 12 for own in true]
-        both = np.all(turned, axis=0)
+        turns = [np.degrees(np.abs(joins(own).turns)) >= 12 for own in true]
+        both = np.all(turns, axis=0)
         marks = np.stack([points[np.cumsum(contour.degrees) - contour.degrees] for points in contour.points])
         corners = np.stack([own.points[own.offsets] for own in true])[:, both]
         for j in range(corners.shape[1]):
