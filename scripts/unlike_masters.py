@@ -4,9 +4,9 @@
 
 FOLDER has variable fonts with a weight axis. Static instances at the ends of that axis (with ``--masters 3`` and a
 default inside it also there) correspond point by point, so every point's true partner is known. Then each instance is
-changed by itself, at random: joints that are no corners are moved along the curve where that changes it by less than half a unit, inserted, and
-removed where that is exact; contours are put in another order, start elsewhere, all run the other way round; quadratics
-become cubics in one instance; and every point moves by up to half a unit in x and in y.
+changed by itself, at random: joints that are no corners move along the curve where that changes it by less than half a
+unit; joints are inserted, and removed where that is exact; contours are put in another order, start elsewhere, all run
+the other way round; quadratics become cubics in one instance; and every point moves by up to half a unit in x and in y.
 
 A glyph is *rightly matched* if
 
