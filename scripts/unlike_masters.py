@@ -328,6 +328,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("--seeds", type=int, default=1, help="changes of each glyph")
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="take each Nth of the changed glyphs only")
     parser.add_argument("--masters", type=int, default=2, choices=(2, 3))
     parser.add_argument("--text", help="characters instead of these")
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="for an SVG of each failure")
@@ -335,7 +337,8 @@ def main() -> int:
     arguments = parser.parse_args()
     if arguments.pictures:
         arguments.pictures.mkdir(parents=True, exist_ok=True)
-    todo = list(tasks(arguments.folder, arguments.seeds, arguments.masters, arguments.text))
+    todo = list(tasks(arguments.folder, arguments.seeds, arguments.masters, arguments.text))[:: arguments.every]
+    todo = [task._replace(seed=task.seed + arguments.first_seed) for task in todo]
     with ProcessPoolExecutor(arguments.jobs) as pool:
         found = list(pool.map(measured, todo, [arguments.pictures] * len(todo), chunksize=16))
     for one in found:
