@@ -22,8 +22,8 @@ def derivative_points(pieces: FloatArray, order: int = 1) -> FloatArray:
     return pieces
 
 
-def split(pieces: FloatArray, x: float = 0.5) -> tuple[FloatArray, FloatArray]:
-    """Both parts of each piece, cut at local parameter x."""
+def split(pieces: FloatArray, x: float | FloatArray = 0.5) -> tuple[FloatArray, FloatArray]:
+    """Both parts of each piece, cut at local parameter x: one, or (m, 1, 1) of m pieces."""
     left, right = [pieces[..., 0, :]], [pieces[..., -1, :]]
     while pieces.shape[-2] > 1:
         pieces = (1 - x) * pieces[..., :-1, :] + x * pieces[..., 1:, :]

@@ -1,0 +1,128 @@
+"""Masters of a glyph out of outlines whose points do not correspond: single fonts of a family, say.
+
+Contours are paired first (:mod:`.contour_pairs`), then their corners and other landmarks (:mod:`.pairing`); the arcs
+between these are put on common places, and all masters are cut there (:mod:`.common_cuts`). Every master keeps exactly
+the outline it had.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..errors import GlyphsplineError, OptionError
+from ..types import FloatArray
+from .common_cuts import common_cuts, cut
+from .contour_pairs import directed, paired_contours
+from .landmarks import Landmarks
+from .masters import DesignAxis, MasterContour, Masters
+from .outline import Contour, Outline
+
+MOST_COST = 0.7
+"""Cost of a pair of contours, a landmark, from which they are not taken for the same."""
+
+
+def match_masters(
+    outlines: Sequence[Outline], locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]
+) -> Masters:
+    """Outlines of one glyph, whose points need not correspond, as masters of a design space.
+
+    Args:
+        outlines: K of them, of at least two; where the units per em differ, all are scaled to those of the default.
+        locations: of the outlines, axis tag to user-space value; axes that are not given are at their default.
+        axes: of the design space. The masters are at the default and, along one axis, at any places that include its
+            ends; along several axes, at ends of single axes.
+
+    Returns:
+        The masters, the default first, the others in the order given. Contours are in the default's order, start where
+        its do, and run counter-clockwise around ink. Segments that are lines in all masters are lines, the others
+        cubics. Their outlines are those given, but for segments of no length.
+
+    Raises:
+        OptionError: the locations are no such design space.
+        GlyphsplineError: the outlines cannot be matched; the error says why, and names the contour of the default.
+    """
+    regions, order = _regions(locations, axes)
+    first = outlines[order[0]]
+    em = first.metrics.units_per_em
+    try:
+        contours, scales = _matched([outlines[k] for k in order], [locations[k] for k in order], em)
+    except GlyphsplineError as error:
+        raise error.locate(glyph=first.name) from None
+    advances = np.array([outlines[k].advance for k in order]) * scales
+    codes = sorted({code for outline in outlines for code in outline.unicodes})
+    return Masters(first.name, first.gid, tuple(codes), tuple(axes), regions, contours, advances, first.metrics)
+
+
+def _matched(
+    outlines: Sequence[Outline], locations: Sequence[Mapping[str, float]], em: float
+) -> tuple[list[MasterContour], FloatArray]:
+    """The contours in all masters, the default first, and the scales of the outlines."""
+    scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
+    masters = []
+    for scale, outline in zip(scales.tolist(), outlines, strict=True):
+        contours = directed(outline)
+        masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
+    parts = [[own.contour] for own in masters[0]]
+    for other, location in zip(masters[1:], locations[1:], strict=True):
+        try:
+            partners = paired_contours(masters[0], other)
+            parts = [_with(own, other[j], i) for i, (own, j) in enumerate(zip(parts, partners, strict=True))]
+        except GlyphsplineError as error:
+            place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
+            raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
+    return [_together(own) for own in parts], scales
+
+
+def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contour]:
+    """One contour in one more master: those before it are cut like the default, the first of them."""
+    u, v, cost = common_cuts(Landmarks(parts[0], other.em), other)
+    if not cost < MOST_COST:
+        raise GlyphsplineError(
+            f"their corners resemble each other too little: they cost {cost:.2f} each, more than {MOST_COST:g}",
+            contour=index,
+        )
+    return [*(cut(contour, u) for contour in parts), cut(other.contour, v)]
+
+
+def _together(parts: Sequence[Contour]) -> MasterContour:
+    """One contour in all masters, of which the same segments are lines."""
+    lines = np.all([contour.degrees == 1 for contour in parts], axis=0)
+    kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
+    return MasterContour(np.stack([contour.cubics()[kept] for contour in parts]), np.where(lines, 1, 3))
+
+
+def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]) -> tuple[FloatArray, list[int]]:
+    """(K - 1, A, 3) regions of the masters but the default, and the order of all: the default first."""
+    tags = [axis.tag for axis in axes]
+    if len(locations) < 2:
+        raise OptionError("a design space has two masters or more")
+    for location in locations:
+        for tag in location:
+            if tag not in tags:
+                raise OptionError(f"no axis {tag!r}: there are {', '.join(tags)}")
+    peaks = np.array(
+        [[axis.normalised(location.get(axis.tag, axis.default)) for axis in axes] for location in locations]
+    )
+    at_default = np.flatnonzero(~peaks.any(axis=1))
+    if len(at_default) != 1:
+        raise OptionError(f"one master is at the default of all axes, not {len(at_default)}")
+    others = [k for k in range(len(locations)) if k != at_default[0]]
+    regions = np.zeros((len(others), len(axes), 3))
+    for row, k in enumerate(others):
+        along = np.flatnonzero(peaks[k])
+        if len(along) > 1:
+            raise OptionError(f"a master leaves the default along one axis, not {len(along)}: {dict(locations[k])}")
+        a = int(along[0])
+        side = np.sign(peaks[k, a])
+        own = np.sort(np.abs(peaks[others, a][peaks[others, a] * side > 0]))
+        at = abs(float(peaks[k, a]))
+        if own[-1] != 1 or (len(axes) > 1 and len(own) > 1) or (own == at).sum() > 1:
+            raise OptionError(
+                f"axis {tags[a]} has one master at each end but its default, and others only if there is no other axis"
+            )
+        low, high = own[own < at], own[own > at]
+        region = [low[-1] if len(low) else 0.0, at, high[0] if len(high) else 1.0]
+        regions[row, a] = region if side > 0 else [-x for x in region[::-1]]
+    return regions, [int(at_default[0]), *others]

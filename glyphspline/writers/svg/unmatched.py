@@ -1,0 +1,102 @@
+"""Outlines of one glyph that cannot be matched, side by side, with their contours and corners numbered."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...outlines.joins import joins
+from ...outlines.outline import Contour, Outline
+from ...types import FloatArray
+from .document import title
+from .markup import document, id_prefix, number, text, view_box_value
+from .path_data import path_data
+
+CONTOURS = ("#d33", "#06c", "#082", "#a0a", "#b60", "#077")
+"""Colours of contours and of their numbers, again from the first one after the last."""
+
+SIZE = 0.028
+"""Of the em: the height of numbers."""
+
+GAP = 0.15
+"""Of the em: space between two outlines."""
+
+
+def to_unmatched_svg(outlines: Sequence[Outline], reason: str = "") -> str:
+    """Two outlines or more as an SVG document: contours in colours, "2:7" at corner 7 of contour 2.
+
+    Numbers count from 0: contours in the outline's order, and corners along each contour from its start, which has a
+    circle, and a stroke in the direction in which the contour runs. All outlines have the em of the first.
+
+    Args:
+        outlines: at least one.
+        reason: a sentence below them, such as the message of the error that was raised.
+
+    Example:
+        >>> from glyphspline import open_font
+        >>> from glyphspline.writers.svg.unmatched import to_unmatched_svg
+        >>> outlines = [open_font(f"fonts_test/kouzan-{style}.ttf").outline("B") for style in ("gyosho", "kaisho")]
+        >>> "0:3" in to_unmatched_svg(outlines, "as an example")
+        True
+    """
+    first = outlines[0]
+    em = first.metrics.units_per_em
+    low, high = first.metrics.descender, first.metrics.ascender
+    parts, x = [], 0.0
+    for outline in outlines:
+        scale = em / outline.metrics.units_per_em
+        every = [contour.points * scale for contour in outline.contours] or [np.zeros((1, 2))]
+        points = np.concatenate(every)
+        left, right = float(points[:, 0].min()), float(points[:, 0].max())
+        low, high = min(low, float(points[:, 1].min())), max(high, float(points[:, 1].max()))
+        for index, contour in enumerate(outline.contours):
+            moved = Contour(contour.points * scale + (x - left, 0.0), contour.degrees)
+            parts += _contour(moved, index, em)
+        x += right - left + GAP * em
+    below = low - 2 * SIZE * em
+    words = f'<text x="0" y="{number(-below, 2)}" fill="currentColor">{text(reason)}</text>\n' if reason else ""
+    edge = 2 * SIZE * em
+    box = view_box_value((-edge, below - edge, x - GAP * em + edge, high + edge), 2)
+    prefix = id_prefix(first.name, first.gid)
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" role="img" aria-labelledby="{prefix}-title">\n'
+        f'<title id="{prefix}-title">{counted_title(outlines)}</title>\n'
+        f'<g font-family="sans-serif" font-size="{number(SIZE * em, 2)}" stroke-width="{number(em / 400, 3)}">\n'
+    )
+    return document([head, *parts, words, "</g>\n</svg>\n"]).decode()
+
+
+def counted_title(outlines: Sequence[Outline]) -> str:
+    """The title of the drawing, escaped."""
+    return f"{len(outlines)} outlines of {title(outlines[0])}"
+
+
+def _contour(contour: Contour, index: int, em: float) -> list[str]:
+    """The drawing of one contour with its corners."""
+    if not len(contour):
+        return []
+    colour = CONTOURS[index % len(CONTOURS)]
+    found = joins(contour)
+    start = found.points[0]
+    tip = start + _direction(contour) * 2 * SIZE * em
+    radius = number(em / 150, 3)
+    lines = [
+        f'<path fill="none" stroke="{colour}" d="{path_data([contour], 2)}"/>\n',
+        f'<circle cx="{number(start[0], 2)}" cy="{number(-start[1], 2)}" r="{radius}" fill="none" stroke="{colour}"/>',
+        f'<path stroke="{colour}" d="M{number(start[0], 2)} {number(-start[1], 2)}'
+        f'L{number(tip[0], 2)} {number(-tip[1], 2)}"/>\n',
+    ]
+    for k, point in enumerate(found.points[found.of("corner", 0.0)]):
+        lines.append(f'<text x="{number(point[0], 2)}" y="{number(-point[1], 2)}" fill="{colour}">{index}:{k}</text>\n')
+    return lines
+
+
+def _direction(contour: Contour) -> FloatArray:
+    """The unit tangent where a contour starts; 0 if all of it is one point."""
+    steps = contour.points - contour.points[0]
+    away = np.flatnonzero(steps.any(axis=1))
+    if not len(away):
+        return np.zeros(2)
+    step = steps[away[0]]
+    return step / np.hypot(*step)
