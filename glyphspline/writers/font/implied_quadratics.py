@@ -1,0 +1,360 @@
+"""Arcs as quadratics that meet midway between their control points, fitted to cubics in all masters at once.
+
+A TrueType contour leaves out a point on the curve that lies midway between two control points. Where only such points
+are inside an arc, the arc is a quadratic B-spline of uniform knots: it has no kink there in any master, nor in any
+instance, wherever its control points are rounded to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...curves.bezier import evaluate
+from ...types import BoolArray, FloatArray, IntArray
+
+SAMPLES = 16
+"""Samples of each cubic while its arc is fitted."""
+
+FEWEST = 48
+"""Samples of an arc, at least."""
+
+TANGENT = 0.1
+"""Weight of residuals along the curve once every master may slip, against those across it."""
+
+STEEPEST = 0.7
+"""Most by which the length of a span changes per unit of length: neighbours are of like size, as they meet midway."""
+
+SLACK = 0.35
+"""Share of the tolerance under which the error before rounding is not what keeps an arc from its tolerance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """What is fitted.
+
+    Attributes:
+        cubics: (K, m, 4, 2) in the masters. closed: whether the arc is a whole contour without ends.
+        ends: (K, 2, 2) where it begins and ends, already rounded; not read if closed.
+        straight: whether it is a line, of which there is nothing to fit.
+        leaving, arriving: (K, 2) the lines before and after it, pointing into the arc, where it is to begin and end
+            along them; else None.
+    """
+
+    cubics: FloatArray
+    closed: bool
+    ends: FloatArray
+    straight: bool = False
+    leaving: FloatArray | None = None
+    arriving: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """The control points of an arc: (K, n, 2) rounded, without its ends, and their largest distance from the cubics."""
+
+    controls: FloatArray
+    distance: float
+
+
+def fit(arc: Arc, weights: FloatArray, tolerance: float, rounded: Callable[[FloatArray], FloatArray]) -> Fitted:
+    """The fewest control points found that are within ``tolerance`` of the arc, or else the nearest found.
+
+    Args:
+        weights: (V, K) of the masters at the locations where the distance is measured.
+        tolerance: in font units. rounded: control points (K, n, 2) as they are stored.
+    """
+    fitting = _Fitting(arc, weights)
+    count = fitting.least
+    best: Fitted | None = None
+    futile = 0
+    while True:
+        smooth, error, per_span = fitting.solve(count)
+        controls = rounded(smooth)
+        distance, _ = fitting.distance(controls)
+        if best is None or distance < best.distance:
+            best = Fitted(controls, distance)
+        if distance <= tolerance or count >= fitting.most:
+            break
+        futile += error < SLACK * tolerance
+        if futile == 4:
+            break
+        fitting.refine(per_span)
+        count += max(1, min(count, int(count * ((error / tolerance) ** (1 / 3) - 1))))
+    while best.distance <= tolerance and count > fitting.least:  # what a bold step has left over
+        count -= 1
+        smooth, _, per_span = fitting.solve(count)
+        controls = rounded(smooth)
+        distance, _ = fitting.distance(controls)
+        if distance > tolerance:
+            break
+        best = Fitted(controls, distance)
+    return Fitted(best.controls, fitting.fine_distance(best.controls))
+
+
+class _Fitting:
+    """The samples of an arc, and how dense spans are to be along it."""
+
+    def __init__(self, arc: Arc, weights: FloatArray) -> None:
+        self.arc, self.weights = arc, weights
+        masters, count = arc.cubics.shape[:2]
+        self.per = max(SAMPLES, -(-FEWEST // count))
+        self.points, self.tangents = sampled(arc.cubics, self.per, arc.closed)
+        self.targets = np.einsum("vk,knc->vnc", weights, self.points)
+        steps = np.diff(
+            np.concatenate([self.points, self.points[:, :1]], axis=1) if arc.closed else self.points, axis=1
+        )
+        self.lengths = np.sqrt((steps**2).sum(axis=2).mean(axis=0)) + 1e-9  # RMS over the masters
+        ahead = np.roll(self.tangents, -1, axis=1) if arc.closed else self.tangents[:, 1:]
+        here = self.tangents if arc.closed else self.tangents[:, :-1]
+        cross = here[..., 0] * ahead[..., 1] - here[..., 1] * ahead[..., 0]
+        turns = np.abs(np.arctan2(cross, (here * ahead).sum(axis=2)))
+        self.turn = float(turns.sum(axis=1).max())
+        turn = np.sqrt((turns**2).mean(axis=0))
+        share = self.lengths / self.lengths.sum()
+        self.density = (turn / max(turn.sum(), 1e-9)) ** 0.7 * share**0.3 + 0.3 * share
+        bound = 4 if arc.closed else 1 + (arc.leaving is not None and arc.arriving is not None)
+        self.least = max(bound, int(np.ceil(self.turn / np.radians(60))))
+        self.most = self.least + 6 * count + 8
+        mass = (
+            self.lengths
+            if arc.closed
+            else np.r_[self.lengths[0], self.lengths[1:] + self.lengths[:-1], self.lengths[-1]]
+        )
+        self.mass = mass / mass.sum()
+        self.started = np.zeros(1)
+
+    def refine(self, per_span: FloatArray) -> None:
+        """Make spans shorter where the error (n,) of the last fit is large."""
+        factor = np.clip((per_span / max(per_span.mean(), 1e-12)) ** (1 / 3), 0.6, 1.7)
+        span = np.minimum(np.floor(self.started).astype(int) % len(factor), len(factor) - 1)
+        self.density = self.density * factor[span[: len(self.density)]]
+
+    def _start(self, count: int) -> FloatArray:
+        """(N,) parameters 0 … n of the samples: spans of the density, graded."""
+        density = self.density / self.density.sum()
+        at = np.cumsum(self.lengths) - self.lengths / 2
+        size = self.lengths / (count * density)  # of a span there
+        gap = np.abs(at[:, None] - at)
+        if self.arc.closed:
+            gap = np.minimum(gap, self.lengths.sum() - gap)
+        graded = self.lengths / (size + STEEPEST * gap).min(axis=1)
+        along = np.cumsum(graded) * (count / graded.sum())
+        return along - along[0] if self.arc.closed else np.r_[0.0, along]
+
+    def solve(self, count: int) -> tuple[FloatArray, float, FloatArray]:
+        """(K, n, 2) the control points of a fit, its largest error, and its largest error in each span (n,)."""
+        arc = self.arc
+        t = self.started = self._start(count)
+        controls = np.zeros((len(self.points), count, 2))
+        for attempt in range(9):
+            controls = self._least_squares(t, count, 1.0 if attempt < 4 else TANGENT)
+            t = self._project(t, controls)
+        self.t = t
+        distance, each = self.distance(controls)
+        span = np.floor(t).astype(int) % count if arc.closed else np.minimum(np.floor(t).astype(int), count - 1)
+        per_span = np.zeros(count)
+        np.maximum.at(per_span, span, each)
+        return controls, distance, per_span
+
+    def _whole(self, controls: FloatArray) -> FloatArray:
+        """The control points with the ends."""
+        if self.arc.closed:
+            return controls
+        return np.concatenate([self.arc.ends[:, :1], controls, self.arc.ends[:, 1:]], axis=1)
+
+    def _project(self, t: FloatArray, controls: FloatArray) -> FloatArray:
+        """One step of common parameters towards the footpoints of the stacked samples."""
+        whole = self._whole(controls)
+        at, slope, _ = spline(whole[:, None], t[None, :], controls.shape[1], self.arc.closed)
+        move = ((self.points - at) * slope).sum(axis=(0, 2)) / np.maximum((slope**2).sum(axis=(0, 2)), 1e-12)
+        t = t + np.clip(move, -0.3, 0.3)
+        if not self.arc.closed:
+            t = np.clip(t, 0, controls.shape[1])
+            t[0], t[-1] = 0, controls.shape[1]
+        return np.asarray(np.maximum.accumulate(t))
+
+    def _least_squares(self, t: FloatArray, count: int, along: float) -> FloatArray:
+        """(K, n, 2) control points nearest the samples at common parameters (N,)."""
+        arc, masters = self.arc, len(self.points)
+        index, weight, _, _ = basis(t, count, arc.closed)
+        matrix = np.zeros((len(t), count + (0 if arc.closed else 2)))
+        np.add.at(matrix, (np.arange(len(t))[:, None], index), weight)
+        known = np.zeros_like(self.points)
+        if not arc.closed:
+            known = np.einsum("n,kc->knc", matrix[:, 0], arc.ends[:, 0]) + np.einsum(
+                "n,kc->knc", matrix[:, -1], arc.ends[:, 1]
+            )
+            matrix = matrix[:, 1:-1]
+        metric = along**2 * np.eye(2) + (1 - along**2) * self._across
+        metric = metric * self.mass[:, None, None]
+        pairs = (matrix[:, :, None] * matrix[:, None, :]).reshape(len(t), -1)
+        normal = np.einsum("np,knq->kpq", pairs, metric.reshape(masters, len(t), 4), optimize=True)
+        normal = normal.reshape(masters, count, count, 2, 2).transpose(0, 1, 3, 2, 4).reshape(masters, 2 * count, -1)
+        right = np.einsum("na,kncd,knd->kac", matrix, metric, self.points - known, optimize=True)
+        right = right.reshape(masters, 2 * count)
+        normal = normal + 1e-7 * self._stiffness(count, normal)
+        return self._solved(normal, right, count)
+
+    @property
+    def _across(self) -> FloatArray:
+        """(K, N, 2, 2) projection to the normal of the cubics at each sample."""
+        x, y = self.tangents[..., 0], self.tangents[..., 1]
+        rows: FloatArray = np.stack([np.stack([y * y, -x * y], -1), np.stack([-x * y, x * x], -1)], -2)
+        return rows
+
+    def _stiffness(self, count: int, normal: FloatArray) -> FloatArray:
+        """A small penalty on first differences, which keeps what no sample sees in place."""
+        difference = np.eye(count) - np.eye(count, k=1)
+        if not self.arc.closed:
+            difference[-1] = 0
+        penalty = np.kron(difference.T @ difference + 1e-3 * np.eye(count), np.eye(2))
+        return np.asarray(penalty * np.trace(normal, axis1=1, axis2=2)[:, None, None] / (2 * count))
+
+    def _solved(self, normal: FloatArray, right: FloatArray, count: int) -> FloatArray:
+        """The solution, its first and last control point on the lines before and after the arc."""
+        arc, masters = self.arc, len(self.points)
+        held = [
+            (j, line, arc.ends[:, side])
+            for j, line, side in ((0, arc.leaving, 0), (count - 1, arc.arriving, 1))
+            if line is not None
+        ]
+        if arc.closed or not held:
+            return np.linalg.solve(normal, right[..., None])[..., 0].reshape(masters, count, 2)
+        fixed = np.zeros((masters, count, 2))
+        keep = [np.eye(2 * count)[:, c] for c in range(2 * count) if not any(c // 2 == j for j, _, _ in held)]
+        free = np.broadcast_to(np.array(keep).T.reshape(2 * count, -1), (masters, 2 * count, len(keep)))
+        columns = []
+        for j, line, end in held:
+            fixed[:, j] = end
+            column = np.zeros((masters, count, 2))
+            column[:, j] = line
+            columns.append(column.reshape(masters, -1, 1))
+        found = _constrained(normal, right, fixed, np.concatenate([free, *columns], axis=2))
+        stay = []
+        for number, (j, line, end) in enumerate(held):
+            if parallel(line):
+                stay.append(columns[number])
+                continue
+            # One length for all masters: only so the joint has no turn between them either.
+            along = ((found[:, j] - end) * line).sum() / max(float((line**2).sum()), 1e-12)
+            fixed[:, j] = end + max(along, 0.0) * line
+        return _constrained(normal, right, fixed, np.concatenate([free, *stay], axis=2))
+
+    def distance(self, controls: FloatArray) -> tuple[float, FloatArray]:
+        """The largest distance from the cubics at all locations, and that of each sample (N,).
+
+        Each location has its own footpoints; they run forward along the arc, so that the distance is one in both
+        directions, up to what lies between two samples.
+        """
+        whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
+        each = np.hypot(*np.moveaxis(offsets(self.targets, whole, self.t, controls.shape[1], self.arc.closed), -1, 0))
+        per_sample: FloatArray = each.max(axis=0)
+        return float(per_sample.max()), per_sample
+
+    def fine_distance(self, controls: FloatArray) -> float:
+        """The largest distance, from four times as many samples."""
+        arc, count = self.arc, controls.shape[1]
+        points = sampled(arc.cubics, 4 * self.per, arc.closed)[0]
+        known = np.r_[self.t, self.t[0] + count] if arc.closed else self.t
+        t = np.interp(np.arange(points.shape[1]) / 4, np.arange(len(known)), known)
+        targets = np.einsum("vk,knc->vnc", self.weights, points)
+        whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
+        return float(np.hypot(*np.moveaxis(offsets(targets, whole, t, count, arc.closed), -1, 0)).max())
+
+
+def _constrained(normal: FloatArray, right: FloatArray, fixed: FloatArray, free: FloatArray) -> FloatArray:
+    """The solution (K, n, 2) of the form ``fixed + free @ y``."""
+    base = fixed.reshape(len(fixed), -1, 1)
+    if not free.shape[2]:
+        return fixed
+    left = np.swapaxes(free, 1, 2)
+    y = np.linalg.solve(left @ normal @ free, left @ (right[..., None] - normal @ base))
+    return (base + free @ y).reshape(fixed.shape)
+
+
+def parallel(directions: FloatArray) -> bool:
+    """Whether (K, 2) directions are one, within 0.05 degrees."""
+    unit = directions / np.maximum(np.hypot(*directions.T), 1e-12)[:, None]
+    mean = unit.sum(axis=0)
+    mean = mean / max(float(np.hypot(*mean)), 1e-12)
+    return bool(((unit @ mean) > np.cos(np.radians(0.05))).all())
+
+
+def sampled(cubics: FloatArray, per: int, closed: bool) -> tuple[FloatArray, FloatArray]:
+    """(K, N, 2) points and unit tangents at ``per`` places of each cubic; also at the end unless closed."""
+    masters, count = cubics.shape[:2]
+    x = np.arange(per) / per
+    places = np.tile(x, count)
+    pieces = np.repeat(np.arange(count), per)
+    if not closed:
+        places, pieces = np.r_[places, 1.0], np.r_[pieces, count - 1]
+    chosen = cubics[:, pieces].reshape(-1, 4, 2)
+    points = evaluate(chosen, np.tile(places, masters)).reshape(masters, -1, 2)
+    # A chord through the neighbourhood is a direction also where a handle has no length.
+    near = np.clip(places[:, None] + [-1e-3, 1e-3], 0, 1)
+    ends = [evaluate(chosen, np.tile(near[:, k], masters)).reshape(masters, -1, 2) for k in (0, 1)]
+    chords = ends[1] - ends[0]
+    sizes = np.hypot(chords[..., 0], chords[..., 1])[..., None]
+    return points, np.where(sizes > 0, chords / np.maximum(sizes, 1e-300), [1.0, 0.0])
+
+
+def basis(t: FloatArray, count: int, closed: bool) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """(…, 3) indices of the control points at parameters t, their weights, and first and second derivatives."""
+    span = np.floor(t).astype(np.int64)
+    if not closed:
+        span = np.clip(span, 0, count - 1)
+    x = t - span
+    first = np.where((span == 0) & (not closed), 1.0, 0.5)
+    last = np.where((span == count - 1) & (not closed), 1.0, 0.5)
+    y = 1 - x
+    weight = np.stack([first * y * y, 2 * x * y + (1 - first) * y * y + (1 - last) * x * x, last * x * x], axis=-1)
+    slope = np.stack([-2 * first * y, 2 - 4 * x - 2 * (1 - first) * y + 2 * (1 - last) * x, 2 * last * x], axis=-1)
+    bend = np.stack([2 * first, -4 + 2 * (1 - first) + 2 * (1 - last), 2 * last], axis=-1) + 0 * weight
+    index = span[..., None] + np.arange(3)
+    return (index - 1) % count if closed else index, weight, slope, bend
+
+
+def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(L, N, 2) points, first and second derivatives of L splines of (L, 1, n, 2) controls at parameters (L or 1, N)."""
+    index, weight, slope, bend = basis(t, count, closed)
+    rows = np.arange(len(controls))[:, None, None]
+    chosen = controls[:, 0][rows, np.broadcast_to(index, (len(controls), *index.shape[1:]))]
+    at, first, second = [(each[..., None] * chosen).sum(axis=2) for each in (weight, slope, bend)]
+    return at, first, second
+
+
+def offsets(targets: FloatArray, controls: FloatArray, t: FloatArray, count: int, closed: bool) -> FloatArray:
+    """(V, N, 2) from targets to the splines of (V, n, 2) controls, at footpoints near (N,) parameters, in their order."""
+    t = np.broadcast_to(t, targets.shape[:2])
+    for _ in range(4):
+        at, first, second = spline(controls[:, None], t, count, closed)
+        off = at - targets
+        size = (first**2).sum(axis=2)
+        full = size + (off * second).sum(axis=2)
+        move = (off * first).sum(axis=2) / np.where(full > 0.3 * size, full, np.maximum(size, 1e-12))
+        t = t - np.clip(move, -0.4, 0.4)
+        if not closed:
+            t = np.clip(t, 0, count)
+    if not closed:
+        t = np.concatenate([np.zeros((len(t), 1)), t[:, 1:-1], np.full((len(t), 1), float(count))], axis=1)
+    return np.asarray(spline(controls[:, None], np.maximum.accumulate(t, axis=1), count, closed)[0] - targets)
+
+
+def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray]:
+    """A TrueType contour (K, N, 2) with all points on the curve explicit, from the first of them, and its degrees."""
+    after, on_after = np.roll(points, -1, axis=1), np.roll(on, -1)
+    whole: list[FloatArray] = []
+    kinds: list[bool] = []
+    for j in range(len(on)):
+        whole.append(points[:, j])
+        kinds.append(bool(on[j]))
+        if not on[j] and not on_after[j]:
+            whole.append((points[:, j] + after[:, j]) / 2)
+            kinds.append(True)
+    first = kinds.index(True)
+    stacked = np.stack(whole[first:] + whole[:first], axis=1)
+    starts = np.flatnonzero(kinds[first:] + kinds[:first])
+    return stacked, np.diff([*starts, len(kinds)]).astype(np.int64)
