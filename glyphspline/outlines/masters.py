@@ -8,16 +8,20 @@ them, with weights that sum to 1. Locations here are *normalised*: 0 at an axis'
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
+from typing import TypeAlias
 
 import numpy as np
 
 from ..errors import GlyphsplineError
 from ..types import FloatArray, IntArray, counted
 from .outline import Contour, FontMetrics, Outline
+
+Region: TypeAlias = tuple[tuple[float, float, float], ...]
+"""Start, peak and end on each axis; zeros where the axis does not count."""
 
 MOST_CORNERS = 1024
 """Corners of the grid of a design space, beyond which :meth:`Masters.grid` gives up."""
@@ -140,13 +144,7 @@ class Masters:
 
     def scalars(self, at: FloatArray) -> FloatArray:
         """(…, K) the scalar of the default, which is 1, and of each region at normalised locations (…, A)."""
-        at = np.asarray(at, dtype=np.float64)[..., None, :]
-        low, peak, high = np.moveaxis(self.regions, 2, 0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            side = np.where(at < peak, (at - low) / (peak - low), (high - at) / (high - peak))
-        each = np.where((peak == 0) | (at == peak), 1.0, np.clip(side, 0.0, 1.0))
-        whole: FloatArray = each.prod(axis=-1)
-        return np.concatenate([np.ones((*whole.shape[:-1], 1)), whole], axis=-1)
+        return region_scalars(self.regions, at)
 
     @cached_property
     def _inverse(self) -> FloatArray:
@@ -201,3 +199,59 @@ class Masters:
                 f"its design space has {count} grid corners, more than {MOST_CORNERS}", glyph=self.name
             )
         return np.array(list(product(*ticks))).reshape(count, len(self.axes))
+
+
+def region_scalars(regions: FloatArray, at: FloatArray) -> FloatArray:
+    """(…, R + 1) the scalar of the default, which is 1, and of each region (R, A, 3) at locations (…, A)."""
+    at = np.asarray(at, dtype=np.float64)[..., None, :]
+    low, peak, high = np.moveaxis(regions, 2, 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        side = np.where(at < peak, (at - low) / (peak - low), (high - at) / (high - peak))
+    each = np.where((peak == 0) | (at == peak), 1.0, np.clip(side, 0.0, 1.0))
+    whole: FloatArray = each.prod(axis=-1)
+    return np.concatenate([np.ones((*whole.shape[:-1], 1)), whole], axis=-1)
+
+
+def told_apart(regions: Iterable[Region]) -> list[Region]:
+    """Regions with a peak of their own each, of which the scalars of the given ones are linear combinations.
+
+    Where components of a glyph have unlike intermediate masters, regions of one peak differ in their extents: from 0
+    to 1 peaking at 1, and from 0.6 to 1. Such are cut at the ticks of all regions on an axis: into one from 0 to 1
+    peaking at 0.6, and one from 0.6 to 1. A region of no peak, whose scalar is 1, is the default's and left out.
+    """
+    found = dict.fromkeys(region for region in regions if any(peak for _, peak, _ in region))
+    while True:
+        owners: dict[tuple[float, ...], list[Region]] = {}
+        for region in found:
+            owners.setdefault(tuple(peak for _, peak, _ in region), []).append(region)
+        shared = {region for group in owners.values() if len(group) > 1 for region in group}
+        if not shared:
+            return list(found)
+        ticks = [
+            sorted({0.0, *(value for region in found for value in region[a])}) for a in range(len(next(iter(found))))
+        ]
+        cut = [_cut(region, ticks) if region in shared else [region] for region in found]
+        found = dict.fromkeys(piece for pieces in cut for piece in pieces)
+
+
+def _cut(region: Region, ticks: Sequence[Sequence[float]]) -> list[Region]:
+    """The regions between neighbouring ticks inside a region."""
+    pieces = []
+    for (low, peak, high), values in zip(region, ticks, strict=True):
+        inside = [value for value in values if low <= value <= high]
+        middle = [value for value in inside if low < value < high or value == peak]
+        tents = [
+            (max([low, *(v for v in inside if v < at)]), at, min([v for v in inside if v > at] or [at]))
+            for at in middle
+        ]
+        pieces.append(tents if peak else [(0.0, 0.0, 0.0)])
+    return [tuple(piece) for piece in product(*pieces)]
+
+
+def alone(outline: Outline) -> Masters:
+    """A glyph of a font that is not variable: one master, no axes."""
+    contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
+    return Masters(
+        outline.name, outline.gid, outline.unicodes, contours=contours, advances=np.array([outline.advance]),
+        metrics=outline.metrics, notes=outline.notes,
+    )  # fmt: skip

@@ -9,14 +9,16 @@ from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, NamedTuple, TypeAlias, overload
+from typing import Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 from ..errors import FontError, GlyphsplineError
+from ..outlines.masters import Masters, alone
 from ..outlines.outline import FontMetrics, Outline
 from ..types import counted
 from .selection import Request, Selection, select
 
 OutlineOrError: TypeAlias = Outline | GlyphsplineError
+Read = TypeVar("Read")
 
 
 class Head(NamedTuple):
@@ -107,6 +109,27 @@ class Source(ABC):
             outlines.append(outline)
         return outlines
 
+    def masters(self, name: str) -> Masters:
+        """Read a glyph in all masters of a variable font, components decomposed; ``location`` does not matter.
+
+        All masters have the same segments: only those that have no length in all of them are dropped. Without axes
+        there is one master.
+
+        Raises:
+            FontError: the source has no glyph of that name.
+            GlyphsplineError: the glyph is broken, or its masters are unlike; the error names file and glyph.
+        """
+        head = self._head(name)
+        if not isinstance(head, Head):
+            raise head
+        found = attempt(self.path, head.name, lambda: self._masters(head))
+        if isinstance(found, GlyphsplineError):
+            raise found
+        return found
+
+    def _masters(self, head: Head) -> Masters:
+        return alone(self.outline(head.name))
+
     def _head(self, glyph: str | int) -> Head | FontError:
         if isinstance(glyph, str):
             gid = self._gids.get(glyph, -1)
@@ -169,8 +192,8 @@ def opening(path: Path, kind: str = "font") -> Iterator[None]:
         raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
 
 
-def attempt(path: Path, name: str, read: Callable[[], Outline]) -> OutlineOrError:
-    """The outline that ``read`` returns; if it raises, an error that names file and glyph."""
+def attempt(path: Path, name: str, read: Callable[[], Read]) -> Read | GlyphsplineError:
+    """What ``read`` returns of a glyph; if it raises, an error that names file and glyph."""
     try:
         return read()
     except GlyphsplineError as error:

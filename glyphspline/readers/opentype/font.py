@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 from fontTools.ttLib import TTFont
 
+from ...outlines.masters import Masters
 from ..source import Head, OutlineOrError, Source, opening
 from .careful import CarefulReader
 from .containers import FORMATS, unpacked
 from .face import Face, read_file
-from .tables import Location
+from .tables import Location, metrics_of
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
+    from .variations import Variations
 
 
 class Font(Face, Source):
@@ -55,6 +57,15 @@ class Font(Face, Source):
 
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
         return self._bulk.outlines(heads, self.metrics)
+
+    def _masters(self, head: Head) -> Masters:
+        return self._variations.masters(head) if self.axes else super()._masters(head)
+
+    @cached_property
+    def _variations(self) -> Variations:
+        from .variations import Variations
+
+        return Variations(self.tables(), metrics_of(self._tables))
 
     @cached_property
     def _bulk(self) -> BulkReader:

@@ -1,0 +1,281 @@
+"""The masters of a variable font's glyphs: from ``gvar``, or from the blends of ``CFF2``.
+
+Outlines are linear in the deltas, so nothing is drawn once a location: a TrueType glyph is its default points and one
+array of deltas for each region, through components too; the numbers of a CFF2 char string are arrays over its masters.
+HarfBuzz would drop and close segments that have no length at one location, and so give masters of unlike structure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables._g_l_y_f import SCALED_COMPONENT_OFFSET, USE_MY_METRICS, flagCubic, flagOnCurve
+from fontTools.varLib.iup import iup_delta
+from fontTools.varLib.varStore import VarStoreInstancer
+
+from ...errors import GlyphsplineError
+from ...outlines.masters import DesignAxis, Masters, Region, region_scalars, told_apart
+from ...outlines.outline import FontMetrics
+from ...types import BoolArray, FloatArray
+from ..pens import MAX_COMPONENTS, MAX_SEGMENTS
+from ..source import Head
+from ..stacks import StackPen
+from .tables import axes_of
+
+MOST_MASTERS = 500
+"""Masters of a glyph beyond which it is refused: fonts of a dozen axes have some 80, and weights take a matrix of their
+square."""
+
+
+class Variations:
+    """The masters of all glyphs of a variable font.
+
+    Args:
+        tables: of the font; nothing else reads them.
+
+    Raises:
+        GlyphsplineError: the font's axes are mapped by an ``avar`` table of version 2.
+    """
+
+    def __init__(self, tables: TTFont, metrics: FontMetrics) -> None:
+        self._tables, self._metrics = tables, metrics
+        segments = {}
+        if "avar" in tables:
+            if tables["avar"].majorVersion != 1:
+                raise GlyphsplineError(
+                    "its axes depend on each other (avar version 2): locations cannot be told axis by axis"
+                )
+            segments = tables["avar"].segments
+        self.axes = tuple(
+            DesignAxis(
+                axis.tag, axis.name, axis.minimum, axis.default, axis.maximum,
+                tuple(sorted(segments.get(axis.tag, {}).items())),
+            )
+            for axis in axes_of(tables)
+        )  # fmt: skip
+        self._tags = [axis.tag for axis in self.axes]
+        self._parts: dict[str, _Parts] = {}
+        self._composed = set(tables["VARC"].table.Coverage.glyphs) if "VARC" in tables else set()
+
+    def masters(self, head: Head) -> Masters:
+        """A glyph in its masters.
+
+        Raises:
+            GlyphsplineError: the glyph is made of variable components (``VARC``), its components are in a loop, or it
+                has too many parts or masters.
+            Exception: the glyph is broken; fontTools' exceptions pass through.
+        """
+        if head.name in self._composed:
+            raise GlyphsplineError("made of variable components (VARC), which have no masters of one structure")
+        return self._from_cff2(head) if "CFF2" in self._tables else self._from_glyf(head)
+
+    def _empty(self, head: Head, stored: Sequence[Region]) -> tuple[Masters, FloatArray]:
+        """Masters without contours; also (K, S + 1) the scalars of the default and of the S stored regions in each."""
+        regions = told_apart(stored)
+        if len(regions) >= MOST_MASTERS:
+            raise GlyphsplineError(f"{len(regions) + 1} masters, more than {MOST_MASTERS}")
+        masters = Masters(*head, self.axes, self._stacked(regions), metrics=self._metrics)
+        return masters, region_scalars(self._stacked(stored), masters.peaks)
+
+    def _stacked(self, regions: Sequence[Region]) -> FloatArray:
+        return np.array(regions, dtype=np.float64).reshape(len(regions), len(self.axes), 3)
+
+    def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
+        """A region of tuples by tag; on axes where the format says that it counts nothing, zeros."""
+        region = []
+        for tag in self._tags:
+            low, peak, high = support.get(tag, (0.0, 0.0, 0.0))
+            counts = peak != 0 and low <= peak <= high and not low < 0 < high
+            region.append((float(low), float(peak), float(high)) if counts else (0.0, 0.0, 0.0))
+        return tuple(region)
+
+    def _from_glyf(self, head: Head) -> Masters:
+        parts = self._parts_of(head.name, ())
+        masters, scalars = self._empty(head, list(parts.deltas))
+        stacks: FloatArray = np.tensordot(scalars, np.array([parts.points, *parts.deltas.values()]), axes=1)
+        left, right = stacks[:, -2, 0], stacks[:, -1, 0]
+        stacks[:, :, 0] -= left[:, None]  # where rasterisers draw it: with the left side bearing as the font has it
+        pen, first = StackPen(len(masters)), 0
+        for end in parts.ends:
+            _draw_quadratics(pen, stacks[:, first:end], parts.on[first:end])
+            first = end
+        return replace(masters, contours=tuple(pen.contours), advances=right - left, notes=tuple(pen.notes))
+
+    def _parts_of(self, name: str, above: tuple[str, ...]) -> _Parts:
+        """The points and deltas of a glyph of ``glyf``, components decomposed."""
+        if name in above:
+            raise GlyphsplineError("components in a loop: " + " > ".join([*above[above.index(name) :], name]))
+        if name in self._parts:
+            return self._parts[name]
+        parts = self._read_parts(name, (*above, name))
+        if above:  # components are asked for again
+            self._parts[name] = parts
+        return parts
+
+    def _read_parts(self, name: str, nesting: tuple[str, ...]) -> _Parts:
+        glyf, (advance, bearing) = self._tables["glyf"], self._tables["hmtx"].metrics[name]
+        glyph = glyf[name]
+        components = glyph.components if glyph.isComposite() else []
+        ends: list[int] = []
+        on: BoolArray = np.zeros(0, dtype=bool)
+        if components:
+            points = np.array([(getattr(part, "x", 0), getattr(part, "y", 0)) for part in components], dtype=np.float64)
+        else:
+            coordinates, last, flags = glyph.getCoordinates(glyf)
+            points = np.array(coordinates, dtype=np.float64).reshape(-1, 2)
+            ends = [end + 1 for end in last]
+            on = np.array([bool(flag & flagOnCurve) for flag in flags], dtype=bool)
+            if any(flag & flagCubic for flag in flags):
+                raise GlyphsplineError("cubic curves in a glyf table, which are not supported")
+        left = getattr(glyph, "xMin", 0) - bearing
+        own = np.vstack([points, [(left, 0), (left + advance, 0)]])
+        deltas: dict[Region, FloatArray] = {}
+        contours = list(range(len(components))) if components else [end - 1 for end in ends]
+        for variation in self._gvar.get(name, ()):
+            given = variation.coordinates
+            if None in given:
+                phantoms = [(left, 0), (left + advance, 0), (0, 0), (0, 0)]
+                given = iup_delta(given, [*map(tuple, points.tolist()), *phantoms], contours)
+            delta = np.array(given, dtype=np.float64)[: len(own)]
+            region = self._region(variation.axes)
+            deltas[region] = deltas[region] + delta if region in deltas else delta
+        parts = _Parts(own, deltas, on, tuple(ends))
+        return self._composite(parts, components, nesting) if components else parts
+
+    @cached_property
+    def _gvar(self) -> Any:
+        return self._tables["gvar"].variations if "gvar" in self._tables else {}
+
+    def _composite(self, own: _Parts, components: Sequence[Any], nesting: tuple[str, ...]) -> _Parts:
+        """The components of a glyph in place; the points of ``own`` are their offsets, and the glyph's metrics."""
+        children = [self._parts_of(component.glyphName, nesting) for component in components]
+        count = len(components) + sum(child.components for child in children)
+        if count > MAX_COMPONENTS:
+            raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
+        if sum(len(child.on) for child in children) > MAX_SEGMENTS:
+            raise GlyphsplineError(f"more than {MAX_SEGMENTS} points")
+        keys = dict.fromkeys(region for part in (own, *children) for region in part.deltas)
+        layers: list[FloatArray] = []
+        for region in (None, *keys):
+            offsets, placed = own.layer(region), np.zeros((0, 2))
+            metrics = offsets[-2:]
+            for k, (component, child) in enumerate(zip(components, children, strict=True)):
+                points, offset = child.layer(region), offsets[k]
+                if component.flags & USE_MY_METRICS:
+                    metrics = points[-2:]
+                matrix = np.array(getattr(component, "transform", [[1, 0], [0, 1]]), dtype=np.float64)
+                points = points[:-2] @ matrix
+                if hasattr(component, "firstPt"):
+                    offset = placed[component.firstPt] - points[component.secondPt]
+                elif component.flags & SCALED_COMPONENT_OFFSET:
+                    offset = offset @ matrix
+                placed = np.vstack([placed, points + offset])
+            layers.append(np.vstack([placed, metrics]))
+        starts = np.cumsum([0, *(len(child.on) for child in children)])
+        ends = [int(start) + end for start, child in zip(starts, children, strict=False) for end in child.ends]
+        on = np.concatenate([child.on for child in children])
+        return _Parts(layers[0], dict(zip(keys, layers[1:], strict=True)), on, tuple(ends), count)
+
+    def _from_cff2(self, head: Head) -> Masters:
+        top = self._tables["CFF2"].cff.topDictIndex[0]
+        string = top.CharStrings[head.name]
+        string.decompile()
+        store = getattr(top.CharStrings, "varStore", None)
+        used = _Used()
+        string.draw(StackPen(1), used)  # which of the store's lists of regions the char string blends
+        stored = [] if store is None or used.index is None else self._regions_of(store.otVarStore, used.index)
+        masters, scalars = self._empty(head, self._regions_of_advance(head) if used.index is None else stored)
+        pen = StackPen(len(masters))
+        string.draw(pen, lambda _, deltas: scalars[:, 1:] @ np.array(deltas, dtype=np.float64))
+        pen.closePath()
+        advances = np.array([self._advance(head, peak) for peak in masters.peaks])
+        return replace(masters, contours=tuple(pen.contours), advances=advances, notes=tuple(pen.notes))
+
+    def _regions_of(self, store: Any, index: int) -> list[Region]:
+        """The regions of one of the lists of a store, in order, as often as they occur."""
+        fvar = self._tables["fvar"].axes
+        regions = store.VarRegionList.Region
+        return [self._region(regions[k].get_support(fvar)) for k in store.VarData[index].VarRegionIndex]
+
+    def _advance(self, head: Head, peak: FloatArray) -> float:
+        """The advance of a glyph at a normalised location, from ``HVAR``, whose regions may be others."""
+        advance = float(self._tables["hmtx"].metrics[head.name][0])
+        if "HVAR" not in self._tables:
+            return advance
+        table = self._tables["HVAR"].table
+        location = dict(zip(self._tags, peak.tolist(), strict=True))
+        if self._instancer is None or self._instancer.location != location:
+            self._instancer = VarStoreInstancer(table.VarStore, self._tables["fvar"].axes, location)
+        return advance + float(self._instancer[self._advance_index(head)])
+
+    _instancer: Any = None
+
+    def _advance_index(self, head: Head) -> int:
+        table = self._tables["HVAR"].table
+        return head.gid if table.AdvWidthMap is None else int(table.AdvWidthMap.mapping[head.name])
+
+    def _regions_of_advance(self, head: Head) -> list[Region]:
+        """The regions in which the advance of a glyph varies."""
+        if "HVAR" not in self._tables:
+            return []
+        store, index = self._tables["HVAR"].table.VarStore, self._advance_index(head)
+        outer, inner = index >> 16, index & 0xFFFF
+        if outer >= len(store.VarData) or inner >= len(store.VarData[outer].Item):
+            return []
+        regions = zip(self._regions_of(store, outer), store.VarData[outer].Item[inner], strict=False)
+        return [region for region, delta in regions if delta]
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """A glyph of ``glyf`` in design space.
+
+    Attributes:
+        points: (N + 2, 2) at the default, the ends of the advance after the N of the contours.
+        deltas: (N + 2, 2) by region.
+        on: (N,) which points are on the curve. ends: after the last point of each contour.
+        components: their number, through all levels.
+    """
+
+    points: FloatArray
+    deltas: dict[Region, FloatArray]
+    on: BoolArray
+    ends: tuple[int, ...]
+    components: int = 0
+
+    def layer(self, region: Region | None) -> FloatArray:
+        """The points, or the deltas of a region."""
+        return self.points if region is None else self.deltas.get(region, np.zeros_like(self.points))
+
+
+class _Used:
+    """A blender of char strings that keeps the index of the regions they ask for, and blends nothing."""
+
+    index: int | None = None
+
+    def __call__(self, index: int, deltas: Sequence[float]) -> float:
+        self.index = index
+        return 0.0
+
+
+def _draw_quadratics(pen: StackPen, points: FloatArray, on: BoolArray) -> None:
+    """Draw a TrueType contour of (K, n, 2) points; implied points, midway between two control points, made explicit.
+
+    As in rasterisers it begins at its first point; if this is a control point, at the last or midway to it.
+    """
+    if on[-1] and not on[0]:
+        points, on = np.roll(points, 1, axis=1), np.roll(on, 1)
+    before = np.roll(points, 1, axis=1)
+    implied = ~on & ~np.roll(on, 1)
+    places = np.arange(len(on)) + np.cumsum(implied)
+    whole = np.empty((len(points), len(on) + int(implied.sum()), 2))
+    whole[:, places] = points
+    whole[:, places[implied] - 1] = (points[:, implied] + before[:, implied]) / 2
+    is_on = np.ones(whole.shape[1], dtype=bool)
+    is_on[places] = on
+    pen.contour(whole, np.diff([*np.flatnonzero(is_on), len(is_on)]))
