@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 
 from ...curves.bezier import evaluate
 from ...types import BoolArray, FloatArray, IntArray
 
-SAMPLES = 16
+SAMPLES = 8
 """Samples of each cubic while its arc is fitted."""
 
 FEWEST = 48
@@ -23,6 +25,16 @@ FEWEST = 48
 
 TANGENT = 0.1
 """Weight of residuals along the curve once every master may slip, against those across it."""
+
+SLIPPING, OWN, ROUNDS = 2, 5, 9
+"""Rounds of least squares: from the first of these on points may slip, from the second on each master by itself."""
+
+SHORTEST = 1.5
+"""Leg of a quadratic in font units below which other numbers of points are tried: renderers place implied points in
+single precision, which turns a short leg."""
+
+LEVEL = 4.0
+"""Weight of what rounding moves off a line's direction, against what it moves off the curve."""
 
 STEEPEST = 0.7
 """Most by which the length of a span changes per unit of length: neighbours are of like size, as they meet midway."""
@@ -59,39 +71,50 @@ class Fitted:
     distance: float
 
 
-def fit(arc: Arc, weights: FloatArray, tolerance: float, rounded: Callable[[FloatArray], FloatArray]) -> Fitted:
-    """The fewest control points found that are within ``tolerance`` of the arc, or else the nearest found.
+def fit(
+    arc: Arc, weights: FloatArray, tolerance: float, rounded: Callable[[FloatArray, FloatArray], FloatArray]
+) -> Fitted:
+    """The fewest control points found within ``tolerance`` of the arc and not too close, or else the nearest found.
 
     Args:
         weights: (V, K) of the masters at the locations where the distance is measured.
-        tolerance: in font units. rounded: control points (K, n, 2) as they are stored.
+        tolerance: in font units.
+        rounded: control points (K, n, 2) as they are stored, from those wanted and a metric (K, 2n, 2n) of their error.
     """
     fitting = _Fitting(arc, weights)
-    count = fitting.least
-    best: Fitted | None = None
-    futile = 0
+    found: list[tuple[tuple[bool, bool, float], Fitted]] = []
+
+    def tried(count: int) -> tuple[bool, float]:
+        """Whether so many points are near enough, and their distance before rounding."""
+        smooth, error = fitting.solve(count)
+        controls = rounded(smooth, fitting.metric)
+        distance = fitting.distance(controls)
+        if distance <= tolerance:
+            distance = fitting.fine_distance(controls)
+        near = distance <= tolerance
+        rank = (not near, fitting.shortest(controls) < SHORTEST, count if near else distance)
+        found.append((rank, Fitted(controls, distance)))
+        return near, error
+
+    count, low, futile = fitting.least, fitting.least - 1, 0
     while True:
-        smooth, error, per_span = fitting.solve(count)
-        controls = rounded(smooth)
-        distance, _ = fitting.distance(controls)
-        if best is None or distance < best.distance:
-            best = Fitted(controls, distance)
-        if distance <= tolerance or count >= fitting.most:
-            break
+        near, error = tried(count)
         futile += error < SLACK * tolerance
-        if futile == 4:
+        if near or count >= fitting.most or futile == 4:
             break
-        fitting.refine(per_span)
-        count += max(1, min(count, int(count * ((error / tolerance) ** (1 / 3) - 1))))
-    while best.distance <= tolerance and count > fitting.least:  # what a bold step has left over
-        count -= 1
-        smooth, _, per_span = fitting.solve(count)
-        controls = rounded(smooth)
-        distance, _ = fitting.distance(controls)
-        if distance > tolerance:
-            break
-        best = Fitted(controls, distance)
-    return Fitted(best.controls, fitting.fine_distance(best.controls))
+        low = count
+        growth = (error / (SLACK * tolerance)) ** (1 / 3)
+        count = min(max(count + 1 + count // 8, int(count * min(growth, 2.0))), fitting.most)
+    while near and count - low > 1:  # between a count that failed and one that did not
+        middle = (low + count) // 2
+        if tried(middle)[0]:
+            count = middle
+        else:
+            low = middle
+    for more in (1, 2, 3):
+        if near and min(rank for rank, _ in found)[1]:
+            tried(count + more)
+    return min(found, key=itemgetter(0))[1]
 
 
 class _Fitting:
@@ -99,7 +122,7 @@ class _Fitting:
 
     def __init__(self, arc: Arc, weights: FloatArray) -> None:
         self.arc, self.weights = arc, weights
-        masters, count = arc.cubics.shape[:2]
+        count = arc.cubics.shape[1]
         self.per = max(SAMPLES, -(-FEWEST // count))
         self.points, self.tangents = sampled(arc.cubics, self.per, arc.closed)
         self.targets = np.einsum("vk,knc->vnc", weights, self.points)
@@ -124,13 +147,7 @@ class _Fitting:
             else np.r_[self.lengths[0], self.lengths[1:] + self.lengths[:-1], self.lengths[-1]]
         )
         self.mass = mass / mass.sum()
-        self.started = np.zeros(1)
-
-    def refine(self, per_span: FloatArray) -> None:
-        """Make spans shorter where the error (n,) of the last fit is large."""
-        factor = np.clip((per_span / max(per_span.mean(), 1e-12)) ** (1 / 3), 0.6, 1.7)
-        span = np.minimum(np.floor(self.started).astype(int) % len(factor), len(factor) - 1)
-        self.density = self.density * factor[span[: len(self.density)]]
+        self.t, self.metric = np.empty(0), np.empty((0, 0, 0))
 
     def _start(self, count: int) -> FloatArray:
         """(N,) parameters 0 … n of the samples: spans of the density, graded."""
@@ -144,20 +161,21 @@ class _Fitting:
         along = np.cumsum(graded) * (count / graded.sum())
         return along - along[0] if self.arc.closed else np.r_[0.0, along]
 
-    def solve(self, count: int) -> tuple[FloatArray, float, FloatArray]:
-        """(K, n, 2) the control points of a fit, its largest error, and its largest error in each span (n,)."""
-        arc = self.arc
-        t = self.started = self._start(count)
+    def solve(self, count: int) -> tuple[FloatArray, float]:
+        """(K, n, 2) the control points of a fit, and its largest error.
+
+        First all masters have one parameter a sample, then each its own footpoints, so that their points may slip
+        along the outline. ``metric`` (K, 2n, 2n) is then the quadratic form of the error.
+        """
+        t = self._start(count)[None, :]
         controls = np.zeros((len(self.points), count, 2))
-        for attempt in range(9):
-            controls = self._least_squares(t, count, 1.0 if attempt < 4 else TANGENT)
+        for stage in range(ROUNDS):
+            if stage == OWN:
+                t = np.repeat(t, len(self.points), axis=0)
+            controls = self._least_squares(t, count, 1.0 if stage < SLIPPING else TANGENT)
             t = self._project(t, controls)
-        self.t = t
-        distance, each = self.distance(controls)
-        span = np.floor(t).astype(int) % count if arc.closed else np.minimum(np.floor(t).astype(int), count - 1)
-        per_span = np.zeros(count)
-        np.maximum.at(per_span, span, each)
-        return controls, distance, per_span
+        self.t = t.mean(axis=0)
+        return controls, self.distance(controls)
 
     def _whole(self, controls: FloatArray) -> FloatArray:
         """The control points with the ends."""
@@ -166,39 +184,53 @@ class _Fitting:
         return np.concatenate([self.arc.ends[:, :1], controls, self.arc.ends[:, 1:]], axis=1)
 
     def _project(self, t: FloatArray, controls: FloatArray) -> FloatArray:
-        """One step of common parameters towards the footpoints of the stacked samples."""
-        whole = self._whole(controls)
-        at, slope, _ = spline(whole[:, None], t[None, :], controls.shape[1], self.arc.closed)
-        move = ((self.points - at) * slope).sum(axis=(0, 2)) / np.maximum((slope**2).sum(axis=(0, 2)), 1e-12)
-        t = t + np.clip(move, -0.3, 0.3)
+        """A step of parameters (1 or K, N), common or each master's own, towards the footpoints of the samples."""
+        count = controls.shape[1]
+        at, slope, _ = spline(self._whole(controls), t, count, self.arc.closed)
+        off, size = ((self.points - at) * slope).sum(axis=2), (slope**2).sum(axis=2)
+        if len(t) == 1:
+            off, size = off.sum(axis=0, keepdims=True), size.sum(axis=0, keepdims=True)
+        t = t + np.clip(off / np.maximum(size, 1e-12), -0.3, 0.3)
         if not self.arc.closed:
-            t = np.clip(t, 0, controls.shape[1])
-            t[0], t[-1] = 0, controls.shape[1]
-        return np.asarray(np.maximum.accumulate(t))
+            t = np.clip(t, 0, count)
+            t[:, 0], t[:, -1] = 0, count
+        return np.asarray(np.maximum.accumulate(t, axis=1))
 
     def _least_squares(self, t: FloatArray, count: int, along: float) -> FloatArray:
-        """(K, n, 2) control points nearest the samples at common parameters (N,)."""
-        arc, masters = self.arc, len(self.points)
+        """(K, n, 2) control points nearest the samples at parameters (1 or K, N)."""
+        arc, masters, samples = self.arc, len(self.points), t.shape[1]
         index, weight, _, _ = basis(t, count, arc.closed)
-        matrix = np.zeros((len(t), count + (0 if arc.closed else 2)))
-        np.add.at(matrix, (np.arange(len(t))[:, None], index), weight)
-        known = np.zeros_like(self.points)
+        matrix = np.zeros((len(t), samples, count + (0 if arc.closed else 2)))
+        np.add.at(matrix, (np.arange(len(t))[:, None, None], np.arange(samples)[:, None], index), weight)
+        wanted = self.points
         if not arc.closed:
-            known = np.einsum("n,kc->knc", matrix[:, 0], arc.ends[:, 0]) + np.einsum(
-                "n,kc->knc", matrix[:, -1], arc.ends[:, 1]
-            )
-            matrix = matrix[:, 1:-1]
-        metric = along**2 * np.eye(2) + (1 - along**2) * self._across
-        metric = metric * self.mass[:, None, None]
-        pairs = (matrix[:, :, None] * matrix[:, None, :]).reshape(len(t), -1)
-        normal = np.einsum("np,knq->kpq", pairs, metric.reshape(masters, len(t), 4), optimize=True)
+            wanted = wanted - matrix[:, :, :1] * arc.ends[:, :1] - matrix[:, :, -1:] * arc.ends[:, 1:]
+            matrix = matrix[:, :, 1:-1]
+        metric = (along**2 * np.eye(2) + (1 - along**2) * self._across) * self.mass[:, None, None]
+        pairs = (matrix[:, :, :, None] * matrix[:, :, None, :]).reshape(len(t), samples, -1)
+        normal = np.swapaxes(pairs, 1, 2) @ metric.reshape(masters, samples, 4)
         normal = normal.reshape(masters, count, count, 2, 2).transpose(0, 1, 3, 2, 4).reshape(masters, 2 * count, -1)
-        right = np.einsum("na,kncd,knd->kac", matrix, metric, self.points - known, optimize=True)
-        right = right.reshape(masters, 2 * count)
+        right = np.swapaxes(matrix, 1, 2) @ (metric @ wanted[..., None])[..., 0]
         normal = normal + 1e-7 * self._stiffness(count, normal)
-        return self._solved(normal, right, count)
+        self.metric = normal + self._beside_lines(count, normal)
+        return self._solved(normal, right.reshape(masters, -1), count)
 
-    @property
+    def _held(self, count: int) -> list[tuple[int, FloatArray, FloatArray]]:
+        """The control points that are to be on the lines before and after the arc: index, line and end."""
+        lines = ((0, self.arc.leaving, 0), (count - 1, self.arc.arriving, 1))
+        return [(j, line, self.arc.ends[:, side]) for j, line, side in lines if line is not None]
+
+    def _beside_lines(self, count: int, normal: FloatArray) -> FloatArray:
+        """A penalty on control points beside the lines that they are to be on: rounding would turn the joint."""
+        penalty = np.zeros_like(normal)
+        for j, line, _ in self._held(count):
+            across = np.stack([-line[:, 1], line[:, 0]], axis=1) / np.maximum(np.hypot(*line.T), 1e-12)[:, None]
+            block = slice(2 * j, 2 * j + 2)
+            size = np.trace(normal, axis1=1, axis2=2)[:, None, None] / count
+            penalty[:, block, block] += LEVEL * size * across[:, :, None] * across[:, None, :]
+        return penalty
+
+    @cached_property
     def _across(self) -> FloatArray:
         """(K, N, 2, 2) projection to the normal of the cubics at each sample."""
         x, y = self.tangents[..., 0], self.tangents[..., 1]
@@ -215,14 +247,10 @@ class _Fitting:
 
     def _solved(self, normal: FloatArray, right: FloatArray, count: int) -> FloatArray:
         """The solution, its first and last control point on the lines before and after the arc."""
-        arc, masters = self.arc, len(self.points)
-        held = [
-            (j, line, arc.ends[:, side])
-            for j, line, side in ((0, arc.leaving, 0), (count - 1, arc.arriving, 1))
-            if line is not None
-        ]
-        if arc.closed or not held:
-            return np.linalg.solve(normal, right[..., None])[..., 0].reshape(masters, count, 2)
+        masters = len(self.points)
+        held = self._held(count)
+        if not held:
+            return np.asarray(np.linalg.solve(normal, right[..., None])).reshape(masters, count, 2)
         fixed = np.zeros((masters, count, 2))
         keep = [np.eye(2 * count)[:, c] for c in range(2 * count) if not any(c // 2 == j for j, _, _ in held)]
         free = np.broadcast_to(np.array(keep).T.reshape(2 * count, -1), (masters, 2 * count, len(keep)))
@@ -243,26 +271,35 @@ class _Fitting:
             fixed[:, j] = end + max(along, 0.0) * line
         return _constrained(normal, right, fixed, np.concatenate([free, *stay], axis=2))
 
-    def distance(self, controls: FloatArray) -> tuple[float, FloatArray]:
-        """The largest distance from the cubics at all locations, and that of each sample (N,).
+    def distance(self, controls: FloatArray) -> float:
+        """The largest distance from the cubics at all locations.
 
         Each location has its own footpoints; they run forward along the arc, so that the distance is one in both
         directions, up to what lies between two samples.
         """
-        whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
-        each = np.hypot(*np.moveaxis(offsets(self.targets, whole, self.t, controls.shape[1], self.arc.closed), -1, 0))
-        per_sample: FloatArray = each.max(axis=0)
-        return float(per_sample.max()), per_sample
+        return self._farthest(controls, self.t, self.targets)
+
+    def shortest(self, controls: FloatArray) -> float:
+        """The shortest leg of a quadratic at a joint inside the arc, at any location."""
+        whole = np.einsum("vk,knc->vnc", self.weights, controls)
+        if self.arc.closed:
+            whole = np.concatenate([whole, whole[:, :1]], axis=1)
+        arms = np.diff(whole, axis=1)
+        return float(np.hypot(arms[..., 0], arms[..., 1]).min(initial=np.inf) / 2)
 
     def fine_distance(self, controls: FloatArray) -> float:
-        """The largest distance, from four times as many samples."""
-        arc, count = self.arc, controls.shape[1]
+        """The largest distance from four times as many samples."""
+        arc, count, t = self.arc, controls.shape[1], self.t
         points = sampled(arc.cubics, 4 * self.per, arc.closed)[0]
-        known = np.r_[self.t, self.t[0] + count] if arc.closed else self.t
+        known = np.r_[t, t[0] + count] if arc.closed else t
         t = np.interp(np.arange(points.shape[1]) / 4, np.arange(len(known)), known)
         targets = np.einsum("vk,knc->vnc", self.weights, points)
+        return self._farthest(controls, t, targets)
+
+    def _farthest(self, controls: FloatArray, t: FloatArray, targets: FloatArray) -> float:
         whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
-        return float(np.hypot(*np.moveaxis(offsets(targets, whole, t, count, arc.closed), -1, 0)).max())
+        off = offsets(targets, whole, t, controls.shape[1], self.arc.closed)
+        return float(np.hypot(off[..., 0], off[..., 1]).max())
 
 
 def _constrained(normal: FloatArray, right: FloatArray, fixed: FloatArray, free: FloatArray) -> FloatArray:
@@ -318,19 +355,19 @@ def basis(t: FloatArray, count: int, closed: bool) -> tuple[IntArray, FloatArray
 
 
 def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(L, N, 2) points, first and second derivatives of L splines of (L, 1, n, 2) controls at parameters (L or 1, N)."""
-    index, weight, slope, bend = basis(t, count, closed)
+    """(L, N, 2) points, first and second derivatives of splines of (L, n, 2) controls at parameters (L or 1, N)."""
+    index, *weights = basis(t, count, closed)
     rows = np.arange(len(controls))[:, None, None]
-    chosen = controls[:, 0][rows, np.broadcast_to(index, (len(controls), *index.shape[1:]))]
-    at, first, second = [(each[..., None] * chosen).sum(axis=2) for each in (weight, slope, bend)]
+    chosen = controls[rows, index]
+    at, first, second = [np.squeeze(each[..., None, :] @ chosen, axis=2) for each in weights]
     return at, first, second
 
 
 def offsets(targets: FloatArray, controls: FloatArray, t: FloatArray, count: int, closed: bool) -> FloatArray:
-    """(V, N, 2) from targets to the splines of (V, n, 2) controls, at footpoints near (N,) parameters, in their order."""
+    """(V, N, 2) from targets to splines of (V, n, 2) controls, at footpoints near (N,) parameters, in their order."""
     t = np.broadcast_to(t, targets.shape[:2])
-    for _ in range(4):
-        at, first, second = spline(controls[:, None], t, count, closed)
+    for _ in range(2):
+        at, first, second = spline(controls, t, count, closed)
         off = at - targets
         size = (first**2).sum(axis=2)
         full = size + (off * second).sum(axis=2)
@@ -340,21 +377,25 @@ def offsets(targets: FloatArray, controls: FloatArray, t: FloatArray, count: int
             t = np.clip(t, 0, count)
     if not closed:
         t = np.concatenate([np.zeros((len(t), 1)), t[:, 1:-1], np.full((len(t), 1), float(count))], axis=1)
-    return np.asarray(spline(controls[:, None], np.maximum.accumulate(t, axis=1), count, closed)[0] - targets)
+    return np.asarray(spline(controls, np.maximum.accumulate(t, axis=1), count, closed)[0] - targets)
 
 
-def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray]:
-    """A TrueType contour (K, N, 2) with all points on the curve explicit, from the first of them, and its degrees."""
+def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray, BoolArray]:
+    """A TrueType contour (K, N, 2) with all points on the curve explicit, from the first of them, and its degrees.
+
+    Also (m,) whether a segment begins at an implied point.
+    """
     after, on_after = np.roll(points, -1, axis=1), np.roll(on, -1)
     whole: list[FloatArray] = []
-    kinds: list[bool] = []
+    kinds: list[str] = []
     for j in range(len(on)):
         whole.append(points[:, j])
-        kinds.append(bool(on[j]))
+        kinds.append("on" if on[j] else "off")
         if not on[j] and not on_after[j]:
             whole.append((points[:, j] + after[:, j]) / 2)
-            kinds.append(True)
-    first = kinds.index(True)
-    stacked = np.stack(whole[first:] + whole[:first], axis=1)
-    starts = np.flatnonzero(kinds[first:] + kinds[:first])
-    return stacked, np.diff([*starts, len(kinds)]).astype(np.int64)
+            kinds.append("implied")
+    first = min(j for j, kind in enumerate(kinds) if kind != "off")
+    whole, kinds = whole[first:] + whole[:first], kinds[first:] + kinds[:first]
+    starts = [j for j, kind in enumerate(kinds) if kind != "off"]
+    degrees = np.diff([*starts, len(kinds)]).astype(np.int64)
+    return np.stack(whole, axis=1), degrees, np.array([kinds[j] == "implied" for j in starts])

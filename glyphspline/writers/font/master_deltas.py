@@ -39,11 +39,13 @@ class Redrawn:
                 raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
 
 
-def rounded_deltas(masters: Masters, points: FloatArray, parts: int) -> IntArray:
+def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:
     """(K, N, 2) the default's points and a delta for each region, in steps of 1/``parts`` unit.
 
     Masters are rounded one after the other, each delta from what the regions before it leave. If no two regions
     overlap at each other's peaks, every master is within half a step of ``points`` (K, N, 2), whatever their number.
+    With a ``metric`` (K, 2N, 2N), the quadratic form of a master's error, it is that form which is kept small, and
+    points may be farther away: see :func:`nearest_whole`.
     """
     scalars = masters.scalars(masters.peaks)
     exact = np.einsum("kj,jnc->knc", np.linalg.inv(scalars), points * float(parts))
@@ -54,8 +56,27 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int) -> IntArray
         k = waiting.pop(int(np.argmin(depends)))
         rest = np.arange(len(masters)) != k
         left = points[k] * parts - np.einsum("j,jnc->nc", scalars[k, rest], steps[rest])
-        steps[k] = np.floor(np.round(left, 6) + 0.5)  # what is equal but for rounding errors rounds alike
+        steps[k] = rounded_whole(left) if metric is None else nearest_whole(left, metric[k])
     return steps.astype(np.int64)
+
+
+def rounded_whole(values: FloatArray) -> FloatArray:
+    """Whole numbers; values that are equal but for rounding errors are rounded alike."""
+    return np.asarray(np.floor(np.round(values, 6) + 0.5))
+
+
+def nearest_whole(points: FloatArray, metric: FloatArray) -> FloatArray:
+    """Whole points (N, 2) near others, such that the quadratic form ``metric`` (2N, 2N) of the difference is small.
+
+    Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least.
+    """
+    upper = np.linalg.cholesky(metric).T
+    wanted = points.ravel()
+    found = wanted.copy()
+    for i in range(len(wanted) - 1, -1, -1):
+        pull = float(upper[i, i + 1 :] @ (wanted[i + 1 :] - found[i + 1 :])) / float(upper[i, i])
+        found[i] = rounded_whole(wanted[i] + pull)
+    return found.reshape(points.shape)
 
 
 def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:

@@ -12,7 +12,7 @@ from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 from .font_glyphs import LIMIT
 from .master_deltas import Redrawn, as_drawn, check_steps, region_key, rounded_deltas
 
@@ -39,8 +39,8 @@ class CharStrings2:
             regions = [np.array([support.get(axis.axisTag, (0, 0, 0)) for axis in axes]) for support in supports]
             self._data = [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
 
-    def replace(self, name: str, redrawn: Redrawn) -> tuple[tuple[MasterContour, ...], float]:
-        """Replace a glyph; returns its contours as stored, and their largest distance from those given.
+    def replace(self, name: str, redrawn: Redrawn) -> tuple[tuple[MasterContour, ...], tuple[BoolArray, ...], float]:
+        """Replace a glyph; returns its contours as stored, their inner joints, and the largest distance.
 
         Raises:
             GlyphsplineError: its regions are not those of any item of the font's store, or it is too long.
@@ -74,9 +74,8 @@ class CharStrings2:
         # Convex, and multilinear between the corners of the grid: largest at one of them, and at a control point.
         corners = masters.weights_at(masters.grid())
         moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
-        return stored, max(
-            (float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved), default=0.0
-        )
+        far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
+        return stored, redrawn.inner, max(far, default=0.0)
 
     def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just these regions, and their indices in its order."""

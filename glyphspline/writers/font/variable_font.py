@@ -1,7 +1,7 @@
 """A variable font with glyphs drawn anew in all masters; everything else stays as it was.
 
-Only outlines are replaced: the font keeps its axes, advances, kerning, features, names and every other glyph. Fonts with
-cubic outlines (CFF2) get one char string a glyph, in fractions of a unit; fonts with quadratic ones (glyf) get
+Only outlines are replaced: the font keeps its axes, advances, kerning, features, names and every other glyph. Fonts
+with cubic outlines (CFF2) get one char string a glyph, in fractions of a unit; fonts with quadratic ones (glyf) get
 quadratics in whole units, which meet inside an arc midway between their control points and so without a kink.
 """
 
@@ -14,6 +14,7 @@ from io import BytesIO
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import MasterContour
 from ...readers import Font
+from ...types import BoolArray
 from .font_glyphs import Flavour
 from .master_deltas import Redrawn
 from .variable_cff2 import CharStrings2
@@ -29,11 +30,13 @@ class StoredGlyph:
 
     Attributes:
         contours: what is drawn, numbers rounded, in the masters of :class:`.master_deltas.Redrawn`.
+        inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
         distance: the largest from the contours that were given, in font units, at the corners of the design space and
             in between. In CFF2 a bound; in glyf from dense samples.
     """
 
     contours: tuple[MasterContour, ...]
+    inner: tuple[BoolArray, ...]
     distance: float
 
 

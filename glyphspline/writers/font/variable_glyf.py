@@ -47,8 +47,10 @@ class Quadratics:
         self._gvar = Gvar(font)
         self._new: dict[str, Glyph] = {}
 
-    def replace(self, name: str, redrawn: Redrawn, tolerance: float) -> tuple[tuple[MasterContour, ...], float]:
-        """Replace a glyph; returns its contours as stored, and their largest distance from those given.
+    def replace(
+        self, name: str, redrawn: Redrawn, tolerance: float
+    ) -> tuple[tuple[MasterContour, ...], tuple[BoolArray, ...], float]:
+        """Replace a glyph; returns its contours as stored, which joints are implied, and the largest distance.
 
         Raises:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
@@ -79,7 +81,8 @@ class Quadratics:
         overlap = bool(len(flags) and flags[0] & flagOverlapSimple)
         self._new[name] = simple_glyph(steps[0], on, ends, overlap)
         self._gvar.put(self._font.getGlyphID(name), self._tuples(masters, steps, ends, keys, variations))
-        return tuple(each.stored for each in drawn), max((each.distance for each in drawn), default=0.0)
+        distance = max((each.distance for each in drawn), default=0.0)
+        return tuple(each.stored for each in drawn), tuple(each.implied for each in drawn), distance
 
     @staticmethod
     def _left(masters: Masters, keys: list[Any], variations: list[TupleVariation], left: float) -> FloatArray:
@@ -97,7 +100,7 @@ class Quadratics:
     def _tuples(
         masters: Masters, steps: IntArray, ends: list[int], keys: list[Any], variations: list[TupleVariation]
     ) -> list[TupleVariation]:
-        """The variations with new deltas of the contours' points, in the old order; those of the phantom points stay."""
+        """The variations in the old order, with new deltas of the points; those of the phantom points stay."""
         known = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
         places = [*map(tuple, steps[0].tolist()), *[(0, 0)] * PHANTOMS]
         found = []
@@ -180,7 +183,7 @@ def users(font: TTFont, parts: Iterable[str]) -> list[str]:
         if name not in known:
             glyph = glyf[name]
             inside = [] if name in above or not glyph.isComposite() else [part.glyphName for part in glyph.components]
-            known[name] = any([uses(part, (*above, name)) for part in inside])
+            known[name] = any(uses(part, (*above, name)) for part in inside)
         return known[name]
 
     return [name for name in font.getGlyphOrder() if uses(name, ())]
@@ -226,13 +229,14 @@ class Drawn:
 
     Attributes:
         steps: (K, N, 2) the default and the deltas of its points. on: (N,) which of them are on the curve.
-        stored: what they draw in each master.
+        stored: what they draw in each master. implied: (m,) whether its segments begin at implied points.
         distance: the largest from the contour that was given.
     """
 
     steps: IntArray
     on: BoolArray
     stored: MasterContour
+    implied: BoolArray
     distance: float
 
 
@@ -247,8 +251,8 @@ def drawn_contour(
     """
     offset = shift[:, None, None] * np.array([1.0, 0.0])
 
-    def rounded(points: FloatArray) -> FloatArray:
-        return as_drawn(masters, rounded_deltas(masters, points + offset, 1), 1) - offset
+    def rounded(points: FloatArray, metric: FloatArray | None = None) -> FloatArray:
+        return as_drawn(masters, rounded_deltas(masters, points + offset, 1, metric), 1) - offset
 
     weights = masters.weights_at(locations(masters))
     cubics, degrees = contour.cubics(), contour.degrees
@@ -266,9 +270,9 @@ def drawn_contour(
             on += [False] * fitted.controls.shape[1]
             distances.append(fitted.distance)
     points = np.concatenate(parts, axis=1)
-    whole, kinds = quadratics(points, np.array(on))
+    whole, kinds, implied = quadratics(points, np.array(on))
     steps = rounded_deltas(masters, points + offset, 1)
-    return Drawn(steps, np.array(on), MasterContour(whole, kinds), max(distances))
+    return Drawn(steps, np.array(on), MasterContour(whole, kinds), implied, max(distances))
 
 
 def cut(
