@@ -130,8 +130,9 @@ def check_flavour(source: Font, flavour: Flavour) -> None:
     if table is None:
         raise OutputError("has neither CFF2 nor glyf outlines", font=str(source.path))
     if OUTLINES[table] != flavour:
+        article = "an" if flavour == "otf" else "a"
         possible = f"its masters can be written as {OUTLINES[table]}, which replaces them, or as ufo"
-        raise OutputError(f"has {table} outlines, not those of an {flavour}: {possible}", font=str(source.path))
+        raise OutputError(f"has {table} outlines, not those of {article} {flavour}: {possible}", font=str(source.path))
 
 
 def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
