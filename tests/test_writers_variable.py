@@ -34,7 +34,7 @@ FONTS = Path(__file__).parent.parent / "fonts_test"
 TTF, OTF = FONTS / "variable.ttf", FONTS / "variable-cff2.otf"
 
 AXES = (("wght", 100, 400, 900, "Weight"), ("wdth", 75, 100, 100, "Width"))
-SUPPORTS = (
+SUPPORTS: tuple[dict[str, tuple[float, float, float]], ...] = (
     {"wght": (0, 1, 1)},
     {"wght": (-1, -1, 0)},
     {"wdth": (-1, -1, 0)},
@@ -398,3 +398,33 @@ def test_something_else_in_the_designspace_s_place_stays(tmp_path: Path) -> None
     with pytest.raises(OutputError, match="holds no designspace"):
         write_designspace(font, {"o": refitted(font.masters("o"))}, tmp_path)
     assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def test_glyphs_whose_points_are_counted_keep_them(tmp_path: Path) -> None:
+    square = [(0, 0), (0, 100), (100, 100), (100, 0)]
+    glyphs = {
+        "s": quadratic(square, [True] * 4),
+        "t": quadratic(square, [True] * 4),
+        "m": composed(("s", 0, 0), ("s", 9, 9)),
+    }
+    part = glyphs["m"].components[1]
+    del part.x, part.y
+    part.firstPt, part.secondPt, part.flags = 2, 0, 0
+    deltas = [({"wght": (0.0, 1.0, 1.0)}, [(0, 0), (0, 50), (50, 50), (50, 0)])]
+    font = open_font(variable_font(tmp_path / "matched.ttf", glyphs, {"s": deltas, "t": deltas}))
+    redrawn = {name: as_it_is(font.masters(name)) for name in ("s", "t")}
+    _, summary = to_variable_font(font, redrawn, "ttf")
+    assert set(summary.glyphs) == {"t"}
+    assert "m is composed by the numbers of its points" in summary.left["s"]
+
+
+def test_a_contour_that_is_a_point_in_one_master(tmp_path: Path) -> None:
+    turn = np.arange(8) * 2 * np.pi / 8
+    ring = [(round(200 + 150 * np.cos(a)), round(200 + 150 * np.sin(a))) for a in turn]
+    deltas = [({"wght": (0.0, 1.0, 1.0)}, [(200 - x, 200 - y) for x, y in ring])]
+    font = open_font(variable_font(tmp_path / "point.ttf", {"o": quadratic(ring, [False] * 8)}, {"o": deltas}))
+    masters = font.masters("o")
+    new = Redrawn(masters, tuple(masters.contours), (np.ones(len(masters.contours[0]), dtype=bool),))
+    _, summary = to_variable_font(font, {"o": new}, "ttf", tolerance=1.0)
+    assert summary.glyphs["o"].distance <= 1.0
+    assert np.ptp(summary.glyphs["o"].contours[0].points[1], axis=0).max() <= 2

@@ -190,7 +190,8 @@ class _Fitting:
         off, size = ((self.points - at) * slope).sum(axis=2), (slope**2).sum(axis=2)
         if len(t) == 1:
             off, size = off.sum(axis=0, keepdims=True), size.sum(axis=0, keepdims=True)
-        t = t + np.clip(off / np.maximum(size, 1e-12), -0.3, 0.3)
+        least = 1e-4 * size.mean() + 1e-12  # where a master's arc is a point, parameters stay
+        t = t + np.clip(off / np.maximum(size, least), -0.3, 0.3)
         if not self.arc.closed:
             t = np.clip(t, 0, count)
             t[:, 0], t[:, -1] = 0, count

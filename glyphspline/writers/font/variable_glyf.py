@@ -46,6 +46,7 @@ class Quadratics:
         self._font, self._glyf = font, font["glyf"]
         self._gvar = Gvar(font)
         self._new: dict[str, Glyph] = {}
+        self._counted = placed_by_points(font)
 
     def replace(
         self, name: str, redrawn: Redrawn, tolerance: float
@@ -56,6 +57,8 @@ class Quadratics:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
         """
         masters = redrawn.masters
+        if name in self._counted:
+            raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
         old = self._glyf[name]
         variations = self._gvar.variations(name)
         known = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
@@ -187,6 +190,17 @@ def users(font: TTFont, parts: Iterable[str]) -> list[str]:
         return known[name]
 
     return [name for name in font.getGlyphOrder() if uses(name, ())]
+
+
+def placed_by_points(font: TTFont) -> dict[str, str]:
+    """Glyphs whose points have numbers that matter, and the composite that counts them to place its components."""
+    glyf = font["glyf"]
+    found: dict[str, str] = {}
+    for name in font.getGlyphOrder():
+        glyph = glyf[name]
+        if glyph.isComposite() and any(hasattr(part, "firstPt") for part in glyph.components):
+            found |= dict.fromkeys(parts_of(font, name), name)
+    return found
 
 
 def parts_of(font: TTFont, name: str) -> list[str]:
