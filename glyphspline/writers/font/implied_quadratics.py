@@ -65,10 +65,14 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """The control points of an arc: (K, n, 2) rounded, without its ends, and their largest distance from the cubics."""
+    """The control points of an arc: (K, n, 2) rounded, without its ends.
+
+    Also their largest distance from the cubics, and their shortest leg at an implied point at any location.
+    """
 
     controls: FloatArray
     distance: float
+    shortest: float
 
 
 def fit(
@@ -82,7 +86,7 @@ def fit(
         rounded: control points (K, n, 2) as they are stored, from those wanted and a metric (K, 2n, 2n) of their error.
     """
     fitting = _Fitting(arc, weights)
-    found: list[tuple[tuple[bool, bool, float], Fitted]] = []
+    found: list[tuple[tuple[bool, float, float], Fitted]] = []
 
     def tried(count: int) -> tuple[bool, float]:
         """Whether so many points are near enough, and their distance before rounding."""
@@ -92,8 +96,10 @@ def fit(
         if distance <= tolerance:
             distance = fitting.fine_distance(controls)
         near = distance <= tolerance
-        rank = (not near, fitting.shortest(controls) < SHORTEST, count if near else distance)
-        found.append((rank, Fitted(controls, distance)))
+        shortest = fitting.shortest(controls)
+        # Of arcs too short for long legs, those with the longest.
+        rank = (not near, -min(shortest, SHORTEST), count if near else distance)
+        found.append((rank, Fitted(controls, distance, shortest)))
         return near, error
 
     count, low, futile = fitting.least, fitting.least - 1, 0
@@ -111,8 +117,8 @@ def fit(
             count = middle
         else:
             low = middle
-    for more in (1, 2, 3):
-        if near and min(rank for rank, _ in found)[1]:
+    for more in (-1, 1, 2, 3):
+        if near and -min(rank for rank, _ in found)[1] < SHORTEST and count + more >= fitting.least:
             tried(count + more)
     return min(found, key=itemgetter(0))[1]
 

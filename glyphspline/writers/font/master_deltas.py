@@ -45,7 +45,7 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: Flo
     Masters are rounded one after the other, each delta from what the regions before it leave. If no two regions
     overlap at each other's peaks, every master is within half a step of ``points`` (K, N, 2), whatever their number.
     With a ``metric`` (K, 2N, 2N), the quadratic form of a master's error, it is that form which is kept small, and
-    points may be farther away: see :func:`nearest_whole`.
+    points may be farther away, and no two in a row are rounded to one place: see :func:`nearest_whole`.
     """
     scalars = masters.scalars(masters.peaks)
     exact = np.einsum("kj,jnc->knc", np.linalg.inv(scalars), points * float(parts))
@@ -56,8 +56,26 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: Flo
         k = waiting.pop(int(np.argmin(depends)))
         rest = np.arange(len(masters)) != k
         left = points[k] * parts - np.einsum("j,jnc->nc", scalars[k, rest], steps[rest])
-        steps[k] = rounded_whole(left) if metric is None else nearest_whole(left, metric[k])
-    return steps.astype(np.int64)
+        if metric is None:
+            steps[k] = rounded_whole(left)
+        else:
+            found = nearest_whole(left, metric[k])
+            steps[k] = left + kept_apart(found - left, points[k] * parts)
+    return np.rint(steps).astype(np.int64)
+
+
+def kept_apart(moves: FloatArray, points: FloatArray) -> FloatArray:
+    """The moves (N, 2) that round points, changed by a step where they put a point onto the one before it.
+
+    Two control points in one place are a corner of a quadratic spline. Points that are in one place anyway stay so.
+    """
+    moves = moves.copy()
+    for i in range(len(points) - 1):
+        wanted = points[i + 1] - points[i]
+        if np.abs(wanted + moves[i + 1] - moves[i]).max() < 1e-3 < np.abs(wanted).max():
+            axis = int(np.abs(wanted).argmax())
+            moves[i + 1, axis] += np.sign(wanted[axis])
+    return moves
 
 
 def rounded_whole(values: FloatArray) -> FloatArray:

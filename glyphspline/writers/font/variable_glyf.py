@@ -50,8 +50,9 @@ class Quadratics:
 
     def replace(
         self, name: str, redrawn: Redrawn, tolerance: float
-    ) -> tuple[tuple[MasterContour, ...], tuple[BoolArray, ...], float]:
-        """Replace a glyph; returns its contours as stored, which joints are implied, and the largest distance.
+    ) -> tuple[tuple[MasterContour, ...], tuple[BoolArray, ...], float, float | None]:
+        """Replace a glyph; returns its contours as stored, which joints are implied, the largest distance,
+        and the shortest leg at an implied point.
 
         Raises:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
@@ -85,7 +86,9 @@ class Quadratics:
         self._new[name] = simple_glyph(steps[0], on, ends, overlap)
         self._gvar.put(self._font.getGlyphID(name), self._tuples(masters, steps, ends, keys, variations))
         distance = max((each.distance for each in drawn), default=0.0)
-        return tuple(each.stored for each in drawn), tuple(each.implied for each in drawn), distance
+        legs = min((each.shortest for each in drawn), default=np.inf)
+        stored, implied = tuple(each.stored for each in drawn), tuple(each.implied for each in drawn)
+        return stored, implied, distance, legs if np.isfinite(legs) else None
 
     @staticmethod
     def _left(masters: Masters, keys: list[Any], variations: list[TupleVariation], left: float) -> FloatArray:
@@ -245,6 +248,7 @@ class Drawn:
         steps: (K, N, 2) the default and the deltas of its points. on: (N,) which of them are on the curve.
         stored: what they draw in each master. implied: (m,) whether its segments begin at implied points.
         distance: the largest from the contour that was given.
+        shortest: the shortest leg of a quadratic at an implied point; infinite if there is none.
     """
 
     steps: IntArray
@@ -252,6 +256,7 @@ class Drawn:
     stored: MasterContour
     implied: BoolArray
     distance: float
+    shortest: float
 
 
 def drawn_contour(
@@ -271,7 +276,7 @@ def drawn_contour(
     weights = masters.weights_at(locations(masters))
     cubics, degrees = contour.cubics(), contour.degrees
     arcs = [Arc(cubics, True, cubics[:, :2, 0])] if inner.all() else cut(cubics, degrees, inner, rounded)
-    parts, on, distances = [], [], [0.0]
+    parts, on, distances, legs = [], [], [0.0], [np.inf]
     for arc in arcs:
         if not arc.closed:
             parts.append(arc.ends[:, :1])
@@ -283,10 +288,11 @@ def drawn_contour(
             parts.append(fitted.controls)
             on += [False] * fitted.controls.shape[1]
             distances.append(fitted.distance)
+            legs.append(fitted.shortest)
     points = np.concatenate(parts, axis=1)
     whole, kinds, implied = quadratics(points, np.array(on))
     steps = rounded_deltas(masters, points + offset, 1)
-    return Drawn(steps, np.array(on), MasterContour(whole, kinds), implied, max(distances))
+    return Drawn(steps, np.array(on), MasterContour(whole, kinds), implied, max(distances), min(legs))
 
 
 def cut(
