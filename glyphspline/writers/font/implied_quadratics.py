@@ -29,6 +29,12 @@ TANGENT = 0.1
 SLIPPING, OWN, ROUNDS = 2, 5, 9
 """Rounds of least squares: from the first of these on points may slip, from the second on each master by itself."""
 
+SLIP = 0.5
+"""Spans by which a master's own parameters differ from the common ones at most."""
+
+EVEN = 1e-4
+"""Weight of second differences of control points against the distance, once each master has its own footpoints."""
+
 SHORTEST = 1.5
 """Leg of a quadratic in font units below which other numbers of points are tried: renderers place implied points in
 single precision, which turns a short leg."""
@@ -86,20 +92,24 @@ def fit(
         rounded: control points (K, n, 2) as they are stored, from those wanted and a metric (K, 2n, 2n) of their error.
     """
     fitting = _Fitting(arc, weights)
-    found: list[tuple[tuple[bool, float, float], Fitted]] = []
+    found: list[tuple[tuple[float, float, int], Fitted]] = []
 
     def tried(count: int) -> tuple[bool, float]:
         """Whether so many points are near enough, and their distance before rounding."""
         smooth, error = fitting.solve(count)
-        controls = rounded(smooth, fitting.metric)
-        distance = fitting.distance(controls)
-        if distance <= tolerance:
-            distance = fitting.fine_distance(controls)
-        near = distance <= tolerance
-        shortest = fitting.shortest(controls)
-        # Of arcs too short for long legs, those with the longest.
-        rank = (not near, -min(shortest, SHORTEST), count if near else distance)
-        found.append((rank, Fitted(controls, distance, shortest)))
+        plain = np.broadcast_to(np.eye(2 * count), fitting.metric.shape)
+        for metric in (fitting.metric, plain):
+            controls = rounded(smooth, metric)
+            distance = fitting.distance(controls)
+            if distance <= tolerance:
+                distance = fitting.fine_distance(controls)
+            near = distance <= tolerance
+            shortest = fitting.shortest(controls)
+            # Of those that are near, one without short legs, and then the one of fewest points.
+            rank = (0.0 if near else distance, -min(shortest, SHORTEST), count)
+            found.append((rank, Fitted(controls, distance, shortest)))
+            if near:
+                break
         return near, error
 
     count, low, futile = fitting.least, fitting.least - 1, 0
@@ -174,14 +184,22 @@ class _Fitting:
         along the outline. ``metric`` (K, 2n, 2n) is then the quadratic form of the error.
         """
         t = self._start(count)[None, :]
-        controls = np.zeros((len(self.points), count, 2))
+        error, best = np.inf, (np.empty((0, 0, 0)), np.empty((0, 0, 0)), np.empty(0))
         for stage in range(ROUNDS):
             if stage == OWN:
+                common = t
                 t = np.repeat(t, len(self.points), axis=0)
             controls = self._least_squares(t, count, 1.0 if stage < SLIPPING else TANGENT)
             t = self._project(t, controls)
-        self.t = t.mean(axis=0)
-        return controls, self.distance(controls)
+            if stage >= OWN:  # no span is to be left without samples
+                t = np.clip(t, common - SLIP, common + SLIP)
+            if stage in (OWN - 1, ROUNDS - 1):
+                self.t = t.mean(axis=0)
+                distance = self.distance(controls)
+                if distance < error:
+                    error, best = distance, (controls, self.metric, self.t)
+        controls, self.metric, self.t = best
+        return controls, error
 
     def _whole(self, controls: FloatArray) -> FloatArray:
         """The control points with the ends."""
@@ -218,7 +236,7 @@ class _Fitting:
         normal = np.swapaxes(pairs, 1, 2) @ metric.reshape(masters, samples, 4)
         normal = normal.reshape(masters, count, count, 2, 2).transpose(0, 1, 3, 2, 4).reshape(masters, 2 * count, -1)
         right = np.swapaxes(matrix, 1, 2) @ (metric @ wanted[..., None])[..., 0]
-        normal = normal + 1e-7 * self._stiffness(count, normal)
+        normal = normal + self._stiffness(count, normal, EVEN if len(t) > 1 else 0.0)
         self.metric = normal + self._beside_lines(count, normal)
         return self._solved(normal, right.reshape(masters, -1), count)
 
@@ -244,13 +262,17 @@ class _Fitting:
         rows: FloatArray = np.stack([np.stack([y * y, -x * y], -1), np.stack([-x * y, x * x], -1)], -2)
         return rows
 
-    def _stiffness(self, count: int, normal: FloatArray) -> FloatArray:
-        """A small penalty on first differences, which keeps what no sample sees in place."""
-        difference = np.eye(count) - np.eye(count, k=1)
-        if not self.arc.closed:
-            difference[-1] = 0
-        penalty = np.kron(difference.T @ difference + 1e-3 * np.eye(count), np.eye(2))
-        return np.asarray(penalty * np.trace(normal, axis1=1, axis2=2)[:, None, None] / (2 * count))
+    def _stiffness(self, count: int, normal: FloatArray, even: float) -> FloatArray:
+        """A penalty on second differences, which spaces points evenly along the curve; a trace of it on first ones
+        and on all, which keeps what no sample sees in place."""
+        first = np.eye(count) - np.eye(count, k=1)
+        second = 2 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+        if self.arc.closed:
+            first[-1, 0] = second[0, -1] = second[-1, 0] = -1
+        else:
+            first[-1] = second[0] = second[-1] = 0
+        form = 1e-7 * (first.T @ first + 1e-3 * np.eye(count)) + even * second.T @ second
+        return np.asarray(np.kron(form, np.eye(2)) * np.trace(normal, axis1=1, axis2=2)[:, None, None] / (2 * count))
 
     def _solved(self, normal: FloatArray, right: FloatArray, count: int) -> FloatArray:
         """The solution, its first and last control point on the lines before and after the arc."""
@@ -304,9 +326,19 @@ class _Fitting:
         return self._farthest(controls, t, targets)
 
     def _farthest(self, controls: FloatArray, t: FloatArray, targets: FloatArray) -> float:
+        """The largest distance of targets from the spline, and of the spline between them from the targets' chords."""
+        count, closed = controls.shape[1], self.arc.closed
         whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
-        off = offsets(targets, whole, t, controls.shape[1], self.arc.closed)
-        return float(np.hypot(off[..., 0], off[..., 1]).max())
+        t, at = footpoints(targets, whole, t, count, closed)
+        far = np.hypot(*np.moveaxis(at - targets, -1, 0)).max()
+        if closed:
+            t, targets = np.c_[t, t[:, :1] + count], np.concatenate([targets, targets[:, :1]], axis=1)
+        arms = np.diff(targets, axis=1)
+        for share in (0.25, 0.5, 0.75):
+            off = spline(whole, (1 - share) * t[:, :-1] + share * t[:, 1:], count, closed)[0] - targets[:, :-1]
+            x = np.clip((off * arms).sum(axis=2) / np.maximum((arms**2).sum(axis=2), 1e-12), 0, 1)
+            far = max(far, np.hypot(*np.moveaxis(off - x[..., None] * arms, -1, 0)).max())
+        return float(far)
 
 
 def _constrained(normal: FloatArray, right: FloatArray, fixed: FloatArray, free: FloatArray) -> FloatArray:
@@ -370,8 +402,13 @@ def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tup
     return at, first, second
 
 
-def offsets(targets: FloatArray, controls: FloatArray, t: FloatArray, count: int, closed: bool) -> FloatArray:
-    """(V, N, 2) from targets to splines of (V, n, 2) controls, at footpoints near (N,) parameters, in their order."""
+def footpoints(
+    targets: FloatArray, controls: FloatArray, t: FloatArray, count: int, closed: bool
+) -> tuple[FloatArray, FloatArray]:
+    """(V, N) parameters near (N,) given ones, in their order, where splines of (V, n, 2) controls are near targets.
+
+    Also (V, N, 2) the points there.
+    """
     t = np.broadcast_to(t, targets.shape[:2])
     for _ in range(2):
         at, first, second = spline(controls, t, count, closed)
@@ -384,7 +421,8 @@ def offsets(targets: FloatArray, controls: FloatArray, t: FloatArray, count: int
             t = np.clip(t, 0, count)
     if not closed:
         t = np.concatenate([np.zeros((len(t), 1)), t[:, 1:-1], np.full((len(t), 1), float(count))], axis=1)
-    return np.asarray(spline(controls, np.maximum.accumulate(t, axis=1), count, closed)[0] - targets)
+    t = np.maximum.accumulate(t, axis=1)
+    return t, spline(controls, t, count, closed)[0]
 
 
 def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray, BoolArray]:
