@@ -428,3 +428,23 @@ def test_a_contour_that_is_a_point_in_one_master(tmp_path: Path) -> None:
     _, summary = to_variable_font(font, {"o": new}, "ttf", tolerance=1.0)
     assert summary.glyphs["o"].distance <= 1.0
     assert np.ptp(summary.glyphs["o"].contours[0].points[1], axis=0).max() <= 2
+
+
+def test_a_feature_that_vanishes_in_one_master_is_measured_there_too(tmp_path: Path) -> None:
+    points = [(0, 0), (0, 300), (20, 330), (60, 335), (100, 330), (140, 420), (300, 500), (460, 300), (460, 0)]
+    on = [True, True, *[False] * 5, True, True]
+    small = [(0, 0), (0, 300), (1, 301), (2, 302), (3, 302), (140, 420), (300, 500), (460, 300), (460, 0)]
+    deltas = [(b[0] - a[0], b[1] - a[1]) for a, b in zip(points, small, strict=True)]
+    glyph = {"h": quadratic(points, on)}
+    font = open_font(variable_font(tmp_path / "vanish.ttf", glyph, {"h": [({"wght": (0.0, 1.0, 1.0)}, deltas)]}))
+    new = refitted(font.masters("h"), 2.5)
+    data, summary = to_variable_font(font, {"h": new}, "ttf", tolerance=0.6)
+    stored, drawing = summary.glyphs["h"], Drawing(data)
+    assert stored.shortest_leg is not None
+    assert stored.shortest_leg > 0
+    for at in (0.0, 0.4, 0.8, 1.0):
+        drawing.at(np.array([at]))
+        segments = drawing.contours(font.glyph_names.index("h"))[0]
+        wanted = list(new.contours[0].mixed(new.masters.weights_at(np.array([at]))).segments())
+        fine, other = dense(segments, 60), dense(wanted, 60)
+        assert max(apart(fine, other), apart(other, fine)) < stored.distance + 0.02

@@ -101,8 +101,8 @@ def fit(
         for metric in (fitting.metric, plain):
             controls = rounded(smooth, metric)
             distance = fitting.distance(controls)
-            if distance <= tolerance:
-                distance = fitting.fine_distance(controls)
+            if distance <= max(tolerance, min((rank[0] for rank, _ in found), default=np.inf)):
+                distance = fitting.fine_distance(controls)  # of what may be the result
             near = distance <= tolerance
             shortest = fitting.shortest(controls)
             # Of those that are near, one without short legs, and then the one of fewest points.

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 
+import numpy as np
+
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import MasterContour
 from ...readers import Font
@@ -114,6 +116,8 @@ def to_variable_font(
                 glyphs[name] = StoredGlyph(*quadratics.replace(stored, new, tolerance))
         except GlyphsplineError as error:
             left[name] = error.message
+        except np.linalg.LinAlgError:
+            left[name] = "no quadratics could be fitted to its curves"
     if quadratics:
         quadratics.finish()
     file = BytesIO()
