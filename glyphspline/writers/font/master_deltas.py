@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -86,15 +87,26 @@ def rounded_whole(values: FloatArray) -> FloatArray:
 def nearest_whole(points: FloatArray, metric: FloatArray) -> FloatArray:
     """Whole points (N, 2) near others, such that the quadratic form ``metric`` (2N, 2N) of the difference is small.
 
-    Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least.
+    Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least; x or y
+    first, whichever ends lower.
     """
+    size = points.size
+    found = []
+    for order in (np.arange(size), np.arange(size) ^ 1):
+        wanted = points.ravel()[order]
+        whole = _nearest_plane(wanted, metric[np.ix_(order, order)])
+        off = whole - wanted
+        found.append((float(off @ metric[np.ix_(order, order)] @ off), whole[order]))
+    return min(found, key=itemgetter(0))[1].reshape(points.shape)
+
+
+def _nearest_plane(wanted: FloatArray, metric: FloatArray) -> FloatArray:
     upper = np.linalg.cholesky(metric).T
-    wanted = points.ravel()
+    upper = upper / np.diag(upper)[:, None]
     found = wanted.copy()
     for i in range(len(wanted) - 1, -1, -1):
-        pull = float(upper[i, i + 1 :] @ (wanted[i + 1 :] - found[i + 1 :])) / float(upper[i, i])
-        found[i] = rounded_whole(wanted[i] + pull)
-    return found.reshape(points.shape)
+        found[i] = rounded_whole(wanted[i] + upper[i, i + 1 :] @ (wanted[i + 1 :] - found[i + 1 :]))
+    return found
 
 
 def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:
