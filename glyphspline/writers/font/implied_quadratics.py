@@ -45,6 +45,9 @@ LEVEL = 4.0
 STEEPEST = 0.7
 """Most by which the length of a span changes per unit of length: neighbours are of like size, as they meet midway."""
 
+FUTILE = 4
+"""Tries that came no nearer, or were near enough before rounding, after which more points are not tried."""
+
 SLACK = 0.35
 """Share of the tolerance under which the error before rounding is not what keeps an arc from its tolerance."""
 
@@ -114,9 +117,11 @@ def fit(
 
     count, low, futile = fitting.least, fitting.least - 1, 0
     while True:
+        before = min((rank[0] for rank, _ in found), default=np.inf)
         near, error = tried(count)
-        futile += error < SLACK * tolerance
-        if near or count >= fitting.most or futile == 4:
+        gained = min(rank[0] for rank, _ in found) < 0.98 * before
+        futile += error < SLACK * tolerance or not gained
+        if near or count >= fitting.most or futile == FUTILE:
             break
         low = count
         growth = (error / (SLACK * tolerance)) ** (1 / 3)
