@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, astuple
 from itertools import islice
 from pathlib import Path
@@ -61,7 +61,7 @@ def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *
 
 def _write(source: Source, glyphs: Iterable[GlyphResult], path: Path, family: str) -> int:
     writer = UFOWriter(path, fileCreator="org.glyphspline", validate=True)
-    em, ascender, descender = map(_number, astuple(source.metrics))
+    em, ascender, descender = map(as_number, astuple(source.metrics))
     metrics = {"unitsPerEm": em, "ascender": ascender, "descender": descender}
     writer.writeInfo(SimpleNamespace(familyName=family, styleName=source.style, **metrics))
     front = writer.getGlyphSet()
@@ -84,23 +84,23 @@ def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     curves = [with_extrema(contour.curve, outline.metrics.units_per_em) for contour in result.contours]
     lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(asdict(result.options))}
-    width, note = _number(outline.advance), "\n".join(result.notes) or None
+    width, note = as_number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
     front.writeGlyph(outline.name, glyph, lambda pen: draw(curves, digits, pen))
     back.writeGlyph(outline.name, SimpleNamespace(width=width), lambda pen: draw(lines, digits, pen))
 
 
-def draw(contours: Iterable[Contour], digits: int, pen: Any) -> None:
-    """Draw contours with a point pen, rounded, with smooth flags."""
+def draw(contours: Sequence[Contour], digits: int, pen: Any, flags: Sequence[Sequence[bool]] | None = None) -> None:
+    """Draw contours with a point pen, rounded; ``flags`` says which points are smooth, by default where they are."""
     kinds = (None, "line", "qcurve", "curve")
-    for contour in contours:
+    for contour, smooth_points in zip(contours, flags or map(smooth_ends, contours), strict=True):
         points = iter(contour.rounded(digits).points.tolist())
         arriving = np.roll(contour.degrees, 1).tolist()
         pen.beginPath()
-        for before, degree, smooth in zip(arriving, contour.degrees.tolist(), smooth_ends(contour), strict=True):
-            pen.addPoint(tuple(map(_number, next(points))), kinds[before], smooth)
+        for before, degree, smooth in zip(arriving, contour.degrees.tolist(), smooth_points, strict=True):
+            pen.addPoint(tuple(map(as_number, next(points))), kinds[before], smooth)
             for point in islice(points, degree - 1):
-                pen.addPoint(tuple(map(_number, point)))
+                pen.addPoint(tuple(map(as_number, point)))
         pen.endPath()
 
 
@@ -124,5 +124,6 @@ def _plain(values: dict[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in values.items() if not (v is None or (isinstance(v, float) and not math.isfinite(v)))}
 
 
-def _number(value: float) -> float | int:
+def as_number(value: float) -> float | int:
+    """A number as a property list has it: an int if it is whole."""
     return int(value) if float(value).is_integer() else float(value)

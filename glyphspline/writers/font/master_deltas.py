@@ -1,0 +1,134 @@
+"""The glyphs of a variable font that are drawn anew, and their points as a font stores them: a default and deltas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from operator import itemgetter
+
+import numpy as np
+
+from ...errors import GlyphsplineError
+from ...outlines.masters import MasterContour, Masters
+from ...types import BoolArray, FloatArray, IntArray, counted
+from .font_glyphs import LIMIT
+
+
+@dataclass(frozen=True, eq=False)
+class Redrawn:
+    """A glyph's new contours in all its masters.
+
+    Attributes:
+        masters: the glyph as the font has it. Its K masters and their regions are those of ``contours``.
+        contours: the new ones.
+        inner: for each contour (m,) whether segment j begins inside an arc, where the curve is to stay smooth; False
+            at the ends of arcs and lines.
+
+    Raises:
+        ValueError: the numbers of masters, contours or segments do not agree.
+    """
+
+    masters: Masters
+    contours: tuple[MasterContour, ...]
+    inner: tuple[BoolArray, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.contours) != len(self.inner):
+            raise ValueError(f"{counted(len(self.contours), 'contour')}, but joints of {len(self.inner)}")
+        for contour, inner in zip(self.contours, self.inner, strict=True):
+            points, degrees = contour.points, contour.degrees
+            if points.shape != (len(self.masters), int(degrees.sum()), 2) or inner.shape != degrees.shape:
+                raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
+
+
+def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:
+    """(K, N, 2) the default's points and a delta for each region, in steps of 1/``parts`` unit.
+
+    Masters are rounded one after the other, each delta from what the regions before it leave. If no two regions
+    overlap at each other's peaks, every master is within half a step of ``points`` (K, N, 2), whatever their number.
+    With a ``metric`` (K, 2N, 2N), the quadratic form of a master's error, it is that form which is kept small, and
+    points may be farther away, and no two in a row are rounded to one place: see :func:`nearest_whole`.
+    """
+    scalars = masters.scalars(masters.peaks)
+    exact = np.einsum("kj,jnc->knc", np.linalg.inv(scalars), points * float(parts))
+    steps = exact.copy()  # of the masters still to come: as they are before rounding
+    waiting = list(range(len(masters)))
+    while waiting:
+        depends = [float(np.abs(scalars[k, [j for j in waiting if j != k]]).sum()) for k in waiting]
+        k = waiting.pop(int(np.argmin(depends)))
+        rest = np.arange(len(masters)) != k
+        left = points[k] * parts - np.einsum("j,jnc->nc", scalars[k, rest], steps[rest])
+        if metric is None:
+            steps[k] = rounded_whole(left)
+        else:
+            found = nearest_whole(left, metric[k])
+            steps[k] = left + kept_apart(found - left, points[k] * parts)
+    return np.rint(steps).astype(np.int64)
+
+
+def kept_apart(moves: FloatArray, points: FloatArray) -> FloatArray:
+    """The moves (N, 2) that round points, changed by a step where they put a point onto the one before it.
+
+    Two control points in one place are a corner of a quadratic spline. Points that are in one place anyway stay so.
+    """
+    moves = moves.copy()
+    for i in range(len(points) - 1):
+        wanted = points[i + 1] - points[i]
+        if np.abs(wanted + moves[i + 1] - moves[i]).max() < 1e-3 < np.abs(wanted).max():
+            axis = int(np.abs(wanted).argmax())
+            moves[i + 1, axis] += np.sign(wanted[axis])
+    return moves
+
+
+def rounded_whole(values: FloatArray) -> FloatArray:
+    """Whole numbers; values that are equal but for rounding errors are rounded alike."""
+    return np.asarray(np.floor(np.round(values, 6) + 0.5))
+
+
+def nearest_whole(points: FloatArray, metric: FloatArray) -> FloatArray:
+    """Whole points (N, 2) near others, such that the quadratic form ``metric`` (2N, 2N) of the difference is small.
+
+    Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least; x or y
+    first, whichever ends lower.
+    """
+    size = points.size
+    found = []
+    for order in (np.arange(size), np.arange(size) ^ 1):
+        wanted = points.ravel()[order]
+        whole = _nearest_plane(wanted, metric[np.ix_(order, order)])
+        off = whole - wanted
+        found.append((float(off @ metric[np.ix_(order, order)] @ off), whole[order]))
+    return min(found, key=itemgetter(0))[1].reshape(points.shape)
+
+
+def _nearest_plane(wanted: FloatArray, metric: FloatArray) -> FloatArray:
+    upper = np.linalg.cholesky(metric).T
+    upper = upper / np.diag(upper)[:, None]
+    found = wanted.copy()
+    for i in range(len(wanted) - 1, -1, -1):
+        found[i] = rounded_whole(wanted[i] + upper[i, i + 1 :] @ (wanted[i + 1 :] - found[i + 1 :]))
+    return found
+
+
+def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:
+    """(K, N, 2) the points of the masters that :func:`rounded_deltas` in steps of 1/``parts`` give."""
+    drawn: FloatArray = np.einsum("kj,jnc->knc", masters.scalars(masters.peaks), steps / float(parts))
+    return drawn
+
+
+def check_steps(steps: IntArray, parts: int, name: str) -> None:
+    """Refuse what a font cannot hold.
+
+    Raises:
+        GlyphsplineError: a coordinate or a delta is beyond 32767 units.
+    """
+    if steps.size and np.abs(steps).max() > LIMIT * parts:
+        raise GlyphsplineError(f"coordinates beyond {LIMIT} do not fit into a font", glyph=name)
+
+
+def region_key(region: FloatArray) -> tuple[tuple[int, ...], ...]:
+    """The axes that count in a region (A, 3), in the steps in which fonts store them: 1/16384."""
+    steps = np.rint(np.asarray(region) * 16384).astype(int).tolist()
+    counting = [(axis, *three) for axis, three in enumerate(steps) if three[1]]
+    return tuple(
+        [(a, low, peak, high) for a, low, peak, high in counting if low <= peak <= high and not low < 0 < high]
+    )
