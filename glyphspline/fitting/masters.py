@@ -84,6 +84,8 @@ class MastersResult:
 def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult:
     """Put one curve through all masters of a glyph.
 
+    With ``corners="smooth"`` it is one closed C2 curve a contour; with "sharp" arcs end at corners and lines.
+
     Args:
         masters: of the glyph; see :meth:`.Source.masters`. options: how; the tolerance holds at every location.
 
@@ -94,8 +96,8 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
     """
     from .sharp.sharp_fit import Source, fit_sharp
 
-    if options.is_fixed or options.corners != "sharp" or options.continuity != "c2":
-        raise OptionError('masters are converted with corners="sharp", continuity="c2" and a tolerance')
+    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
+        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
     em = masters.metrics.units_per_em
     tolerance = options.tolerance_for(em)
     kept = [c for c, contour in enumerate(masters.contours) if _encloses(contour)]

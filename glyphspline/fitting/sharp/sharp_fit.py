@@ -180,9 +180,11 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
     the source's own segments, of which each is an arc of one span.
     """
+    sharp = options.corners == "sharp"  # or else no joint is hard, and every contour is one closed curve
     settings = Settings(
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
-        angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=options.continuity == "c2",
+        angle=float(np.radians(options.corner_angle)) if sharp else np.inf, line=LONG_LINE * em if sharp else np.inf,
+        c2=options.continuity == "c2",
         search=SEARCHES[options.effort](
             margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity]
         ),
