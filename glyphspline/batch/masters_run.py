@@ -238,6 +238,7 @@ def _write_fonts(
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     flavours: list[Flavour] = [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
     for flavour in flavours:
+        assert isinstance(source, Font)
         from ..writers.font.variable_font import to_variable_font
 
         path = out / f"{file_stem(source)}.{flavour}"

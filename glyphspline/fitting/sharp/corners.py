@@ -22,7 +22,7 @@ SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
 
 
-ONE_DIRECTION = 1e-9
+ONE_DIRECTION = 1e-3
 """Masters' lines have one direction if they turn by no more than this from each other, in radians."""
 
 BEND, KINK = 0.004, 0.065

@@ -46,6 +46,7 @@ class Fit(NamedTuple):
             slots: across and along the curve; along, a vertex takes its knot with it.
         gram: (K, room, 9, 8) equations of each span.
         A: the equations of one master. first: (2 room + 2,) where each of its rows begins. step: (K, 2 room + 2).
+        longer: (K, 2) by how much the handles of tied ends become longer; NaN while that is open.
     """
 
     curve: Curve
@@ -59,6 +60,7 @@ class Fit(NamedTuple):
     A: FloatArray
     step: FloatArray
     first: IntArray
+    longer: FloatArray
 
 
 @compiled(internal=True)
@@ -70,6 +72,7 @@ def empty_fit(masters: int, samples: int, spans: int, closed: int) -> Fit:
         empty_rows(masters, samples), empty_rows(masters, samples),
         np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
         np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
+        np.full((masters, 2), np.nan),
     )  # fmt: skip
 
 
@@ -285,6 +288,28 @@ def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, wi
         if not closed and start <= i < start + width:
             r = 2 * (i - start)
             A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] == 1 else 1e9 * max(mean, 1.0))
+            longer = fit.longer[v, min(i, 1)]
+            if not np.isnan(longer):
+                A[r + 1, r + 1] += 1e6 * max(mean, 1.0)
+                g[r + 1] += 1e6 * max(mean, 1.0) * longer
+
+
+@compiled(internal=True)
+def agree_on_handles(fit: Fit, samples: Samples, start: int, width: int) -> bool:
+    """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
+    k, closed, tied = fit.curve.size[0], fit.curve.size[1], False
+    for end, i in ((0, 0), (1, k)):
+        if closed or samples.free[end] != 2 or not start <= i < start + width:
+            continue
+        tied, along, whole = True, 0.0, 0.0
+        for v in range(len(fit.step)):
+            size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
+            along += fit.step[v, 2 * (i - start) + 1] * size
+            whole += size * size
+        for v in range(len(fit.step)):
+            size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
+            fit.longer[v, end] = along / whole * size
+    return tied
 
 
 @compiled(internal=True)

@@ -18,6 +18,7 @@ from .spline_equations import (
     LARGEST_RATIO,
     Fit,
     add_all,
+    agree_on_handles,
     differentiate,
     equations,
     knots_per_step,
@@ -75,9 +76,14 @@ def improve(
         add_all(fit, error, minimax, wobble)
         old = objective(curve, rows, error, minimax, wobble)
         while True:
-            for v in range(len(fit.step)):
-                equations(fit, samples, v, damping, start, width)
-                solve(fit.A, fit.step[v], fit.first, 2 * width)
+            agreed = tied = True
+            while agreed:
+                for v in range(len(fit.step)):
+                    equations(fit, samples, v, damping, start, width)
+                    solve(fit.A, fit.step[v], fit.first, 2 * width)
+                agreed = tied and agree_on_handles(fit, samples, start, width)
+                tied = False
+            fit.longer[:] = np.nan
             better = False
             if _advance(fit, samples, 0.5 if minimax else 1.0, start, width):
                 iterate(trial, WARM * near, WARM_PASSES)
