@@ -10,6 +10,7 @@ from ._version import __version__
 from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
+from .fitting.masters import MastersContourResult, MastersResult, convert_masters
 from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
@@ -71,6 +72,8 @@ __all__ = [
     "KinkReport",
     "MasterContour",
     "Masters",
+    "MastersContourResult",
+    "MastersResult",
     "Measures",
     "OptionError",
     "Options",
@@ -81,6 +84,7 @@ __all__ = [
     "__version__",
     "convert",
     "convert_many",
+    "convert_masters",
     "interpolate",
     "interpolate_many",
     "interpolate_vertex",

@@ -23,6 +23,7 @@ from glyphspline.batch.masters_run import redrawn_glyph
 from glyphspline.curves.cubics import turns
 from glyphspline.fitting.masters import MastersResult, convert_masters
 from glyphspline.types import FloatArray
+from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.variable_font import to_variable_font
 
 TEXT = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&?!@"
@@ -42,6 +43,7 @@ class Table:
     contours: int = 0
     uncertified: list[str] = field(default_factory=list)
     stopping: list[str] = field(default_factory=list)
+    kept: int = 0
     segments: int = 0
     worst_single: int = 0
     source: int = 0
@@ -97,6 +99,7 @@ def check(font: gs.Font, names: tuple[str, ...], options: gs.Options, seed: int)
         table.worst_single += max(sum(len(contour.curve) for contour in single.contours) for single in singles)
         if not all(contour.within_tolerance for contour in result.contours):
             table.uncertified.append(name)
+        table.kept += sum(contour.kept for contour in result.contours)
         if not all(contour.regular for contour in result.contours):
             table.stopping.append(name)
         compare(result, options.tolerance_for(font.metrics.units_per_em), rng, table)
@@ -152,9 +155,9 @@ def distance(points: FloatArray, samples: FloatArray, cubics: FloatArray, step: 
     return float(found.max())
 
 
-def drawn(font: gs.Font, redrawn: dict[str, object], rng: np.random.Generator) -> None:
+def drawn(font: gs.Font, redrawn: dict[str, Redrawn], rng: np.random.Generator) -> None:
     """Write the font, and measure what HarfBuzz draws: turns and jumps of curvature at inner joints."""
-    data, summary = to_variable_font(font, redrawn, "otf")  # type: ignore[arg-type]
+    data, summary = to_variable_font(font, redrawn, "otf")
     face = hb.Face(data)
     shaped = hb.Font(face)
     axes = font.masters(next(iter(redrawn))).axes
@@ -173,9 +176,9 @@ def drawn(font: gs.Font, redrawn: dict[str, object], rng: np.random.Generator) -
                 jumps += int((np.abs(before - after)[inner] > np.maximum(0.1 * size, 1e-4)).sum())
                 joints += int(inner.sum())
     share = jumps / max(joints, 1)
-    print(
-        f"  as HarfBuzz draws it: turn {worst:.4f}° at most, jumps over 10 % {share:.2%} of {joints}; left: {summary.left}"
-    )
+    print(f"  as HarfBuzz draws it: turn {worst:.4f}° at most, jumps over 10 % {share:.2%} of {joints}")
+    if summary.left:
+        print(f"  left as they were: {summary.left}")
 
 
 def end_curvature(cubics: FloatArray) -> FloatArray:

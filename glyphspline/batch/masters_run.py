@@ -298,6 +298,7 @@ def _measures(contour: Any) -> dict[str, Any]:
         "rate_bound": None if rate is None else rounded_up(rate, 6),
         "deviation_bound": rounded_up(contour.deviation_bound, 6),
         "within_tolerance": contour.within_tolerance,
+        "source_segments_kept": contour.kept,
         "regular": contour.regular,
     }
 

@@ -7,7 +7,7 @@ linear combination of the masters, and so a C2 spline on the same knots. The cer
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,11 +15,14 @@ import numpy as np
 from ..errors import GlyphsplineError, OptionError
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import MasterContour, Masters
-from ..outlines.outline import Outline
+from ..outlines.outline import Contour, Contours, Outline
 from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
 from .options import Options
 
 SHARP = Options(corners="sharp")
+
+NO_HANDLE = 1e-9
+"""Handles up to this long, in font units, give no tangent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +38,8 @@ class MastersContourResult:
         rate_bound: largest certified factor a step; None likewise.
         deviation_bound: certified bound of the two-sided distance to the source at every location, in font units.
         within_tolerance: whether it is within the tolerance.
+        kept: segments that are the source's own, as no curve through all masters was certified there: they meet as the
+            source has it.
         regular: whether the curve is proven to have speed everywhere, at every location. It may lack it where the
             source's contour collapses.
     """
@@ -47,6 +52,7 @@ class MastersContourResult:
     rate_bound: float | None
     deviation_bound: float
     within_tolerance: bool
+    kept: int
     regular: bool
 
 
@@ -74,6 +80,27 @@ class MastersResult:
         """The result at a location, axis tag to user-space value: an outline that every function of outlines takes."""
         return self.mixed(self.masters.weights(location))
 
+    def turn(self, location: Mapping[str, float]) -> float:
+        """The largest turn at an inner joint of the instance at a location, in degrees: rounding's alone."""
+        from ..curves.cubics import turns
+
+        found = 0.0
+        for contour, drawn in zip(self.contours, self.instance(location).contours, strict=True):
+            own = np.abs(np.degrees(turns(drawn.cubics(), NO_HANDLE)))[contour.inner]
+            found = max(found, float(own.max(initial=0.0)))
+        return found
+
+    def energy_ratio(self, location: Mapping[str, float]) -> float | None:
+        """Bending energy of the result's arcs at a location by that of the source's; None if the source has none.
+
+        A kink has no bending energy, and a curve within the tolerance of it has: where the source kinks, the ratio says
+        what smoothness cost.
+        """
+        weights = self.masters.weights(location)
+        ours = sum(_energy(contour.curve.mixed(weights)) for contour in self.contours)
+        given = sum(_energy(contour.source.mixed(weights)) for contour in self.contours)
+        return ours / given if given > 0 else None
+
     def mixed(self, weights: FloatArray) -> Outline:
         """The result with (K,) weights of the masters."""
         m = self.masters
@@ -94,6 +121,7 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             the glyph.
         OptionError: options that are for single outlines.
     """
+    from .sharp.pieces import CLOSED, SPANS
     from .sharp.sharp_fit import Source, fit_sharp
 
     if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
@@ -115,6 +143,8 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
     points = np.concatenate([source.points[0] for source in sources])
     cubics = np.concatenate([source.cubics() for source in sources], axis=1)
     try:
+        for k in range(len(masters)):
+            _check(sources, kept, k)
         mixes = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
         source = Source(ContourArrays(points, degrees, offsets, starts), cubics, mixes)
         fit = fit_sharp(source, options, tolerance, em)
@@ -123,11 +153,12 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
     results = []
     for c in range(len(kept)):
         a, b = fit.offsets[c], fit.offsets[c + 1]
+        kept_ones = (fit.pieces.where[a:b, SPANS] == 1) & (fit.pieces.errors[a:b] == 0.0)
         arcs = [fit.splines[q] for q in range(a, b) if q in fit.splines]
         bound = float(fit.bounds[a:b].max())
-        counts = np.maximum(fit.pieces.where[a:b, 3], 1)
+        counts = np.maximum(fit.pieces.where[a:b, SPANS], 1)
         inner = np.ones(int(counts.sum()), dtype=np.bool_)
-        if not fit.pieces.where[a, 4]:
+        if not fit.pieces.where[a, CLOSED]:
             inner[np.cumsum(counts) - counts] = False
         first = fit.pieces.starts[a:b]
         places = np.concatenate([fit.pieces.places[s : s + n] for s, n in zip(first, counts, strict=True)])
@@ -141,10 +172,33 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
                 max((arc.rate_bound for arc in arcs), default=None),
                 bound,
                 bound <= tolerance,
+                int(kept_ones.sum()),
                 bool(fit.regular[a:b].all()),
             )
         )
+        if results[-1].kept:
+            notes.append(f"{counted(results[-1].kept, 'segment')} of contour {c} stay as the source has them")
+        if not results[-1].within_tolerance:
+            notes.append(f"contour {c} is certified to {rounded_up(bound, 3):g} units, not to {tolerance:g}")
     return MastersResult(masters, options, tuple(results), tuple(notes))
+
+
+def _check(sources: Sequence[MasterContour], numbers: Sequence[int], k: int) -> None:
+    """Refuse coordinates of master k that are not finite, or too large."""
+    from .measures import check_coordinates
+
+    for c, source in zip(numbers, sources, strict=True):
+        try:
+            check_coordinates(Contours([Contour(source.points[k], source.degrees)]).arrays)
+        except GlyphsplineError as error:
+            raise GlyphsplineError(f"master {k}: {error.message}", contour=c) from None
+
+
+def _energy(contour: Contour) -> float:
+    """The bending energy of a contour's curved segments, in 1/unit."""
+    from ..curves.integrals import integrals
+
+    return float(integrals(np.ascontiguousarray(contour.cubics()[contour.degrees > 1]))[1])
 
 
 def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, IntArray]:

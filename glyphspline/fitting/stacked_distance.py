@@ -11,10 +11,10 @@ instances do in different ways, and no pairing of places suits all of them. The 
 
 Let e be the direction of the pair's chords, the same for all instances, D = A - B, and σ the largest ``|e·D|``. The
 chain of B is followed beyond both ends of the section until it extends by σ along e in every instance. Let all its
-derivatives h have e·h > 0. A point A(t) lies at the height along e of some point B(s) of the chain, and from B(t) to
-there the chain has somewhere, at a parameter ξ, the direction of its chord (the mean value theorem). Hence
+derivatives h have e·h > 0. A point A(t) lies at the height along e of some point B(s) of the chain, and the way from
+B(t) to there is the integral of the h(ξ) in between. Hence, for some of these,
 
-    |A(t) - B(s)| = |h(ξ) × D(t)| / e·h(ξ)
+    |A(t) - B(s)| ≤ |h(ξ) × D(t)| / e·h(ξ)
 
 In an instance with weights λ the numerator is Σ λ_u λ_v h_u(ξ) × D_v(t), and the denominator Σ λ_u e·h_u(ξ). With the
 Bézier points h_ui and D_vk of a part of the chain and of the section, the quotient is a mean of

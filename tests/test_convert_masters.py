@@ -1,0 +1,206 @@
+"""One curve for all masters: certified everywhere, smooth in every instance, written and read back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fontTools.ttLib import TTFont
+from scipy.spatial import cKDTree
+from typer.testing import CliRunner
+
+import glyphspline as gs
+from glyphspline.batch.store import from_text, to_text
+from glyphspline.cli.commands import app
+from glyphspline.curves.comb import end_curvatures
+from glyphspline.curves.cubics import turns
+from glyphspline.fitting.stacked_distance import pair_stacks, regular
+from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
+from glyphspline.types import FloatArray
+
+FONTS = Path(__file__).parent.parent / "fonts_test"
+CFF2 = FONTS / "variable-cff2.otf"
+
+AXES = (DesignAxis("wght", "Weight", 100, 100, 900), DesignAxis("wdth", "Width", 50, 50, 100))
+PLACES = np.random.default_rng(4).uniform(0, 1, (25, 2))
+
+
+def oval(width: float, height: float, tension: float, turn: float = 0.0) -> FloatArray:
+    """(12, 2) points of an oval of four cubics."""
+    a, b = width * tension, height * tension
+    corners = [(width, 0, 0, b), (0, height, -a, 0), (-width, 0, 0, -b), (0, -height, a, 0)]
+    points = []
+    for (x, y, dx, dy), (u, v, du, dv) in zip(corners, corners[1:] + corners[:1], strict=True):
+        points += [(x, y), (x + dx, y + dy), (u - du, v - dv)]
+    c, s = np.cos(turn), np.sin(turn)
+    return np.array(points) @ np.array([[c, s], [-s, c]])
+
+
+def masters_of(*points: FloatArray, degrees: list[int] | None = None) -> Masters:
+    """Masters at the corners of two axes: two, or four."""
+    regions = np.array([[[0, 1, 1], [0, 0, 0]], [[0, 0, 0], [0, 1, 1]], [[0, 1, 1], [0, 1, 1]]], dtype=float)
+    contour = MasterContour(np.array(points), np.array(degrees or [3] * (len(points[0]) // 3)))
+    return Masters(
+        "o", axes=AXES, regions=regions[: len(points) - 1], contours=(contour,), advances=np.ones(len(points))
+    )
+
+
+OVALS = masters_of(oval(200, 350, 0.5), oval(300, 340, 0.62), oval(120, 350, 0.55), oval(220, 350, 0.7, 0.2))
+
+
+def sampled(cubics: FloatArray) -> FloatArray:
+    """Samples of a chain, less than a tenth of a unit apart."""
+    x = np.linspace(0, 1, 40_000 // len(cubics))[:, None]
+    y = 1 - x
+    parts = [y**3 * b[0] + 3 * y * y * x * b[1] + 3 * y * x * x * b[2] + x**3 * b[3] for b in cubics]
+    return np.concatenate(parts)
+
+
+def apart(a: FloatArray, b: FloatArray) -> float:
+    """The two-sided distance of two chains, from samples."""
+    p, q = sampled(a), sampled(b)
+    return float(max(cKDTree(p).query(q)[0].max(), cKDTree(q).query(p)[0].max()))
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+@pytest.mark.parametrize("tolerance", [1.0, 0.2])
+def test_every_instance_is_near_its_source_and_curvature_continuous(corners: str, tolerance: float) -> None:
+    result = gs.convert_masters(OVALS, gs.Options(corners=corners, tolerance=tolerance))  # type: ignore[arg-type]
+    contour = result.contours[0]
+    assert contour.within_tolerance
+    assert contour.regular
+    assert contour.kept == 0
+    assert contour.inner.all()
+    for at in PLACES:
+        weights = OVALS.weights_at(at)
+        ours, source = contour.curve.mixed(weights).cubics(), contour.source.mixed(weights).cubics()
+        assert apart(ours, source) <= tolerance + 0.01
+        assert np.abs(turns(ours, 1e-9)).max() < 1e-9
+        curvature = end_curvatures(ours)
+        np.testing.assert_allclose(curvature[:, 0], np.roll(curvature[:, 1], 1), rtol=1e-6)
+
+
+def test_masters_that_agree_give_the_curve_of_one() -> None:
+    points = oval(200, 350, 0.55)
+    alone = gs.convert_masters(masters_of(points), gs.Options(corners="sharp"))
+    twice = gs.convert_masters(masters_of(points, points), gs.Options(corners="sharp"))
+    plain = gs.convert(OVALS.master(0), gs.Options(corners="sharp"))
+    np.testing.assert_allclose(twice.contours[0].curve.points[0], alone.contours[0].curve.points[0], atol=1e-6)
+    np.testing.assert_array_equal(twice.contours[0].curve.points[0], twice.contours[0].curve.points[1])
+    assert len(plain.contours[0].curve) == len(gs.convert_masters(masters_of(oval(200, 350, 0.5))).contours[0].curve)
+
+
+def test_an_arc_that_ends_on_a_slanted_line_has_no_kink_there_in_any_instance() -> None:
+    def bow(slant: float, handle: float) -> FloatArray:
+        """A slanted line, then an arc that leaves it in its direction, and two more lines."""
+        top = np.array([100 + slant, 500.0])
+        way = np.array([slant, 500.0]) / np.hypot(slant, 500)
+        return np.array([[100, 0], top, top + handle * way, [500, 650], [500, 400], [500, 0]], dtype=float)
+
+    masters = masters_of(bow(0, 200), bow(120, 90), degrees=[1, 3, 1, 1])
+    result = gs.convert_masters(masters, gs.Options(corners="sharp"))
+    contour = result.contours[0]
+    assert contour.within_tolerance
+    assert contour.kept == 0
+    for share in np.linspace(0, 1, 11):
+        outline = contour.curve.mixed(np.array([1 - share, share]))
+        joint = int(np.argmin(np.hypot(*(outline.cubics()[:, 0] - [100 + 120 * share, 500]).T)))
+        assert np.degrees(abs(turns(outline.cubics(), 1e-9)[joint])) < 1e-6
+
+
+def test_a_kink_between_masters_is_gone_and_its_price_is_said() -> None:
+    def leaf(before: float, after: float) -> FloatArray:
+        """Two arcs that meet smoothly, with handles of these lengths."""
+        d = np.array([0.8, 0.6])
+        joint = np.array([300.0, 300])
+        return np.array([[0, 0], [100, 250], joint - before * d, joint, joint + after * d, [600, 500], [700, 0]], float)
+
+    turned, angle = leaf(30, 120), np.radians(12)
+    c, s = np.cos(angle), np.sin(angle)
+    turned[2:5] = (turned[2:5] - 300) @ np.array([[c, s], [-s, c]]) + 300
+    masters = masters_of(leaf(120, 30), turned, degrees=[3, 3, 1])
+    middle = masters.contours[0].mixed(np.array([0.5, 0.5])).cubics()
+    assert np.degrees(np.abs(turns(middle, 1e-9))[1]) > 4
+    assert np.degrees(np.abs(turns(masters.contours[0].mixed(np.array([1.0, 0])).cubics(), 1e-9))[1]) < 1e-9
+    result = gs.convert_masters(masters)
+    assert result.contours[0].within_tolerance
+    assert result.contours[0].kept == 0
+    assert result.turn({"wght": 500}) < 1e-6
+    ratio = result.energy_ratio({"wght": 500})
+    assert ratio is not None
+    assert ratio > 1.05
+
+
+def test_the_slip_bound_holds_in_between_and_is_not_the_plain_one() -> None:
+    """Two instances whose sections slip apart along straight-ish chains: the bound is far below the slip."""
+    line = np.array([[0.0, 0], [100, 2], [200, 2], [300, 0]])
+    other = line * [1.2, 1.0]
+    sources = np.array(
+        [[line, [[300.0, 0], [200, -90], [100, -90], [0, 0]]], [other, [[360.0, 0], [240, -90], [120, -90], [0, 0]]]]
+    )
+    results = sources.copy()
+    results[0, 0] = np.array([[0.0, 0], [80, 1.9], [180, 2.2], [300, 0]])
+    results[1, 0] = np.array([[0.0, 0], [140, 2.1], [260, 1.9], [360, 0]])
+    anchors = np.array([[0.0, 0], [1, 1], [2, 2]])
+    ranges = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]])
+    bounds = pair_stacks(results, sources, anchors, ranges, np.zeros(2, dtype=np.int64), 0.5)
+    assert bounds[1] < 1e-9
+    assert np.abs(results - sources).max() > 15
+    assert bounds[0] <= 0.5
+    for w in np.linspace(0, 1, 21):
+        a, b = (w * each[0] + (1 - w) * each[1] for each in (results, sources))
+        assert apart(a, b) <= bounds[0] + 0.01
+    assert regular(results).all()
+
+
+def test_a_cusp_in_between_is_not_called_regular() -> None:
+    there = oval(200, 300, 0.55)
+    mirrored = there * [-1.0, 1.0]  # in the middle the oval is a line run through twice
+    result = gs.convert_masters(masters_of(there, mirrored))
+    assert not result.contours[0].regular
+
+
+def test_errors_say_what_is_wrong() -> None:
+    with pytest.raises(gs.OptionError, match="by tolerance"):
+        gs.convert_masters(OVALS, gs.Options(count=20))
+    bad = oval(200, 350, 0.5)
+    bad[3, 0] = np.nan
+    with pytest.raises(gs.GlyphsplineError, match=r"'o', contour 0: master 1: .*not finite"):
+        gs.convert_masters(masters_of(oval(200, 350, 0.5), bad))
+
+
+def test_a_stored_result_is_read_back_as_it_was() -> None:
+    result = gs.convert_masters(OVALS)
+    again = from_text(to_text(result), gs.MastersResult)
+    np.testing.assert_array_equal(again.contours[0].curve.points, result.contours[0].curve.points)
+    assert again.contours[0].inner.dtype == np.bool_
+    assert repr(again) == repr(result)
+
+
+def test_the_command_writes_a_variable_font_and_a_designspace(tmp_path: Path) -> None:
+    call = ["convert", str(CFF2), "--masters", "--all", "--corners", "sharp", "--format", "otf,ufo", "--jobs", "0"]
+    done = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    lines = [json.loads(line) for line in (tmp_path / "out" / "manifest.jsonl").read_text().splitlines()]
+    assert [line["glyph"] for line in lines] == list(gs.open_font(CFF2).glyph_names)
+    assert all(c["within_tolerance"] for line in lines for c in line["contours"])
+    written = next((tmp_path / "out").glob("*.otf"))
+    before, after = TTFont(CFF2), TTFont(written)
+    assert set(before.keys()) == set(after.keys())
+    source, font = gs.open_font(CFF2), gs.open_font(written)
+    for name in ("o", "n"):
+        assert font.outline(name).advance == source.outline(name).advance
+    data = written.read_bytes()
+    again = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "again"), "--jobs", "2"])
+    assert again.exit_code == 0
+    assert next((tmp_path / "again").glob("*.otf")).read_bytes() == data
+    assert list((tmp_path / "out").rglob("*.designspace"))
+
+
+def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
+    call = ["convert", str(CFF2), "--masters", "--all", "--out", str(tmp_path / "out"), "--jobs", "0"]
+    done = CliRunner().invoke(app, call)
+    assert done.exit_code == 2
+    assert "not svg" in done.output + (done.stderr if done.stderr_bytes else "")
