@@ -10,7 +10,7 @@ from ._version import __version__
 from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
-from .fitting.masters import MastersContourResult, MastersResult, convert_masters
+from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
 from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import GlyphsplineError, OutputError
-from ..fitting.masters import MastersResult, convert_masters
+from ..fitting.convert_masters import MastersResult, convert_masters
 from ..fitting.options import Options
 from ..outlines.masters import Masters
 from ..readers import Font, Source

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, overload
 import numpy as np
 
 from ..curves.bspline import Spline
-from ..fitting.masters import MastersContourResult, MastersResult
+from ..fitting.convert_masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..interpolation.result import Interpolation

@@ -228,7 +228,8 @@ def _refitted_piece(
         near = share * settings.near
         found, stretches = cut_again(contours, piece, cut, settings)
         if len(stretches.piece):
-            found = fit_splines(found, stretches, near, settings.search, not cut)
+            begun = not cut and len(contours.cubics) == 1  # slip may rule out where masters' vertices are now
+            found = fit_splines(found, stretches, near, settings.search, begun)
         if found.errors.max() <= near:
             return choose(contours, found, near)
     return source_pieces(contours, piece)

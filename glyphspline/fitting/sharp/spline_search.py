@@ -72,7 +72,8 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
         begun = k if given else 0 * k
         fit = empty_fit(masters, n, most_spans(samples, search, begun), closed)
         k, error = find_spline(
-            borrowed(fit), borrowed(samples), near, search, begun, pieces.errors[q], p, places, tangents
+            borrowed(fit), borrowed(samples), near, search, begun, pieces.errors[q] if k == 1 else np.inf, p, places,
+            tangents,
         )  # fmt: skip
         keep_alive((fit, samples))
         count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, places, tangents, error)
