@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,9 @@ from ...outlines.kinks import Kink
 from ...outlines.masters import Masters
 from ...types import FloatArray, rounded_up
 from ..svg.curvature_map import LONGEST, TOOTH, Teeth, teeth
-from .atlas import SOURCE, colour_legend, draw_outlines, headed
-from .patches import ascii_text
+from .atlas import OUTLINE, SOURCE, colour_legend, headed
+from .images import write_pages
+from .patches import ascii_text, comb_patches, outline_patch
 
 PAGE = (11.69, 8.27)
 """A4 in inches, broad side down."""
@@ -30,8 +32,43 @@ ROOM = 0.02
 SHAPE = 0.76
 """Smallest ratio of width to height of an instance's cell: with it, cells fill the page's width."""
 
+LEAST_SHOWN = 0.05
+"""Degrees from which a turn is more than 0.0."""
+
+UNEVEN = 20.0
+"""Ratio of the largest energy to the smallest from which diagrams are logarithmic."""
+
 LISTED = 60
 """Maximum number of glyphs that are named on the page of those without a result."""
+
+OfAxis = MastersResult | tuple[str, str]
+"""A result, or the name of a glyph without one and the reason."""
+
+
+def write_axis_atlas(
+    path: Path, glyphs: Iterable[OfAxis], tag: str, location: Mapping[str, float], scale: float, heading: str
+) -> int:
+    """Write the pages of glyphs along an axis as a PDF; the same glyphs give the same bytes.
+
+    Args:
+        path: the PDF, replaced when it is complete. glyphs: in the order of the pages; those without a result are named
+            on the last. tag, location, scale, heading: as for :func:`axis_page`.
+
+    Returns:
+        The number of pages.
+    """
+
+    def pages() -> Iterator[Any]:
+        failed: list[tuple[str, str]] = []
+        for glyph in glyphs:
+            if isinstance(glyph, MastersResult):
+                yield axis_page(glyph, tag, location, scale, heading)
+            else:
+                failed.append(glyph)
+        if failed:
+            yield failures_page(failed, heading)
+
+    return write_pages(path, pages())
 
 
 def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], scale: float, heading: str) -> Any:
@@ -48,30 +85,33 @@ def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], sc
     source = along_axis(result.masters, tag, location, corner_angle=result.options.corner_angle)
     curve = along_axis(curves_of(result), tag, location, corner_angle=result.options.corner_angle)
     figure = headed(f"{heading}  {_name(result.masters)}", _caption(result, source), PAGE)
-    _draw_places(figure.add_axes((0.04, 0.42, 0.93, 0.5)), source, curve, scale)
+    _draw_places(figure.add_axes((0.04, 0.415, 0.93, 0.495)), source, curve, scale)
     grid = figure.add_gridspec(1, 3, left=0.055, right=0.975, top=0.345, bottom=0.12, wspace=0.18)
     turns, energies, ratios = (figure.add_subplot(grid[0, k]) for k in range(3))
     _draw_lines(turns, source, curve, (source.turns, curve.turns))
-    turns.set_title(turn_words(source.worst, "source") + "\n" + turn_words(curve.worst, "result"), **WORDS)
+    words = [f"source: {turn_words(source.worst)}", f"result: {turn_words(curve.worst)}"]
+    inside = worst_inside(result, curve)
+    if inside is not None and inside != curve.worst:
+        words.append(f"inside its arcs: {turn_words(inside)}")
+    turns.set_title("\n".join(words), **WORDS)
     turns.set_ylabel("largest turn of smooth joints, degrees", fontsize=6)
     turns.set_ylim(0, max(1.0, 1.1 * float(max(source.turns.max(), curve.turns.max()))))
-    if source.worst is not None and source.worst.turn > 0:
+    if source.worst is not None and source.worst.turn >= LEAST_SHOWN:
         turns.plot(source.worst.location[tag], source.worst.turn, "o", color=SOURCE, markersize=5, markerfacecolor="w")
     _draw_lines(energies, source, curve, (source.energies, curve.energies))
     energies.set_title("bending energy of arcs", **WORDS)
     energies.set_ylabel("in 1/em", fontsize=6)
-    energies.set_ylim(bottom=0)
+    energies.legend(fontsize=6, frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.99))
+    scale_of(energies, np.concatenate([source.energies, curve.energies]), 0.0)
     at, ratio = energy_ratio(source, curve)
     ratios.axhline(1.0, color="0.6", linewidth=0.6)
     ratios.plot(at, ratio, color="black", linewidth=1)
     _mark_masters(ratios, source)
-    finite = np.nan_to_num(ratio, nan=-1.0, posinf=-1.0)
-    if len(finite) and finite.max() > 0:
-        k = int(finite.argmax())
-        ratios.set_title(f"energy, result / source: at most {finite[k]:.2f} at {tag} {at[k]:.4g}", **WORDS)
-        ratios.set_ylim(min(0.9, 0.98 * float(finite[finite >= 0].min())), max(1.1, 1.02 * float(finite[k])))
-    else:
-        ratios.set_title("no arcs", **WORDS)
+    scale_of(ratios, np.append(ratio, [0.9, 1.1]), 0.9)
+    known = np.flatnonzero(np.isfinite(ratio))
+    k = known[ratio[known].argmax()] if len(known) else 0
+    most = f"at most {ratio[k]:.3g} at {tag} {at[k]:.4g}" if len(known) else "no arcs"
+    ratios.set_title(f"energy, result / source: {most}", **WORDS)
     em = result.masters.metrics.units_per_em
     colour_legend(figure, (0.35, 0.045, 0.3, 0.012), scale * em, ", combs of source and result")
     return figure
@@ -103,19 +143,28 @@ def energy_ratio(source: AlongAxis, result: AlongAxis) -> tuple[FloatArray, Floa
         return values, np.where(own[1] > 0, own[0] / own[1], np.nan)
 
 
-def turn_words(kink: Kink | None, whose: str) -> str:
-    """The worst joint in a line: "source: 9.1° at wght 632, masters 0.4° and 0.3°"."""
+def worst_inside(result: MastersResult, curve: AlongAxis) -> Kink | None:
+    """The joint inside an arc of the result that turns most: others join lines, as the source does; None without one."""
+    inner = [contour.inner for contour in result.contours]
+    return next((kink for kink in curve.found if inner[kink.contour][kink.joint]), None)
+
+
+def turn_words(kink: Kink | None) -> str:
+    """The worst joint in a line: "9.1° at wght 632, masters 0.4° and 0.3°"."""
     if kink is None:
-        return f"{whose}: no smooth joints"
-    if kink.turn < 5e-4:
-        return f"{whose}: 0.0°, at most {rounded_up(kink.turn, 1):.0e}°" if kink.turn > 0 else f"{whose}: 0.0°"
-    at = dict(kink.at_masters)
-    value = kink.location[kink.axis]
-    words = f"{whose}: {kink.turn:.1f}° at {kink.axis} {value:.4g}"
-    turns = [at[place] for place in dict.fromkeys(kink.between) if place in at]
-    if len(turns) == 1:
-        return f"{words}, a master" if value in kink.between else f"{words}, master {turns[0]:.1f}°"
-    return f"{words}, masters {' and '.join(f'{turn:.1f}°' for turn in turns)}" if turns else words
+        return "no smooth joints"
+    if kink.turn < LEAST_SHOWN:
+        return degrees(kink.turn)
+    at, place = dict(kink.at_masters), f"{degrees(kink.turn)} at {kink.axis} {kink.location[kink.axis]:.4g}"
+    before, behind = kink.between
+    if before == behind:
+        return f"{place}, a master" if before in at else place
+    return f"{place}, masters {at[before]:.1f}° and {at[behind]:.1f}°"
+
+
+def degrees(turn: float) -> str:
+    """A turn with a decimal; a smaller one rounded up to a digit: "9.1°", "below 1e-12°"."""
+    return f"{turn:.1f}°" if turn >= LEAST_SHOWN or turn == 0 else f"below {rounded_up(turn * (1 + 1e-9), 1):g}°"
 
 
 def _name(masters: Masters) -> str:
@@ -155,14 +204,16 @@ def _draw_places(axes: Any, source: AlongAxis, curve: AlongAxis, scale: float) -
             outlines += [contour.cubics() / em + shift for contour in outline.contours]
             found = teeth(as_glyph(outline), scale, "source")
             drawn += [Teeth(t.feet / em + shift, t.tips / em + shift, t.relative, t.cut) for t in found]
-            if r == 0 and kink is not None and kink.turn > 0.05:
+            if r == 0 and kink is not None and kink.turn >= LEAST_SHOWN:
                 ring = outline.contours[kink.contour].cubics()[kink.joint, 0] / em + shift
-                axes.plot(*ring, "o", color=SOURCE, markersize=9, markerfacecolor="none", markeredgewidth=0.7)
-    draw_outlines(axes, outlines, drawn)
+                axes.plot(*ring, "o", color=SOURCE, markersize=8, markerfacecolor="none", markeredgewidth=0.7)
+    # Limits are set below: add_patch would look for each tooth's extent, which takes longer than all the rest.
+    for patch in [*outline_patch(outlines, **OUTLINE), *comb_patches(drawn)]:
+        axes.add_artist(patch)
     near = 1e-6 * (source.axis.maximum - source.axis.minimum)
     for c, value in enumerate(values):
         is_master = any(abs(value - position) <= near for position in source.found.positions)
-        is_worst = kink is not None and kink.turn > 0.05 and abs(value - kink.location[kink.axis]) <= near
+        is_worst = kink is not None and kink.turn >= LEAST_SHOWN and abs(value - kink.location[kink.axis]) <= near
         words = f"{source.axis.tag} {value:.4g}" + (", master" if is_master else "") + (", worst" if is_worst else "")
         style = {"weight": "bold"} if is_master else {}
         colour = SOURCE if is_worst else "0.2"
@@ -179,7 +230,15 @@ def _draw_lines(axes: Any, source: AlongAxis, curve: AlongAxis, columns: tuple[F
     axes.plot(curve.values, np.where(np.isfinite(columns[1]), columns[1], np.nan), color="black", linewidth=0.9,
               label="result")  # fmt: skip
     _mark_masters(axes, source)
-    axes.legend(fontsize=6, frameon=False, ncols=2, loc="lower right")
+
+
+def scale_of(axes: Any, values: FloatArray, least: float) -> None:
+    """Scale a diagram's values, from ``least`` or the smallest; a logarithmic one where few are far above the others."""
+    shown = values[np.isfinite(values) & (values > 0)]
+    if len(shown) and shown.max() > UNEVEN * shown.min():
+        axes.set_yscale("log")
+    elif len(shown):
+        axes.set_ylim(min(least, 0.98 * float(shown.min())), 1.05 * float(shown.max()))
 
 
 def _mark_masters(axes: Any, source: AlongAxis) -> None:

@@ -42,6 +42,7 @@ MARKS: dict[Kind, tuple[str, str, str]] = {
 """Marker, colour and label of the breaks, by kind."""
 
 SOURCE = "#e8590c"
+OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.5}
 
 Glyph = GlyphResult | tuple[str, str]
 """A result, or the name of a glyph without one and the reason."""
@@ -106,7 +107,7 @@ def overview(
             words = f"{glyph[0]}: {glyph[1]}"[:60]
         x, y = corner[0] + 0.04, corner[1] - CELL + 0.03
         axes.text(x, y, ascii_text(words), fontsize=6, color="0.35", parse_math=False)
-    draw_outlines(axes, outlines, drawn)
+    _draw(axes, outlines, drawn)
     em = next((g.outline.metrics.units_per_em for g in glyphs if isinstance(g, GlyphResult)), 1000.0)
     colour_legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, f" of the {whose}")
     return figure
@@ -125,7 +126,7 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
     for column, title in enumerate(("source", "result")):
         axes = figure.add_subplot(grid[0, column])
         shown = [c.source if title == "source" else c.curve for c in glyph.contours]
-        draw_outlines(axes, [curve.cubics() for curve in shown], teeth(glyph, scale, "source" if column == 0 else "result"))
+        _draw(axes, [curve.cubics() for curve in shown], teeth(glyph, scale, "source" if column == 0 else "result"))
         axes.autoscale_view()
         axes.set_aspect("equal")
         axes.set_axis_off()
@@ -141,8 +142,8 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
 def headed(heading: str, caption: str, size: tuple[float, float] = PAGE) -> Any:
     """A page with a heading, and a line in small print below it; ``size`` in inches."""
     figure = blank(*size)
-    figure.text(0.05, 0.967, ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
-    figure.text(0.05, 0.955, caption, fontsize=7, color="0.35", parse_math=False)
+    figure.text(0.05, 1 - 0.39 / size[1], ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
+    figure.text(0.05, 1 - 0.53 / size[1], caption, fontsize=7, color="0.35", parse_math=False)
     return figure
 
 
@@ -154,10 +155,8 @@ def _placed(glyph: GlyphResult, corner: FloatArray) -> Callable[[FloatArray], Fl
     return lambda points: (points - middle) / em + centre
 
 
-def draw_outlines(axes: Any, curves: Sequence[FloatArray], drawn: Sequence[Teeth]) -> None:
-    """Draw curves, each of cubics (m, 4, 2), as one outline, and their combs."""
-    outline = outline_patch(curves, facecolor="0.93", edgecolor="black", linewidth=0.5)
-    for patch in [*outline, *comb_patches(drawn)]:
+def _draw(axes: Any, curves: Sequence[FloatArray], drawn: Sequence[Teeth]) -> None:
+    for patch in [*outline_patch(curves, **OUTLINE), *comb_patches(drawn)]:
         axes.add_patch(patch)
 
 
