@@ -87,7 +87,8 @@ class _OneGlyph:
     """A glyph as a font of its own, which is what kinks are measured of."""
 
     def __init__(self, masters: Masters, location: Mapping[str, float]) -> None:
-        self.path, self.axes, self.glyph_names = Path(masters.name), masters.axes, (masters.name,)
+        self.path, self.axes = Path(masters.name), masters.axes
+        self.glyph_names: tuple[str, ...] = (masters.name,)
         self.location, self._masters = location, masters
 
     def masters(self, name: str) -> Masters:

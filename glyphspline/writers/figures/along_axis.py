@@ -144,7 +144,7 @@ def energy_ratio(source: AlongAxis, result: AlongAxis) -> tuple[FloatArray, Floa
 
 
 def worst_inside(result: MastersResult, curve: AlongAxis) -> Kink | None:
-    """The joint inside an arc of the result that turns most: others join lines, as the source does; None without one."""
+    """The joint inside an arc of the result that turns most; others join lines, as in the source. None without one."""
     inner = [contour.inner for contour in result.contours]
     return next((kink for kink in curve.found if inner[kink.contour][kink.joint]), None)
 
@@ -233,7 +233,7 @@ def _draw_lines(axes: Any, source: AlongAxis, curve: AlongAxis, columns: tuple[F
 
 
 def scale_of(axes: Any, values: FloatArray, least: float) -> None:
-    """Scale a diagram's values, from ``least`` or the smallest; a logarithmic one where few are far above the others."""
+    """Scale a diagram's values, from ``least`` or the smallest; logarithmically where some are far above the others."""
     shown = values[np.isfinite(values) & (values > 0)]
     if len(shown) and shown.max() > UNEVEN * shown.min():
         axes.set_yscale("log")

@@ -56,8 +56,9 @@ def write_pages(path: Path, figures: Iterable[Any]) -> int:
     count = 0
     try:
         with PdfPages(partial, metadata=UNDATED) as pages:
-            for count, figure in enumerate(figures, 1):
+            for figure in figures:
                 pages.savefig(figure)
+                count += 1
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
