@@ -31,7 +31,8 @@ from .state import State, read_state
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""
 
-PACKAGES = dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer_along.js", "viewer.js"), "glyphspline.viewer")
+OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer_along.js", "viewer.js")
+PACKAGES = dict.fromkeys(OWN, "glyphspline.viewer")
 PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.report")
 """All static files and their packages: no path of a request reaches the file system."""
 
@@ -143,7 +144,8 @@ ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
     "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
     "svg": lambda work, state: {"svg": to_svg(work.result(state))},
 }
-"""By route: the glyph; its polygon by the variants 1, 2 and 3; the glyph in all masters; the iteration of its closed curves; the SVG file."""
+"""By route: the glyph; its polygon by the variants 1, 2 and 3; the glyph in all masters; the iteration of its closed
+curves; the SVG file."""
 
 
 def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:

@@ -193,7 +193,7 @@
     const other = along?.glyph !== found.glyph;
     along = { ...found, smooth: { source: GS.smoothJoints(found.source, count), result: GS.smoothJoints(found.result, count) } };
     at("stage").classList.add("along");
-    if (other) zoom.fit(GS.boxAround(font, along.source.flatMap(({ points }) => points.flatMap(GS.pairsOf)), shown?.advance));
+    if (other) for (const each of [beside, zoom]) each.fit(GS.boxAround(font, along.source.flatMap(({ points }) => points.flatMap(GS.pairsOf))));
     title(found);
     at("about").textContent = [`gid ${found.gid}`, found.unicodes, `${count} masters`, `${segments(found.source)} segments in the source, ${segments(found.result)} in the result`,
       `within ${found.bound} units at every location`, ...found.notes].filter(Boolean).join(" · ");
@@ -298,6 +298,7 @@
       state.moved = [];
       ask();
     });
+    input.addEventListener("change", () => along && ask()); // the command names the location
     (index < AXES ? at("axes") : more).append(GS.element("label", { class: "slider" }, `${axis.name} (${axis.tag})`, out, input));
   });
   if (font.axes.length > AXES) at("axes").append(more);
@@ -368,7 +369,7 @@
     }, 280);
   }));
   at("compare").addEventListener("change", () => (at("compare").checked ? askCompared() : ((compared = null), drawCompared())));
-  at("every").addEventListener("change", () => shown && tell());
+  at("every").addEventListener("change", () => shown && !along && tell());
   at("restore").addEventListener("click", () => { state.moved = []; ask(); });
   at("copy").addEventListener("click", async () => {
     await navigator.clipboard.writeText(at("command").textContent);
@@ -383,7 +384,7 @@
     GS.element("a", { href: url, download: `gid-${shown.gid}.svg` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   });
-  at("picture").addEventListener("keydown", zoom.key);
+  for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
   at("closer").addEventListener("click", () => zoom.zoom(1.6));
   at("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
   at("fit").addEventListener("click", () => zoom.fit());
