@@ -282,3 +282,22 @@ def test_the_page_goes_back_to_one_location(along: Any) -> None:
     assert along.locator("#beside").is_hidden()
     assert along.locator(RESULT).count() == 1
     assert along.locator("#step").is_visible()
+
+
+def test_the_page_mixes_masters_as_the_font_does(along: Any) -> None:
+    """Against the outline that HarfBuzz draws there, along two axes."""
+    for tag, value in (("wght", "650"), ("wdth", "30")):
+        along.locator(f"[data-axis={tag}]").fill(value)
+    distance = along.evaluate(
+        """async (location) => {
+            const body = JSON.stringify({ glyph: "k", location, sampling: "tolerance", amount: 5 });
+            const answer = await fetch("/api/glyph", { method: "POST", headers: { "content-type": "application/json" }, body });
+            const points = (data) => GS.contours(data).flat(2);
+            const drawn = points(document.querySelector("#beside .source").getAttribute("d"));
+            const read = points((await answer.json()).source);
+            if (drawn.length !== read.length || !read.length) return Infinity;
+            return Math.max(...read.map(([x, y], i) => Math.hypot(x - drawn[i][0], y - drawn[i][1])));
+        }""",
+        {"wght": 650, "wdth": 30},
+    )
+    assert distance < 0.1
