@@ -14,7 +14,7 @@ from glyphspline.cli import app
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.masters import MastersResult, convert_masters
 from glyphspline.outlines.along_axis import along_axis, places_along
-from glyphspline.writers.figures.along_axis import (
+from glyphspline.writers.figures.axis_pages import (
     axis_page,
     curves_of,
     energy_ratio,

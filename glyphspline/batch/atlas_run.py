@@ -13,8 +13,8 @@ from ..fitting.options import Options
 from ..fitting.results import GlyphResult, as_glyph
 from ..outlines.kinks import tags_of
 from ..readers import Source
-from ..writers.figures.along_axis import OfAxis, write_axis_atlas
 from ..writers.figures.atlas import Glyph, write_atlas
+from ..writers.figures.axis_pages import OfAxis, write_axis_atlas
 from ..writers.svg.curvature_map import Whose, curvature_scale
 from .files import make_folder
 from .font_run import SCALE_SAMPLE

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -253,7 +254,7 @@ def test_axis_sliders_move_the_combs_of_source_and_result_without_the_server(alo
             return performance.now() - start;
         }"""
     )
-    print(f"a change shows after {milliseconds:.1f} ms")
+    sys.stdout.write(f"a change shows after {milliseconds:.1f} ms\n")
     for whose, tips in TIPS.items():
         assert along.locator(tips).get_attribute("d") != before[whose]
     assert not asked
@@ -291,7 +292,8 @@ def test_the_page_mixes_masters_as_the_font_does(along: Any) -> None:
     distance = along.evaluate(
         """async (location) => {
             const body = JSON.stringify({ glyph: "k", location, sampling: "tolerance", amount: 5 });
-            const answer = await fetch("/api/glyph", { method: "POST", headers: { "content-type": "application/json" }, body });
+            const headers = { "content-type": "application/json" };
+            const answer = await fetch("/api/glyph", { method: "POST", headers, body });
             const points = (data) => GS.contours(data).flat(2);
             const drawn = points(document.querySelector("#beside .source").getAttribute("d"));
             const read = points((await answer.json()).source);
