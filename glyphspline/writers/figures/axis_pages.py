@@ -144,7 +144,7 @@ def energy_ratio(source: AlongAxis, result: AlongAxis) -> tuple[FloatArray, Floa
 
 
 def worst_inside(result: MastersResult, curve: AlongAxis) -> Kink | None:
-    """The joint inside an arc of the result that turns most; others join lines, as in the source. None without one."""
+    """The joint inside an arc of the result that turns most: none of those with lines. None without one."""
     inner = [contour.inner for contour in result.contours]
     return next((kink for kink in curve.found if inner[kink.contour][kink.joint]), None)
 
