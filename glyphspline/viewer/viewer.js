@@ -286,7 +286,7 @@
   for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], [name=continuity], [name=effort], #margin, #amount")) {
     input.addEventListener(input.type === "radio" ? "change" : "input", () => { read(); ask(); });
   }
-  const more = GS.element("details", {}, GS.element("summary", {}, `${font.axes.length - AXES} more axes`));
+  const more = GS.element("details", {}, GS.element("summary", {}, font.axes.length - AXES === 1 ? "1 more axis" : `${font.axes.length - AXES} more axes`));
   font.axes.forEach((axis, index) => {
     state.location[axis.tag] = axis.default;
     const input = GS.element("input", { type: "range", min: String(axis.minimum), max: String(axis.maximum), step: "any", value: String(axis.default), "data-axis": axis.tag });
