@@ -203,6 +203,30 @@ def test_axes_of_a_variable_font_change_the_source(variable: TestClient) -> None
     assert f"{axis['tag']}={axis['maximum']:g}" in found["command"]
 
 
+def test_a_variable_glyph_is_sent_in_all_masters(variable: TestClient) -> None:
+    found = ask(variable, "masters", glyph="o", sampling="tolerance", amount=1, corners="sharp")
+    masters = gs.open_font(FONTS / "variable.ttf").masters("o")
+    assert len(found["regions"]) + 1 == len(found["inverse"]) == len(masters) > 1
+    assert [axis["tag"] for axis in found["axes"]] == [axis.tag for axis in masters.axes]
+    at = masters.normalised({"wght": 650})
+    weights = masters.scalars(at) @ np.array(found["inverse"])
+    np.testing.assert_allclose(weights, masters.weights({"wght": 650}), atol=1e-12)
+    for sent, contour in zip(found["source"], masters.contours, strict=True):
+        assert sent["degrees"] == contour.degrees.tolist()
+        points = np.array(sent["points"]).reshape(contour.points.shape) * (1, -1)
+        np.testing.assert_allclose(points, contour.points, atol=1e-4)
+    assert 0 < found["bound"] <= 1
+    words = shlex.split(found["command"])
+    assert words[:2] == ["glyphspline", "atlas"]
+    assert words[words.index("--axis") + 1] == "wght"
+
+
+def test_masters_are_of_variable_fonts(client: TestClient) -> None:
+    answer = client.post("/api/masters", json=STATE | {"sampling": "tolerance", "amount": 1, "corners": "sharp"})
+    assert answer.status_code == 400
+    assert "not a variable font" in answer.json()["error"]
+
+
 def test_glyphs_are_found_by_character_code_index_and_name(client: TestClient) -> None:
     for words in ("龍", "U+9F8D", "uni9F8D", "17"):
         names = [glyph["name"] for glyph in client.get("/api/glyphs", params={"words": words}).json()["glyphs"]]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ..errors import OutputError as OutputError
     from .atlas_run import make_atlas as make_atlas
+    from .atlas_run import make_axis_atlas as make_axis_atlas
     from .font_run import convert_font as convert_font
     from .font_search import faces_of as faces_of
     from .font_search import find_fonts as find_fonts
@@ -33,6 +34,7 @@ _HOMES = {
     "folders_for": ".font_search",
     "locked": ".lock",
     "make_atlas": ".atlas_run",
+    "make_axis_atlas": ".atlas_run",
     "write_gallery": ".galleries",
 }
 """Modules of the names, imported on first use: workers start before the font libraries are imported."""

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, OptionError
 from ..fitting.convert import convert
+from ..fitting.masters import MastersResult, convert_masters
 from ..fitting.options import Options
-from ..fitting.results import GlyphResult
+from ..fitting.results import GlyphResult, as_glyph
+from ..outlines.kinks import tags_of
 from ..readers import Source
 from ..writers.figures.atlas import Glyph, write_atlas
+from ..writers.figures.axis_pages import OfAxis, write_axis_atlas
 from ..writers.svg.curvature_map import Whose, curvature_scale
 from .files import make_folder
 from .font_run import SCALE_SAMPLE
@@ -63,6 +67,62 @@ def make_atlas(
         whose=comb, in_corners=in_corners, profiled=lambda glyph: glyph.outline.name in chosen,
     )  # fmt: skip
     return pages, failures
+
+
+def make_axis_atlas(
+    source: Source,
+    names: Sequence[str],
+    path: Path,
+    options: Options,
+    axis: str,
+    *,
+    observer: Callable[[int, int], None] | None = None,
+) -> tuple[int, int]:
+    """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
+
+    Args:
+        source: the opened font; its location is that of the other axes. names: its glyphs, in order. path: the PDF.
+        options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
+        observer: called with the number of glyphs done and of all.
+
+    Returns:
+        Pages written, and glyphs that failed.
+
+    Raises:
+        GlyphsplineError: the font is not variable, or has no such axis.
+        OptionError: options that masters cannot be converted with.
+    """
+    tags_of(source, axis)
+    make_folder(path.parent)
+    options = replace(options, corners="sharp")
+    sources = source.outlines(names[:: -(-len(names) // SCALE_SAMPLE) or 1], errors="return")
+    scale = curvature_scale(as_glyph(outline) for outline in sources if not isinstance(outline, GlyphsplineError))
+    failures = 0
+
+    def glyphs() -> Iterator[OfAxis]:
+        nonlocal failures
+        for done, name in enumerate(names, 1):
+            glyph = _in_all_masters(source, name, options)
+            failures += not isinstance(glyph, MastersResult)
+            if not isinstance(glyph, MastersResult) or glyph.contours:
+                yield glyph
+            if observer:
+                observer(done, len(names))
+
+    pages = write_axis_atlas(
+        path, glyphs(), axis, source.location, scale or 1 / source.metrics.units_per_em,
+        f"{source.family} {source.style}",
+    )  # fmt: skip
+    return pages, failures
+
+
+def _in_all_masters(source: Source, name: str, options: Options) -> OfAxis:
+    try:
+        return convert_masters(source.masters(name), options)
+    except OptionError:
+        raise
+    except GlyphsplineError as error:
+        return name, error.message
 
 
 def _converted(source: Source, name: str, options: Options) -> Glyph:

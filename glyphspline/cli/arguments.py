@@ -262,6 +262,15 @@ Plot = Annotated[
     typer.Option("--plot", parser=place, metavar="FILE", help="Draw the largest turn against the axis: SVG, PNG, PDF."),
 ]
 AtlasFile = Annotated[Path, typer.Option("--out", "-o", parser=place, metavar="FILE", help="PDF to write.")]
+AlongAxis = Annotated[
+    str | None,
+    typer.Option(
+        "--axis",
+        metavar="TAG",
+        help="Instead: each glyph along this axis of a variable font, its source and the curve for all masters. "
+        "Corners are sharp.",
+    ),
+]
 Profiles = Annotated[
     str | None, typer.Option("--profiles", help="Characters that get a page with κ(s); of up to 12 glyphs, all.")
 ]

@@ -173,6 +173,7 @@ def atlas(
     glyphs: opt.Glyphs = None,
     gids: opt.Gids = None,
     every: opt.Every = False,
+    axis: opt.AlongAxis = None,
     profiles: opt.Profiles = None,
     face_index: opt.FaceIndex = 0,
     location: opt.Location = None,
@@ -191,22 +192,31 @@ def atlas(
     corner_teeth: opt.CornerTeeth = False,
     quiet: opt.Quiet = False,
 ) -> None:
-    """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours."""
+    """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
+
+    With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
+    largest turn and the bending energy against it. Other axes are at --location, or at their default.
+    """
     given = dict(locals())
     with errors(quiet):
-        from ..batch import make_atlas
-        from ..readers import open_font
+        from ..batch import make_atlas, make_axis_atlas
+        from ..readers import open_source
 
-        source = open_font(font, face_index, opt.location_of(location))
+        if axis is not None and (profiles is not None or corner_teeth):
+            stop("--profiles and --corner-teeth are of an atlas without --axis")
+        source = open_source(font, face_index, opt.location_of(location))
         names = opt.selection_of(source, given)
         if not names:
             stop("none of the glyphs asked for is in the font")
         chosen = None if profiles is None else source.select(text=profiles)
         with progress(quiet) as observer:
-            pages, failed = make_atlas(
-                source, names, out, opt.options_of(given), profiles=chosen, comb=comb, in_corners=corner_teeth,
-                observer=observer,
-            )  # fmt: skip
+            options = opt.options_of(given)
+            if axis is not None:
+                pages, failed = make_axis_atlas(source, names, out, options, axis, observer=observer)
+            else:
+                pages, failed = make_atlas(
+                    source, names, out, options, profiles=chosen, comb=comb, in_corners=corner_teeth, observer=observer
+                )
         if not quiet:
             say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
     raise typer.Exit(1 if failed else 0)

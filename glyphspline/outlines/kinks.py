@@ -206,11 +206,7 @@ def kinks(
         >>> report[0]
         <AxisKinks along wght: 64 joints, the largest turn 0.0°>
     """
-    tags = [of_font.tag for of_font in source.axes]
-    if not tags:
-        raise GlyphsplineError("not a variable font: it has no axes", font=str(source.path))
-    if axis is not None and axis not in tags:
-        raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}", font=str(source.path))
+    tags = tags_of(source, axis)
     require(is_positive(corner_angle, 180), "corner_angle is above 0 and up to 180 degrees", corner_angle)
     chosen = [k for k, tag in enumerate(tags) if axis in (None, tag)]
     parts: list[list[_Measured]] = [[] for _ in chosen]
@@ -226,6 +222,20 @@ def kinks(
         names += [(item.name, item.gid) for item in masters]
     found = [_gathered(part, axes[k], axes, base, names) for k, part in zip(chosen, parts, strict=True)]
     return KinkReport(tuple(found), len(names), corner_angle, tuple(failed))
+
+
+def tags_of(source: Source, axis: str | None = None) -> list[str]:
+    """The tags of a source's axes.
+
+    Raises:
+        GlyphsplineError: the source is not variable, or has no such axis.
+    """
+    tags = [of_font.tag for of_font in source.axes]
+    if not tags:
+        raise GlyphsplineError("not a variable font: it has no axes", font=str(source.path))
+    if axis is not None and axis not in tags:
+        raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}", font=str(source.path))
+    return tags
 
 
 def _batches(source: Source, names: Iterable[str], failed: list[tuple[str, str]]) -> Iterator[list[Masters]]:

@@ -184,14 +184,20 @@ const GS = {};
     });
   };
 
-  /** The points where contours have corners, a list for each. */
-  GS.corners = (contours) => contours.map((pieces) => {
+  /** The turn at the start of each piece of a contour, in radians, without sign. */
+  GS.turns = (pieces) => {
     const legs = pieces.map((p) => {
       const away = (from, others) => others.map(([x, y]) => [x - from[0], y - from[1]]).find(([x, y]) => x || y) || [0, 0];
       const [x, y] = away(p[p.length - 1], p.slice(0, -1).reverse());
       return { leaving: away(p[0], p.slice(1)), arriving: [-x, -y] };
     });
-    return pieces.filter((_, i) => angle(legs.at(i - 1).arriving, legs[i].leaving) >= CORNER).map((piece) => piece[0]);
+    return pieces.map((_, i) => angle(legs.at(i - 1).arriving, legs[i].leaving));
+  };
+
+  /** The points where contours have corners, a list for each. */
+  GS.corners = (contours) => contours.map((pieces) => {
+    const turns = GS.turns(pieces);
+    return pieces.filter((_, i) => turns[i] >= CORNER).map((piece) => piece[0]);
   });
 
   const short = (value) => +value.toFixed(2);

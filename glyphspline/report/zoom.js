@@ -4,13 +4,18 @@
 (() => {
   const CLOSEST = 4000; // times
 
-  /** Make `svg` zoomable; returns {fit(box), zoom(factor), pan(dx, dy), key(event), box()}. `changed` hears the scale. */
+  /** Make `svg` zoomable; returns {fit(box), follow(box), zoom(factor), pan(dx, dy), key(event), box()}. `changed` hears the scale. */
   GS.zoomable = (svg, changed = () => {}, mayDrag = () => true) => {
     let home = [0, 0, 1000, 1000], box = [...home];
     const fingers = new Map();
 
-    const show = () => {
+    /** Show the same as another drawing. */
+    const follow = (to) => {
+      box = [...to];
       svg.setAttribute("viewBox", box.map((v) => +v.toPrecision(9)).join(" "));
+    };
+    const show = () => {
+      follow(box);
       changed(home[2] / box[2], unit());
     };
     /** Drawing units in a pixel, whatever side the view box is letterboxed on. */
@@ -87,6 +92,6 @@
       event.preventDefault();
       return true;
     };
-    return { fit, zoom, pan, key, place, unit, box: () => [...box] };
+    return { fit, follow, zoom, pan, key, place, unit, box: () => [...box] };
   };
 })();

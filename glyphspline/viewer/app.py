@@ -24,14 +24,15 @@ from ..report.gallery import measures, palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
 from .guard import Guard
-from .payload import glyph_payload, result_payload, step_payload
+from .payload import glyph_payload, masters_payload, result_payload, step_payload
 from .search import search
 from .state import State, read_state
 
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""
 
-PACKAGES = dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), "glyphspline.viewer")
+OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer_along.js", "viewer.js")
+PACKAGES = dict.fromkeys(OWN, "glyphspline.viewer")
 PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.report")
 """All static files and their packages: no path of a request reaches the file system."""
 
@@ -129,13 +130,22 @@ def compare_answer(work: Work, state: State) -> dict[str, Any]:
     return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
 
 
+def masters_answer(work: Work, state: State) -> dict[str, Any]:
+    """The glyph in all masters, source and result, and the command that draws it along an axis."""
+    if not work.font.axes:
+        raise GlyphsplineError("not a variable font: it has no axes", font=str(work.path))
+    return masters_payload(work.in_all_masters(state.glyph, state.options)) | {"command": work.axis_command(state)}
+
+
 ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
     "glyph": glyph_answer,
     "compare": compare_answer,
+    "masters": masters_answer,
     "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
     "svg": lambda work, state: {"svg": to_svg(work.result(state))},
 }
-"""By route: the glyph; its polygon by the variants 1, 2 and 3; the iteration of its closed curves; the SVG file."""
+"""By route: the glyph; its polygon by the variants 1, 2 and 3; the glyph in all masters; the iteration of its closed
+curves; the SVG file."""
 
 
 def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:

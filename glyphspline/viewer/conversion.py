@@ -16,6 +16,7 @@ from ..errors import GlyphsplineError
 from ..fitting.closed_curves import History, recorded
 from ..fitting.convert import convert
 from ..fitting.fixed_sampling import through_polygons
+from ..fitting.masters import MastersResult, convert_masters
 from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph
@@ -41,6 +42,7 @@ class Work:
         self.lock = RLock()  # a font's tables are read on demand, by one thread at a time
         self.at = lru_cache(maxsize=12)(lambda location: open_font(path, face_index, dict(location)))
         self.converted = lru_cache(maxsize=48)(self._convert)
+        self.in_all_masters = lru_cache(maxsize=16)(self._convert_masters)
         self.scale = lru_cache(maxsize=1)(self._scale)
         self.font: Font = self.at(())
         self.em = self.font.metrics.units_per_em
@@ -59,6 +61,11 @@ class Work:
 
     def _convert(self, glyph: str, location: tuple[tuple[str, float], ...], options: Options) -> GlyphResult:
         return convert(self.outline(glyph, location), options)
+
+    def _convert_masters(self, glyph: str, options: Options) -> MastersResult:
+        with self.lock:
+            masters = self.font.masters(glyph)
+        return convert_masters(masters, options)
 
     def result(self, state: State, variant: int | None = None) -> GlyphResult:
         """The glyph of a state, or of the state with another variant.
@@ -89,8 +96,20 @@ class Work:
 
     def command(self, state: State) -> str:
         """The command that converts the glyph with the options of the state, without moved vertices."""
-        options, gid = state.options, self.font.glyph_names.index(state.glyph)
-        words = ["glyphspline", "convert", str(self.path), "--gids", str(gid)]
+        gid = self.font.glyph_names.index(state.glyph)
+        words = ["convert", *self._words(state, gid), "--out", f"outputs/gid-{gid}"]
+        return shlex.join(["glyphspline", *words])
+
+    def axis_command(self, state: State) -> str:
+        """The command that draws the glyph along the font's first axis."""
+        gid = self.font.glyph_names.index(state.glyph)
+        words = ["atlas", *self._words(state, gid), "--axis", self.font.axes[0].tag, "--out", f"gid-{gid}.pdf"]
+        return shlex.join(["glyphspline", *words])
+
+    def _words(self, state: State, gid: int) -> list[str]:
+        """Font, glyph, location and options of a state as words of a command."""
+        options = state.options
+        words = [str(self.path), "--gids", str(gid)]
         if self.face_index:
             words += ["--face-index", str(self.face_index)]
         if state.location:
@@ -98,8 +117,7 @@ class Work:
         words += ["--variant", str(options.variant), "--margin", f"{options.margin:g}", "--fallback", options.fallback]
         words += ["--corners", options.corners, f"--{state.sampling}", f"{state.amount:.6g}"]
         words += ["--continuity", options.continuity] if options.corners == "sharp" else []
-        words += ["--effort", options.effort] if state.sampling == "tolerance" else []
-        return shlex.join([*words, "--out", f"outputs/gid-{gid}"])
+        return words + (["--effort", options.effort] if state.sampling == "tolerance" else [])
 
 
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:

@@ -7,15 +7,20 @@ from typing import Any
 
 import numpy as np
 
+from ..fitting.masters import MastersResult
 from ..fitting.results import GlyphResult
 from ..interpolation.result import Interpolation
+from ..outlines.masters import MasterContour
 from ..outlines.outline import Contour, Outline
-from ..types import FloatArray
+from ..types import FloatArray, rounded_up
 from ..writers.svg.markup import code_points
 from ..writers.svg.path_data import path_data, polyline_data
 from .conversion import is_smooth, shown_steps, updates_of
 
 DIGITS = 2
+
+MASTER_DIGITS = 4
+"""Decimals of masters: with fewer, combs of short segments are uneven."""
 
 ARC = 7
 """Points of the polyline that shows the interval of a footpoint."""
@@ -47,6 +52,32 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
         "measures": [{k: finite(v) for k, v in asdict(contour.measures).items()} for contour in result.contours],
         **curves_payload(arcs),
     }
+
+
+def masters_payload(result: MastersResult) -> dict[str, Any]:
+    """A glyph in all masters, source and result, and what the page needs to mix them at any location."""
+    masters = result.masters
+    return {
+        "glyph": masters.name,
+        "gid": masters.gid,
+        "unicodes": code_points(result.mixed(np.eye(len(masters))[0])),
+        "axes": [
+            {"tag": a.tag, "minimum": a.minimum, "default": a.default, "maximum": a.maximum, "mapping": a.mapping}
+            for a in masters.axes
+        ],
+        "regions": masters.regions.tolist(),
+        "inverse": np.linalg.inv(masters.scalars(masters.peaks)).tolist(),
+        "source": [master_contour(contour) for contour in masters.contours],
+        "result": [master_contour(contour.curve) for contour in result.contours],
+        "bound": rounded_up(max((contour.deviation_bound for contour in result.contours), default=0.0), 3),
+        "notes": list(result.notes),
+    }
+
+
+def master_contour(contour: MasterContour) -> dict[str, Any]:
+    """Degrees of its segments, and its points in each master, x and y in turn, y down."""
+    points = np.round(contour.points * (1, -1), MASTER_DIGITS) + 0.0
+    return {"degrees": contour.degrees.tolist(), "points": points.reshape(len(points), -1).tolist()}
 
 
 def curves_payload(arcs: list[Interpolation]) -> dict[str, Any]:

@@ -10,6 +10,7 @@
   };
   /** Measures of the iteration, which keep their rows where nothing is iterated. */
   const ITERATED = new Set(["iterations", "residual", "converged", "rate_bound"]);
+  const AXES = 3; // whose sliders are in sight; those of others are in a list
   const number = GS.number;
 
   /** What is drawn may still change while an answer is awaited, and says so; the server may be compiling meanwhile. */
@@ -39,6 +40,7 @@
   for (const name of ["variant", "sampling", "corners", "continuity", "effort"]) document.querySelector(`[name=${name}][value="${state[name]}"]`).checked = true;
   at("margin").value = String(state.margin);
   const layers = new Set(["source", "result", "vertices"]);
+  let along = null; // the glyph in all masters, while it is shown along the axes
   let compared = null, steps = null, playing = null;
   let asked = 0; // how often the curve has been asked for: what was sent before the last time is out of date
 
@@ -70,9 +72,11 @@
     at("ruler").style.width = `${length / unit}px`;
     at("ruler").textContent = `${+length.toPrecision(2)} units`;
     for (const svg of document.querySelectorAll("#compared svg")) svg.setAttribute("viewBox", at("picture").getAttribute("viewBox"));
+    beside.follow(zoom.box());
   }, (event) => mayPan(event));
+  const beside = GS.zoomable(at("beside"), () => { zoom.follow(beside.box()); zoom.pan(0, 0); });
 
-  const polygons = () => (shown && layers.has("vertices") && state.corners === "smooth"
+  const polygons = () => (shown && !along && layers.has("vertices") && state.corners === "smooth"
     ? shown.polygons.map((points, i) => ({ points, movable: shown.movable[i] })) : []);
   const mayPan = GS.draggable(at("picture"), zoom.place, zoom.unit, polygons, (contour, vertex, x, y) => {
     state.moved = state.moved.filter(([c, v]) => c !== contour || v !== vertex);
@@ -83,7 +87,20 @@
   const mapped = () => ["comb", "source-comb", "colour"].some((name) => layers.has(name));
   const combs = () => ({ smooth: state.corners === "smooth", gain: 2 ** +at("gain").value });
 
+  /** Source and result at the sliders' location, mixed here of their masters. */
+  const drawAlong = () => {
+    const weights = GS.masterWeights(along, state.location), { gain } = combs();
+    for (const [whose, place, out] of [["source", "beside", "source-turn"], ["result", "picture", "result-turn"]]) {
+      const contours = GS.mixed(along[whose], weights), worst = GS.largestTurn(contours, along.smooth[whose]);
+      at(place).replaceChildren(GS.alongDrawing(font, contours, worst, whose, gain));
+      at(out).textContent = `${whose}: ${worst ? `largest turn ${worst.turn.toFixed(1)}°` : "no smooth joints"}`;
+    }
+    at("gain").disabled = false;
+    at("legend").replaceChildren(GS.legend(em, font.scale));
+  };
+
   const draw = () => {
+    if (along) return drawAlong();
     if (!shown) return;
     const index = +at("step").value, step = steps && index < steps.length ? steps[index] : null;
     const closed = shown.polygons.filter((_, i) => shown.movable[i]);
@@ -111,8 +128,11 @@
     }));
   };
 
+  const title = ({ unicodes, glyph }) => {
+    at("title").textContent = `${unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("")} ${glyph}`;
+  };
   const tell = () => {
-    at("title").textContent = `${shown.unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("")} ${shown.glyph}`;
+    title(shown);
     const total = shown.measures.reduce((sum, m) => sum + m.vertices, 0), bad = shown.measures.filter((m) => m.converged === false).length;
     at("about").textContent = [`gid ${shown.gid}`, shown.unicodes, `${shown.measures.length} contours`, `${total} vertices`,
       ...(bad ? [`${bad} not converged`] : []), ...(state.sampling === "tolerance" ? shown.notes : [])].filter(Boolean).join(" · ");
@@ -146,6 +166,7 @@
     drawCompared();
   });
   const askGlyph = line("/api/glyph", (found) => {
+    if (at("along").checked) return;
     if (found.error) {
       at("about").textContent = found.error;
       at("about").classList.add("bad");
@@ -161,7 +182,28 @@
     draw();
     if (at("compare").checked) askCompared();
   });
+  const askMasters = line("/api/masters", (found) => {
+    if (!at("along").checked) return;
+    at("about").classList.toggle("bad", Boolean(found.error));
+    if (found.error) {
+      at("about").textContent = found.error;
+      return;
+    }
+    const count = found.regions.length + 1, segments = (contours) => contours.reduce((sum, { degrees }) => sum + degrees.length, 0);
+    const other = along?.glyph !== found.glyph;
+    along = { ...found, smooth: { source: GS.smoothJoints(found.source, count), result: GS.smoothJoints(found.result, count) } };
+    at("stage").classList.add("along");
+    if (other) for (const each of [beside, zoom]) each.fit(GS.boxAround(font, along.source.flatMap(({ points }) => points.flatMap(GS.pairsOf))));
+    title(found);
+    at("about").textContent = [`gid ${found.gid}`, found.unicodes, `${count} masters`, `${segments(found.source)} segments in the source, ${segments(found.result)} in the result`,
+      `within ${found.bound} units at every location`, ...found.notes].filter(Boolean).join(" · ");
+    at("chart").textContent = "–";
+    at("measures").replaceChildren();
+    at("command").textContent = found.command;
+    draw();
+  });
   const ask = () => {
+    if (at("along").checked) return askMasters();
     steps = wanted = null;
     asked++;
     at("step").value = at("step").max;
@@ -206,6 +248,7 @@
     at("efforts").disabled = state.sampling !== "tolerance";
     if (fitted && at("compare").checked) at("compare").click(); // before it is disabled
     for (const id of ["variants", "margin", "compare"]) at(id).disabled = fitted;
+    at("compare").disabled ||= at("along").checked;
     at("variant-words").textContent = fitted ? "no variant runs: G1 cubics are fitted, nothing is iterated" : WORDS[state.variant];
     for (const input of document.querySelectorAll("[name=preset]")) {
       input.checked = Object.entries(font.presets[input.value]).every(([key, value]) => state[key] === value);
@@ -243,13 +286,37 @@
   for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], [name=continuity], [name=effort], #margin, #amount")) {
     input.addEventListener(input.type === "radio" ? "change" : "input", () => { read(); ask(); });
   }
-  for (const axis of font.axes) {
+  const more = GS.element("details", {}, GS.element("summary", {}, font.axes.length - AXES === 1 ? "1 more axis" : `${font.axes.length - AXES} more axes`));
+  font.axes.forEach((axis, index) => {
     state.location[axis.tag] = axis.default;
     const input = GS.element("input", { type: "range", min: String(axis.minimum), max: String(axis.maximum), step: "any", value: String(axis.default), "data-axis": axis.tag });
     const out = GS.element("output", {}, number(axis.default));
-    input.addEventListener("input", () => { state.location[axis.tag] = +(+input.value).toPrecision(4); out.textContent = number(state.location[axis.tag]); state.moved = []; ask(); });
-    at("axes").append(GS.element("label", { class: "slider" }, `${axis.name} (${axis.tag})`, out, input));
-  }
+    input.addEventListener("input", () => {
+      state.location[axis.tag] = +(+input.value).toPrecision(4);
+      out.textContent = number(state.location[axis.tag]);
+      if (along) return draw();
+      state.moved = [];
+      ask();
+    });
+    input.addEventListener("change", () => along && ask()); // the command names the location
+    (index < AXES ? at("axes") : more).append(GS.element("label", { class: "slider" }, `${axis.name} (${axis.tag})`, out, input));
+  });
+  if (font.axes.length > AXES) at("axes").append(more);
+  at("along-choice").hidden = !font.axes.length;
+  at("along").addEventListener("change", () => {
+    along = null;
+    clearTimeout(rest);
+    at("stage").classList.remove("along");
+    at("save").disabled = at("along").checked;
+    if (at("along").checked) { // masters are converted so
+      if (at("compare").checked) at("compare").click();
+      together("tolerance", "sharp");
+      document.querySelector("[name=continuity][value=c2]").checked = true;
+      state.moved = [];
+    } else if (shown) zoom.fit(GS.viewerBox(font, shown));
+    read();
+    ask();
+  });
   for (const [name, label] of Object.entries(GS.viewerLayers)) {
     const box = GS.element("input", { type: "checkbox", "data-layer": name, checked: layers.has(name) });
     box.addEventListener("change", () => { layers[box.checked ? "add" : "delete"](name); draw(); drawCompared(); });
@@ -302,7 +369,7 @@
     }, 280);
   }));
   at("compare").addEventListener("change", () => (at("compare").checked ? askCompared() : ((compared = null), drawCompared())));
-  at("every").addEventListener("change", () => shown && tell());
+  at("every").addEventListener("change", () => shown && !along && tell());
   at("restore").addEventListener("click", () => { state.moved = []; ask(); });
   at("copy").addEventListener("click", async () => {
     await navigator.clipboard.writeText(at("command").textContent);
@@ -317,7 +384,7 @@
     GS.element("a", { href: url, download: `gid-${shown.gid}.svg` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   });
-  at("picture").addEventListener("keydown", zoom.key);
+  for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
   at("closer").addEventListener("click", () => zoom.zoom(1.6));
   at("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
   at("fit").addEventListener("click", () => zoom.fit());

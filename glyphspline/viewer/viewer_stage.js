@@ -32,15 +32,15 @@
     return group;
   };
 
-  /** A box around the ink with room for combs; the em where there is no ink. */
-  GS.viewerBox = (font, glyph) => {
+  /** A box around points with room for combs; the em where there are none. */
+  GS.boxAround = (font, points, advance) => {
     const { units_per_em: em, ascender, descender } = font.metrics, room = 0.09 * em;
-    const points = GS.contours(glyph.source).flat(2);
-    if (!points.length) return [0, -ascender, glyph.advance || em, ascender - descender];
-    const [xs, ys] = [0, 1].map((k) => points.map((point) => point[k]));
-    const [left, top] = [Math.min(...xs) - room, Math.min(...ys) - room];
-    return [left, top, Math.max(...xs) + room - left, Math.max(...ys) + room - top];
+    if (!points.length) return [0, -ascender, advance || em, ascender - descender];
+    const ends = (k) => points.reduce(([low, high], point) => [Math.min(low, point[k]), Math.max(high, point[k])], [Infinity, -Infinity]);
+    const [[left, right], [top, bottom]] = [ends(0), ends(1)];
+    return [left - room, top - room, right - left + 2 * room, bottom - top + 2 * room];
   };
+  GS.viewerBox = (font, glyph) => GS.boxAround(font, GS.contours(glyph.source).flat(2), glyph.advance);
 
   /** Lets a vertex be dragged: `grasp(contour, vertex, x, y, done)` hears its new place in drawing coordinates. */
   GS.draggable = (svg, place, unit, polygons, grasp) => {

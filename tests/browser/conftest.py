@@ -16,6 +16,8 @@ from playwright.sync_api import expect, sync_playwright
 import glyphspline as gs
 from glyphspline.batch import RunSpec, convert_font, write_gallery
 
+from ..variable_fonts import WEIGHT, quadratic, variable_font
+
 FONTS = Path(__file__).parents[2] / "fonts_test"
 PATIENCE = 60_000
 """Milliseconds: a slow machine is not an error, and what never comes fails all the same."""
@@ -65,8 +67,29 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def viewer() -> Iterator[str]:
     """The address of a viewer, started as a user does."""
-    command = [sys.executable, "-m", "glyphspline", "view", str(FONTS / "kouzan-gyosho.ttf"), "--no-browser"]
+    yield from viewed(FONTS / "kouzan-gyosho.ttf")
+
+
+@pytest.fixture(scope="session")
+def variable_viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a viewer of a font of five axes, in whose glyph k a joint kinks between the masters."""
+    yield from viewed(kinked(tmp_path_factory.mktemp("fonts") / "variable.ttf"))
+
+
+def viewed(font: Path) -> Iterator[str]:
+    command = [sys.executable, "-m", "glyphspline", "view", str(font), "--no-browser"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         yield process.stderr.readline().split()[0]
         process.terminate()
+
+
+def kinked(path: Path) -> Path:
+    """A glyph of handles that are level in one master and slanted in the other, of unlike lengths."""
+    points = [(0, 0), (150, 0), (500, 300), (-300, 300), (-60, 0)]
+    bold = [(0, 0), (60, 30), (560, 340), (-330, 290), (-200, -100)]
+    deltas = [(x - a, y - b) for (x, y), (a, b) in zip(bold, points, strict=True)]
+    wide = [(0, 0), (20, 0), (80, 0), (-40, 0), (-10, 0)]
+    axes = [WEIGHT, *((tag, 0.0, 0.0, 100.0, tag.title()) for tag in ("wdth", "opsz", "slnt", "XTRA"))]
+    variations = [({"wght": (0, 1, 1)}, deltas), ({"wdth": (0, 1, 1)}, wide)]
+    return variable_font(path, {"k": quadratic(points, [True, False, True, True, False])}, {"k": variations}, axes)

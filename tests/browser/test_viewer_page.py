@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -220,3 +221,85 @@ def test_measures_have_units_and_overshoot_is_asked_for(shown: Any) -> None:
     assert shown.locator("#measures tr[data-measure=overshoot]").count() == 0
     shown.locator("#every").check()
     shown.locator("#measures tr[data-measure=overshoot]").wait_for()
+
+
+@pytest.fixture
+def along(page: Any, variable_viewer: str) -> Any:
+    """The page of a variable font with source and result side by side."""
+    page.goto(variable_viewer)
+    page.wait_for_selector(RESULT, state="attached")
+    page.locator("#along").check()
+    page.wait_for_selector("#beside .source-comb .tips", state="attached")
+    rests(page)
+    return page
+
+
+TIPS = {"source": "#beside .source-comb .tips", "result": "#picture .comb .tips"}
+
+
+def test_axis_sliders_move_the_combs_of_source_and_result_without_the_server(along: Any) -> None:
+    assert along.locator("#axes > label input").count() == 3, "the others are in a list"
+    assert along.locator("#axes details input").count() == 2
+    turn = along.locator("#source-turn")
+    expect(turn).to_have_text("source: largest turn 0.0°")
+    asked: list[str] = []
+    along.on("request", lambda request: asked.append(request.url))
+    before = {whose: along.locator(tips).get_attribute("d") for whose, tips in TIPS.items()}
+    milliseconds = along.evaluate(
+        """async () => {
+            const slider = document.querySelector("[data-axis=wght]"), start = performance.now();
+            slider.value = "650";
+            slider.dispatchEvent(new Event("input"));
+            await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+            return performance.now() - start;
+        }"""
+    )
+    sys.stdout.write(f"a change shows after {milliseconds:.1f} ms\n")
+    for whose, tips in TIPS.items():
+        assert along.locator(tips).get_attribute("d") != before[whose]
+    assert not asked
+    expect(turn).not_to_have_text("source: largest turn 0.0°")
+    expect(along.locator("#result-turn")).to_have_text("result: largest turn 0.0°")
+    along.locator("#beside .kink").wait_for(state="attached")
+    assert along.locator("#picture .kink").count() == 0
+
+
+def test_both_drawings_show_the_same_part(along: Any) -> None:
+    boxes = [along.locator(place) for place in ("#beside", "#picture")]
+    for act in (lambda: along.locator("#closer").click(), lambda: boxes[0].dblclick(position={"x": 40, "y": 90})):
+        before = boxes[1].get_attribute("viewBox")
+        act()
+        expect(boxes[1]).not_to_have_attribute("viewBox", before)
+        assert boxes[0].get_attribute("viewBox") == boxes[1].get_attribute("viewBox")
+
+
+def test_the_page_goes_back_to_one_location(along: Any) -> None:
+    assert "glyphspline atlas" in along.locator("#command").inner_text()
+    along.locator("[data-axis=wght]").fill("650")
+    expect(along.locator("#command")).to_contain_text("wght=650")
+    along.locator("#along").uncheck()
+    expect(along.locator("#command")).to_contain_text("glyphspline convert")
+    rests(along)
+    assert along.locator("#beside").is_hidden()
+    assert along.locator(RESULT).count() == 1
+    assert along.locator("#step").is_visible()
+
+
+def test_the_page_mixes_masters_as_the_font_does(along: Any) -> None:
+    """Against the outline that HarfBuzz draws there, along two axes."""
+    for tag, value in (("wght", "650"), ("wdth", "30")):
+        along.locator(f"[data-axis={tag}]").fill(value)
+    distance = along.evaluate(
+        """async (location) => {
+            const body = JSON.stringify({ glyph: "k", location, sampling: "tolerance", amount: 5 });
+            const headers = { "content-type": "application/json" };
+            const answer = await fetch("/api/glyph", { method: "POST", headers, body });
+            const points = (data) => GS.contours(data).flat(2);
+            const drawn = points(document.querySelector("#beside .source").getAttribute("d"));
+            const read = points((await answer.json()).source);
+            if (drawn.length !== read.length || !read.length) return Infinity;
+            return Math.max(...read.map(([x, y], i) => Math.hypot(x - drawn[i][0], y - drawn[i][1])));
+        }""",
+        {"wght": 650, "wdth": 30},
+    )
+    assert distance < 0.1

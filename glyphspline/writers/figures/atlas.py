@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path as FilePath
 from typing import Any
@@ -16,7 +16,7 @@ from ...outlines.joins import Kind, joins
 from ...outlines.outline import Contour
 from ...types import FloatArray
 from ..svg.curvature_map import LONGEST, SPACING, Teeth, Whose, teeth
-from .images import UNDATED, blank
+from .images import blank, write_pages
 from .patches import ascii_text, colour_bar, comb_patches, outline_patch
 
 PAGE = (8.27, 11.69)
@@ -42,6 +42,7 @@ MARKS: dict[Kind, tuple[str, str, str]] = {
 """Marker, colour and label of the breaks, by kind."""
 
 SOURCE = "#e8590c"
+OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.5}
 
 Glyph = GlyphResult | tuple[str, str]
 """A result, or the name of a glyph without one and the reason."""
@@ -69,32 +70,26 @@ def write_atlas(
     Returns:
         The number of pages.
     """
-    from matplotlib.backends.backend_pdf import PdfPages
 
-    partial = path.with_name(f".{path.name}.part")
-    chosen: list[GlyphResult] = []
-    rest = iter(glyphs)
-    count = 0
-    try:
-        with PdfPages(partial, metadata=UNDATED) as pages:
-            while part := list(islice(rest, COLUMNS * ROWS)):
-                count += 1
-                pages.savefig(overview(part, scale, f"{heading}, page {count}", whose, in_corners=in_corners))
-                chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
-            for glyph in chosen:
-                count += 1
-                pages.savefig(profile(glyph, scale))
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
-    return count
+    def pages() -> Iterator[Any]:
+        chosen: list[GlyphResult] = []
+        rest = iter(glyphs)
+        number = 0
+        while part := list(islice(rest, COLUMNS * ROWS)):
+            number += 1
+            yield overview(part, scale, f"{heading}, page {number}", whose, in_corners=in_corners)
+            chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
+        for glyph in chosen:
+            yield profile(glyph, scale)
+
+    return write_pages(path, pages())
 
 
 def overview(
     glyphs: Sequence[Glyph], scale: float, heading: str, whose: Whose = "result", *, in_corners: bool = False
 ) -> Any:
     """A page of combs as a matplotlib figure, on one pair of axes: ten times as fast as one pair per glyph."""
-    figure = _figure(heading, next((glyph.options.words for glyph in glyphs if isinstance(glyph, GlyphResult)), ""))
+    figure = headed(heading, next((glyph.options.words for glyph in glyphs if isinstance(glyph, GlyphResult)), ""))
     axes = figure.add_axes((0.04, 0.085, 0.92, 0.865))
     axes.set(xlim=(0, COLUMNS * CELL), ylim=(-ROWS * CELL, 0), aspect="equal")
     axes.set_axis_off()
@@ -114,14 +109,14 @@ def overview(
         axes.text(x, y, ascii_text(words), fontsize=6, color="0.35", parse_math=False)
     _draw(axes, outlines, drawn)
     em = next((g.outline.metrics.units_per_em for g in glyphs if isinstance(g, GlyphResult)), 1000.0)
-    _legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, f" of the {whose}")
+    colour_legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, f" of the {whose}")
     return figure
 
 
 def profile(glyph: GlyphResult, scale: float) -> Any:
     """One glyph: the source with its breaks, the result, and κ(s) of its longest contours, as a figure."""
     em = glyph.outline.metrics.units_per_em
-    figure = _figure(_name(glyph), glyph.options.words)
+    figure = headed(_name(glyph), glyph.options.words)
     longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:PROFILES]
     grid = figure.add_gridspec(
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
@@ -140,14 +135,15 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
             _mark_breaks(axes, glyph, scale)
     for row, index in enumerate(longest):
         _draw_profile(figure.add_subplot(grid[1 + row, :]), glyph.contours[index], index, sides[index], scale, em)
-    _legend(figure, (0.3, 0.035, 0.4, 0.01), scale * em)
+    colour_legend(figure, (0.3, 0.035, 0.4, 0.01), scale * em)
     return figure
 
 
-def _figure(heading: str, caption: str) -> Any:
-    figure = blank(*PAGE)
-    figure.text(0.05, 0.967, ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
-    figure.text(0.05, 0.955, caption, fontsize=7, color="0.35", parse_math=False)
+def headed(heading: str, caption: str, size: tuple[float, float] = PAGE) -> Any:
+    """A page with a heading, and a line in small print below it; ``size`` in inches."""
+    figure = blank(*size)
+    figure.text(0.05, 1 - 0.39 / size[1], ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
+    figure.text(0.05, 1 - 0.53 / size[1], caption, fontsize=7, color="0.35", parse_math=False)
     return figure
 
 
@@ -160,8 +156,7 @@ def _placed(glyph: GlyphResult, corner: FloatArray) -> Callable[[FloatArray], Fl
 
 
 def _draw(axes: Any, curves: Sequence[FloatArray], drawn: Sequence[Teeth]) -> None:
-    outline = outline_patch(curves, facecolor="0.93", edgecolor="black", linewidth=0.5)
-    for patch in [*outline, *comb_patches(drawn)]:
+    for patch in [*outline_patch(curves, **OUTLINE), *comb_patches(drawn)]:
         axes.add_patch(patch)
 
 
@@ -211,7 +206,8 @@ def _length(contour: Contour) -> float:
     return float(np.hypot(*np.diff(contour.points, axis=0).T).sum())
 
 
-def _legend(figure: Any, place: tuple[float, float, float, float], reach: float, whose: str = "") -> None:
+def colour_legend(figure: Any, place: tuple[float, float, float, float], reach: float, whose: str = "") -> None:
+    """The colours of curvature up to ``reach`` in 1/em, at a place of the page: left, bottom, width and height."""
     bar = colour_bar(figure, reach, cax=figure.add_axes(place), orientation="horizontal")
     bar.set_label(f"curvature{whose} in 1/em, convex positive", fontsize=6)
     bar.ax.tick_params(labelsize=6)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, Literal
 
 ImageKind = Literal["png", "pdf"]
@@ -41,3 +43,23 @@ def saved(figure: Any, kind: FigureKind, dpi: float = DPI) -> bytes:
     with rc_context({"svg.hashsalt": "glyphspline"}):  # the names of an SVG's parts
         figure.savefig(file, format=kind, **how[kind])
     return file.getvalue()
+
+
+def write_pages(path: Path, figures: Iterable[Any]) -> int:
+    """Write figures as the pages of a PDF, which is replaced when it is complete; their number.
+
+    One page is held in memory at a time.
+    """
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    partial = path.with_name(f".{path.name}.part")
+    count = 0
+    try:
+        with PdfPages(partial, metadata=UNDATED) as pages:
+            for figure in figures:
+                pages.savefig(figure)
+                count += 1
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return count
