@@ -20,6 +20,7 @@ from fontTools.varLib import set_default_weight_width_slant
 from fontTools.varLib.hvar import add_HVAR
 from fontTools.varLib.instancer import setMacOverlapFlags
 
+from ...curves.integrals import area
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import DesignAxis, Masters
 from ...readers import Font, Source
@@ -73,9 +74,8 @@ def to_new_variable_font(
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
     _add_advances(font, masters)
-    data, summary = to_variable_font(
-        _opened(font, default.path), {names[name]: new for name, new in redrawn.items()}, "ttf", tolerance=tolerance
-    )
+    drawn = {names[name]: _clockwise(new) for name, new in redrawn.items()}
+    data, summary = to_variable_font(_opened(font, default.path), drawn, "ttf", tolerance=tolerance)
     given = {stored: name for name, stored in names.items()}
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
     missed = {given[stored]: reason for stored, reason in summary.left.items()}
@@ -146,6 +146,14 @@ def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
             deltas[1 - PHANTOMS] = tuple(delta)
             variations[name].append(TupleVariation({glyph.axes[0].tag: tuple(region[0])}, deltas))
     FontBuilder(font=font).setupGvar(variations)
+
+
+def _clockwise(new: Redrawn) -> Redrawn:
+    """The glyph with ink to the right of its contours in the default, as TrueType has it."""
+    if sum(area(contour.cubics()[0]) for contour in new.contours) <= 0:
+        return new
+    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
+    return replace(new, contours=tuple(contour.reversed() for contour in new.contours), inner=inner)
 
 
 def _opened(font: TTFont, path: Path) -> Font:
