@@ -27,8 +27,9 @@ from glyphspline.writers.font.implied_quadratics import basis, quadratics
 from glyphspline.writers.font.master_deltas import Redrawn, as_drawn, nearest_whole, rounded_deltas
 from glyphspline.writers.font.variable_font import components, to_variable_font
 
-from .variable_fonts import composed, quadratic, variable_font
+from .test_masters import composed
 from .variable_drawings import Drawing, Shaper, apart, as_it_is, changed_tables, dense, refitted, turns_of
+from .variable_fonts import quadratic, variable_font
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 TTF, OTF = FONTS / "variable.ttf", FONTS / "variable-cff2.otf"

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .galleries import write_gallery as write_gallery
     from .lock import locked as locked
     from .manifest import entries_of as entries_of
+    from .masters_run import convert_font_masters as convert_font_masters
     from .spec import Limits as Limits
     from .spec import RunSpec as RunSpec
     from .summary import Summary as Summary
@@ -25,6 +26,7 @@ _HOMES = {
     "RunSpec": ".spec",
     "Summary": ".summary",
     "convert_font": ".font_run",
+    "convert_font_masters": ".masters_run",
     "entries_of": ".manifest",
     "faces_of": ".font_search",
     "find_fonts": ".font_search",

@@ -72,6 +72,7 @@ class RunSpec:
         options: of the conversion. formats: of ``FORMATS``. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
+        masters: all masters of a variable font at once; see :mod:`.masters_run`.
         comb: whose curvature the maps show. corner_teeth: also where a smooth result turns about a corner.
     """
 
@@ -85,6 +86,7 @@ class RunSpec:
     stroke: str = Appearance.stroke
     comb: Whose = "result"
     corner_teeth: bool = False
+    masters: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
@@ -165,6 +167,7 @@ def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_sca
         "corner_teeth": spec.corner_teeth,
         "names": spec.names,
         "curvature_scale": curvature_scale,
+        **({"masters": True} if spec.masters else {}),
     }
 
 

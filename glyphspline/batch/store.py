@@ -5,33 +5,56 @@ from __future__ import annotations
 import base64
 import json
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
 from ..curves.bspline import Spline
+from ..fitting.masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..interpolation.result import Interpolation
+from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, FontMetrics, Outline
 from ..types import Views
 
 KINDS: dict[str, type] = {
     kind.__name__: kind
-    for kind in (Contour, ContourResult, FontMetrics, GlyphResult, Interpolation, Measures, Options, Outline, Spline)
+    for kind in (
+        Contour,
+        ContourResult,
+        DesignAxis,
+        FontMetrics,
+        GlyphResult,
+        Interpolation,
+        MasterContour,
+        Masters,
+        MastersContourResult,
+        MastersResult,
+        Measures,
+        Options,
+        Outline,
+        Spline,
+    )
 }
 """The classes in a result. Reading a file creates objects of these classes only."""
 
-TYPES = {"float64": "<f8", "int64": "<i8"}
+TYPES = {"float64": "<f8", "int64": "<i8", "bool": "|b1"}
+
+Result = TypeVar("Result")
 
 
-def to_text(result: GlyphResult) -> str:
+def to_text(result: GlyphResult | MastersResult) -> str:
     """The result as one line of JSON."""
     return json.dumps(_plain(result), separators=(",", ":")) + "\n"
 
 
-def from_text(text: str) -> GlyphResult:
-    """The result that was written.
+@overload
+def from_text(text: str) -> GlyphResult: ...
+@overload
+def from_text(text: str, kind: type[Result]) -> Result: ...
+def from_text(text: str, kind: type[Any] = GlyphResult) -> Any:
+    """The result that was written, of that kind.
 
     Raises:
         ValueError: the text is not one.
@@ -40,7 +63,7 @@ def from_text(text: str) -> GlyphResult:
         result = _made(json.loads(text))
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"not a stored result: {error}") from error
-    if not isinstance(result, GlyphResult):
+    if not isinstance(result, kind):
         raise ValueError("not a stored result")
     return result
 

@@ -171,6 +171,25 @@ Formats = Annotated[
         "--format", help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet."
     ),
 ]
+OfMasters = Annotated[
+    bool,
+    file_option(
+        "--masters",
+        help="All masters of a variable font at once: a variable font (--format otf, ttf) or designspace (ufo) out.",
+    ),
+]
+MoreFonts = Annotated[
+    list[Path] | None,
+    file_option(
+        "--from",
+        metavar="FONT",
+        help="With --masters and --axis: another single font, whose glyphs become masters beside FONT's. Repeatable.",
+    ),
+]
+NewAxis = Annotated[
+    str | None,
+    file_option("--axis", metavar="TAG=A:B", help="The axis of such fonts, as wght=300:700, a value for each in turn."),
+]
 FileNames = Annotated[
     Names,
     file_option(
@@ -290,7 +309,7 @@ def spec_of(given: Mapping[str, Any]) -> RunSpec:
     from ..batch import RunSpec
 
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    drawn = {name: given[name] for name in (*DRAWN, "names") if name in given}
+    drawn = {name: given[name] for name in (*DRAWN, "names", "masters") if name in given}
     return RunSpec(options_of(given), formats, **drawn)
 
 

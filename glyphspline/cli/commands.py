@@ -17,7 +17,7 @@ from . import arguments as opt
 from . import interruption
 from .messages import errors, listen, printable, say, stop
 from .progress import progress
-from .running import convert_fonts, run, workplace
+from .running import convert_fonts, convert_masters, run, workplace
 
 PATIENCE = 60.0
 """Time limit in seconds of ``info --deep`` for some hundred glyphs."""
@@ -74,6 +74,9 @@ def convert(
     remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
     measure: opt.Measure = Options.measure,
     formats: opt.Formats = "svg,curvature,gallery",
+    masters: opt.OfMasters = False,
+    others: opt.MoreFonts = None,
+    axis: opt.NewAxis = None,
     jobs: opt.Jobs = None,
     scheduler: opt.Scheduler = None,
     resume: opt.Resume = True,
@@ -97,6 +100,10 @@ def convert(
         found = find_fonts(fonts)
         if not found:
             stop("no fonts found")
+        if masters or others:
+            with workplace(jobs, scheduler, spec) as executor:
+                failed = convert_masters(found, spec, executor, given)
+            raise typer.Exit(1 if failed else 0)
         alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
         with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
             runs = convert_fonts(found, spec, executor, given, alone)

@@ -91,6 +91,33 @@ def convert_face(
     return FontRun(name, out, summary)
 
 
+def convert_masters(fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any]) -> bool:
+    """Convert a variable font, or single fonts that become one, in all masters; whether a glyph failed."""
+    from ..batch import convert_font_masters
+    from ..readers import open_source
+
+    others, axis = given["others"] or [], given["axis"]
+    if len(fonts) != 1:
+        stop("--masters takes one font")
+    if bool(others) != bool(axis):
+        stop("--from FONT and --axis TAG=A:B go together")
+    quiet, json_log = given["quiet"], given["json_log"]
+    sources = [open_source(font, given["face_index"] or 0) for font in (*fonts, *others)]
+    names = opt.selection_of(sources[0], given)
+    if not names:
+        stop("none of the glyphs asked for is in the font")
+    with json_lines() if json_log else progress(quiet) as observer:
+        summary = convert_font_masters(
+            sources, names, given["out"], spec, executor, axis=axis, restart=not given["resume"], observer=observer
+        )
+    if json_log:
+        say(json.dumps({"out": str(given["out"]), "glyphs": summary.glyphs, "failed": len(summary.failed)}))
+    elif not quiet:
+        for line in summary.lines():
+            say(line)
+    return bool(summary.failed)
+
+
 def run(
     source: Source,
     names: Sequence[str],
