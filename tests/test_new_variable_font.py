@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from fontTools.varLib.instancer import instantiateVariableFont
 
 from glyphspline import FontError, GlyphsplineError, OutputError, open_font, open_source
 from glyphspline.curves.integrals import area
-from glyphspline.outlines.masters import Masters
+from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, Source
 from glyphspline.readers.single_fonts import masters_of_fonts
@@ -25,6 +26,7 @@ from glyphspline.writers.designspace import write_designspace
 from glyphspline.writers.font.font_file import to_font
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font
+from glyphspline.writers.font.variable_font import VariableSummary
 
 from .test_masters import composed
 from .variable_drawings import Drawing, Shaper, apart, as_it_is, dense, refitted, turns_of
@@ -120,8 +122,17 @@ def off(drawn: Drawing, gid: int, outline: Outline) -> float:
 PAIRS = [("Light.ttf", "Bold.otf"), ("Light.otf", "Bold.ttf"), ("Light.ttf", "Bold.ttf")]
 
 
+class Built(NamedTuple):
+    """Two single fonts and what is built from them."""
+
+    fonts: list[Font]
+    data: bytes
+    redrawn: dict[str, Redrawn]
+    summary: VariableSummary
+
+
 @pytest.fixture(scope="module", params=PAIRS, ids="-".join)
-def built(request: pytest.FixtureRequest, single: dict[str, Path]) -> tuple[list[Font], bytes, dict[str, Redrawn], object]:
+def built(request: pytest.FixtureRequest, single: dict[str, Path]) -> Built:
     fonts = [open_font(single[name]) for name in request.param]
     redrawn, left = matched(fonts)
     assert list(left) == ["v"]
@@ -129,10 +140,10 @@ def built(request: pytest.FixtureRequest, single: dict[str, Path]) -> tuple[list
     data, summary = to_new_variable_font(fonts, AXIS, redrawn, left, tolerance=0.5)
     assert set(summary.glyphs) == set(redrawn)
     assert summary.left == left
-    return fonts, data, redrawn, summary
+    return Built(fonts, data, redrawn, summary)
 
 
-def test_the_ends_are_the_single_fonts(built: tuple[list[Font], bytes, dict[str, Redrawn], object]) -> None:
+def test_the_ends_are_the_single_fonts(built: Built) -> None:
     fonts, data, redrawn, summary = built
     drawing = Drawing(data)
     for x, font in zip((0.0, 1.0), fonts, strict=True):
@@ -145,9 +156,7 @@ def test_the_ends_are_the_single_fonts(built: tuple[list[Font], bytes, dict[str,
             assert off(drawing, gid, outline) <= stored + SINGLE_PRECISION
 
 
-def test_instances_in_the_middle_are_those_of_the_masters(
-    built: tuple[list[Font], bytes, dict[str, Redrawn], object],
-) -> None:
+def test_instances_in_the_middle_are_those_of_the_masters(built: Built) -> None:
     fonts, data, redrawn, summary = built
     drawing, away = Drawing(data), {}
     for x in (0.25, 0.5, 0.8):
@@ -162,9 +171,7 @@ def test_instances_in_the_middle_are_those_of_the_masters(
     assert away["c"] > 20
 
 
-def test_what_has_no_masters_is_the_default_s_everywhere(
-    built: tuple[list[Font], bytes, dict[str, Redrawn], object],
-) -> None:
+def test_what_has_no_masters_is_the_default_s_everywhere(built: Built) -> None:
     fonts, data, _, _ = built
     font, drawing = TTFont(BytesIO(data)), Drawing(data)
     gid = font.getGlyphID("v")
@@ -176,9 +183,7 @@ def test_what_has_no_masters_is_the_default_s_everywhere(
         assert drawing.font.get_glyph_h_advance(gid) == ADVANCES["v"][0]
 
 
-def test_kerning_and_features_are_the_default_s_everywhere(
-    built: tuple[list[Font], bytes, dict[str, Redrawn], object],
-) -> None:
+def test_kerning_and_features_are_the_default_s_everywhere(built: Built) -> None:
     _, data, _, _ = built
     font, shaper = TTFont(BytesIO(data)), Shaper(data)
     assert {record.FeatureTag for record in font["GSUB"].table.FeatureList.FeatureRecord} == {"salt"}
@@ -188,7 +193,7 @@ def test_kerning_and_features_are_the_default_s_everywhere(
         assert shaped == pytest.approx([advances[0] - 35, *advances[1:]], abs=0.5)
 
 
-def test_axis_instances_and_names(built: tuple[list[Font], bytes, dict[str, Redrawn], object], tmp_path: Path) -> None:
+def test_axis_instances_and_names(built: Built, tmp_path: Path) -> None:
     _, data, _, _ = built
     path = tmp_path / "new.ttf"
     path.write_bytes(data)
@@ -205,7 +210,7 @@ def test_axis_instances_and_names(built: tuple[list[Font], bytes, dict[str, Redr
     assert all(tables["glyf"][name].flags[0] & flagOverlapSimple for name in ("o", "n", "u", "c"))
 
 
-def test_advances_without_reading_outlines(built: tuple[list[Font], bytes, dict[str, Redrawn], object]) -> None:
+def test_advances_without_reading_outlines(built: Built) -> None:
     """``HVAR`` says what the phantom points of ``gvar`` say."""
     _, data, redrawn, _ = built
     font = TTFont(BytesIO(data))
@@ -220,7 +225,7 @@ def test_advances_without_reading_outlines(built: tuple[list[Font], bytes, dict[
             assert with_it.font.get_glyph_h_advance(gid) == without.font.get_glyph_h_advance(gid)
 
 
-def test_contours_have_ink_to_the_right(built: tuple[list[Font], bytes, dict[str, Redrawn], object]) -> None:
+def test_contours_have_ink_to_the_right(built: Built) -> None:
     _, data, redrawn, _ = built
     drawing, font = Drawing(data), TTFont(BytesIO(data))
     assert area(redrawn["o"].contours[0].cubics()[0]) > 0  # matched contours have it to the left
@@ -234,6 +239,7 @@ def test_redrawn_arcs_have_no_kinks_between_the_ends(single: dict[str, Path]) ->
     fonts = [open_font(single[name]) for name in ("Light.ttf", "Bold.otf")]
     redrawn = {name: refitted(new.masters) for name, new in matched(fonts)[0].items() if name in "onu"}
     data, summary = to_new_variable_font(fonts, AXIS, redrawn, tolerance=0.5)
+    assert max(glyph.distance for glyph in summary.glyphs.values()) < 1
     drawing, smooth = Drawing(data), 0
     for x in np.linspace(0, 1, 9):
         drawing.at(np.array([x]))
@@ -334,8 +340,6 @@ def test_what_cannot_be_built_is_refused(single: dict[str, Path]) -> None:
 def test_a_contour_backwards_is_the_same_curve() -> None:
     points: FloatArray = np.random.default_rng(0).normal(size=(2, 8, 2))
     degrees = np.array([3, 1, 2, 2])
-    from glyphspline.outlines.masters import MasterContour
-
     there = MasterContour(points, degrees)
     back = there.reversed()
     assert back.degrees.tolist() == [2, 2, 1, 3]
