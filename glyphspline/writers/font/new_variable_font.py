@@ -137,8 +137,7 @@ def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
         advances = np.stack([glyph.advances, np.zeros(len(glyph))], axis=1)[:, None]
         steps = rounded_deltas(glyph, advances, 1)
         check_steps(steps, 1, name)
-        # With this bearing renderers draw an outline where its points are.
-        metrics[name] = (int(steps[0, 0, 0]), getattr(glyf[name], "xMin", 0))
+        metrics[name] = (int(steps[0, 0, 0]), metrics[name][1])
         count = len(getattr(glyf[name], "coordinates", ())) + PHANTOMS
         variations[name] = []
         for region, delta in zip(glyph.regions.tolist(), steps[1:, 0].tolist(), strict=True):
