@@ -80,6 +80,10 @@ class MasterContour:
         """The contour with (K,) weights of the masters."""
         return Contour(np.einsum("k,knc->nc", weights, self.points), self.degrees)
 
+    def reversed(self) -> MasterContour:
+        """The contour in the opposite direction from the same start point."""
+        return MasterContour(np.roll(self.points[:, ::-1], 1, axis=1), self.degrees[::-1])
+
     def __len__(self) -> int:
         return len(self.degrees)
 

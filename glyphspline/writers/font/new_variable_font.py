@@ -1,0 +1,172 @@
+"""A variable font built from single fonts, whose glyphs were matched and drawn in all masters.
+
+The default font gives all tables; quadratic outlines and the advances of the matched glyphs vary, nothing else does.
+Kerning, features, vertical metrics and all other glyphs are the default's at every location.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from fontTools.fontBuilder import FontBuilder
+from fontTools.otlLib.builder import buildStatTable
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables.TupleVariation import TupleVariation
+from fontTools.varLib import set_default_weight_width_slant
+from fontTools.varLib.hvar import add_HVAR
+from fontTools.varLib.instancer import setMacOverlapFlags
+
+from ...curves.integrals import area
+from ...errors import GlyphsplineError, OutputError
+from ...outlines.masters import DesignAxis, Masters
+from ...readers import Font, Source
+from ...readers.single_fonts import axis_of
+from .font_file import decomposed, to_font
+from .font_tables import postscript
+from .master_deltas import Redrawn, check_steps, rounded_deltas
+from .variable_font import VariableSummary, to_variable_font
+from .variable_glyf import PHANTOMS, users
+
+ELIDABLE = "Regular"
+"""The style that is left out of the names of others."""
+
+
+def to_new_variable_font(
+    sources: Sequence[Source],
+    axis: str,
+    redrawn: Mapping[str, Redrawn],
+    left: Mapping[str, str] | None = None,
+    *,
+    tolerance: float = 0.5,
+    family: str | None = None,
+) -> tuple[bytes, VariableSummary]:
+    """The font as a TTF's bytes; the same input gives the same bytes.
+
+    Args:
+        sources: single fonts, UFOs or drawings, the default first; of at least two. Its named instances are these.
+        axis: like "wght=300:700", a value a font.
+        redrawn: name of a glyph in the default to its contours in all masters, which are those of
+            :func:`...readers.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
+            simple glyphs.
+        left: names of glyphs that have no masters, to the reasons. All glyphs that are not in ``redrawn`` look as in
+            the default everywhere.
+        tolerance: how far the quadratics, rounded, may be from the contours given, in units of the default.
+        family: its name; None is the default's with "Spline".
+
+    Returns:
+        The bytes, and the facts; glyphs that could not be written are added to those ``left``.
+
+    Raises:
+        FontError: the axis is none for these fonts, or the default cannot become a font.
+        OutputError: no glyph varies, or masters belong to another axis.
+        GlyphsplineError: the default has no such glyph.
+    """
+    design, values = axis_of(axis, len(sources))
+    default = sources[0]
+    _check(default, design, redrawn)
+    font = TTFont(BytesIO(to_font(default, (), "ttf", family=family)[0]), recalcTimestamp=False)
+    names = _names(default, font)
+    masters = {names[name]: new.masters for name, new in redrawn.items()}
+    styles = _styles(sources, values)
+    _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
+    _add_advances(font, masters)
+    drawn = {names[name]: _clockwise(new) for name, new in redrawn.items()}
+    data, summary = to_variable_font(_opened(font, default.path), drawn, "ttf", tolerance=tolerance)
+    given = {stored: name for name, stored in names.items()}
+    glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
+    missed = {given[stored]: reason for stored, reason in summary.left.items()}
+    return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left={**(left or {}), **missed})
+
+
+def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) -> None:
+    if not redrawn:
+        raise OutputError("no glyph varies", font=str(default.path))
+    for name, new in redrawn.items():
+        if name not in default.glyph_names:
+            raise GlyphsplineError("the font has no such glyph", font=str(default.path), glyph=name)
+        if new.masters.axes != (design,):
+            raise OutputError(f"its masters are not along {design.tag} alone", font=str(default.path), glyph=name)
+
+
+def _names(source: Source, font: TTFont) -> dict[str, str]:
+    """Names of the source's glyphs to those in the font, whose order is the source's if that is a font's."""
+    if isinstance(source, Font):
+        return dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
+    return {name: name for name in source.glyph_names}
+
+
+def _styles(sources: Sequence[Source], values: Sequence[float]) -> list[str]:
+    """Names of the instances: the styles of the fonts, with the values where fonts have the same style."""
+    styles = [source.style for source in sources]
+    if len(set(styles)) == len(styles):
+        return styles
+    return [f"{style} {value:g}" for style, value in zip(styles, values, strict=True)]
+
+
+def _add_axis(font: TTFont, design: DesignAxis, instances: Mapping[str, float], family: str) -> None:
+    """Axis, instances and their names: ``fvar`` and ``STAT``, and the default's place in ``OS/2``."""
+    font["name"].setName(postscript(family), 25, 3, 1, 0x409)  # PostScript names of instances begin so
+    builder = FontBuilder(font=font)
+    axes = [(design.tag, design.minimum, design.default, design.maximum, design.name)]
+    places = [{"location": {design.tag: value}, "stylename": style} for style, value in instances.items()]
+    builder.setupFvar(axes, places)
+    named = [
+        {"value": value, "name": style, "flags": 0x2 if style == ELIDABLE else 0}
+        for style, value in sorted(instances.items(), key=lambda pair: pair[1])
+    ]
+    stat = [{"tag": design.tag, "name": design.name, "values": named}]
+    buildStatTable(font, stat, elidedFallbackName=ELIDABLE, macNames=False)
+    set_default_weight_width_slant(font, {design.tag: design.default})
+
+
+def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
+    """``gvar`` with the advances of glyphs, and points that do not move yet; the glyphs are simple afterwards."""
+    glyf, metrics = font["glyf"], font["hmtx"].metrics
+    # What has a component that varies would vary with it.
+    simple = {name: decomposed(glyf, name) for name in users(font, masters) if glyf[name].isComposite()}
+    for name, glyph in simple.items():
+        glyf[name] = glyph
+        glyph.recalcBounds(glyf)
+    setMacOverlapFlags(glyf)  # contours that are apart in one master may overlap in another
+    variations: dict[str, list[TupleVariation]] = {}
+    for name, glyph in masters.items():
+        advances = np.stack([glyph.advances, np.zeros(len(glyph))], axis=1)[:, None]
+        steps = rounded_deltas(glyph, advances, 1)
+        check_steps(steps, 1, name)
+        metrics[name] = (int(steps[0, 0, 0]), metrics[name][1])
+        count = len(getattr(glyf[name], "coordinates", ())) + PHANTOMS
+        variations[name] = []
+        for region, delta in zip(glyph.regions.tolist(), steps[1:, 0].tolist(), strict=True):
+            deltas = [(0, 0)] * count
+            deltas[1 - PHANTOMS] = tuple(delta)
+            variations[name].append(TupleVariation({glyph.axes[0].tag: tuple(region[0])}, deltas))
+    FontBuilder(font=font).setupGvar(variations)
+
+
+def _clockwise(new: Redrawn) -> Redrawn:
+    """The glyph with ink to the right of its contours in the default, as TrueType has it."""
+    if sum(area(contour.cubics()[0]) for contour in new.contours) <= 0:
+        return new
+    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
+    return replace(new, contours=tuple(contour.reversed() for contour in new.contours), inner=inner)
+
+
+def _opened(font: TTFont, path: Path) -> Font:
+    file = BytesIO()
+    font.save(file, reorderTables=False)
+    return Font(path, file.getvalue(), 0, 1, None)
+
+
+def _finished(data: bytes, static: Sequence[str]) -> bytes:
+    """The font with ``HVAR``, and without variations of the glyphs that kept their outlines."""
+    font = TTFont(BytesIO(data), recalcBBoxes=False, recalcTimestamp=False)
+    for name in static:
+        font["gvar"].variations[name] = []
+    add_HVAR(font)
+    file = BytesIO()
+    font.save(file, reorderTables=False)
+    return file.getvalue()
