@@ -199,6 +199,25 @@ def test_the_command_writes_a_variable_font_and_a_designspace(tmp_path: Path) ->
     assert list((tmp_path / "out").rglob("*.designspace"))
 
 
+def test_single_fonts_become_a_variable_one(tmp_path: Path) -> None:
+    from fontTools.varLib.instancer import instantiateVariableFont
+
+    source = FONTS / "variable.ttf"
+    for value in (400, 900):
+        instantiateVariableFont(TTFont(source), {"wght": value}).save(tmp_path / f"{value}.ttf")
+    call = ["convert", str(tmp_path / "400.ttf"), "--from", str(tmp_path / "900.ttf"), "--axis", "wght=400:900"]
+    call += ["--masters", "--glyphs", "o,stem,space", "--corners", "sharp", "--format", "ttf,ufo", "--jobs", "0"]
+    done = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    font = gs.open_font(next((tmp_path / "out").glob("*.ttf")), location={"wght": 900})
+    bold = gs.open_font(source, location={"wght": 900})
+    for name in ("o", "stem", "space"):
+        assert font.outline(name).advance == bold.outline(name).advance
+    ours, theirs = (np.concatenate([c.cubics() for c in f.outline("o").contours]) for f in (font, bold))
+    assert apart(ours, theirs) < 1.5
+    assert list((tmp_path / "out").rglob("*.designspace"))
+
+
 def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
     call = ["convert", str(CFF2), "--masters", "--all", "--out", str(tmp_path / "out"), "--jobs", "0"]
     done = CliRunner().invoke(app, call)

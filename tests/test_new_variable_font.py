@@ -22,7 +22,7 @@ from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, Source
 from glyphspline.readers.single_fonts import masters_of_fonts
 from glyphspline.types import FloatArray
-from glyphspline.writers.designspace import write_designspace
+from glyphspline.writers.designspace_folder import write_designspace
 from glyphspline.writers.font.font_file import to_font
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font

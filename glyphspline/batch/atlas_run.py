@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import GlyphsplineError, OptionError
 from ..fitting.convert import convert
-from ..fitting.masters import MastersResult, convert_masters
+from ..fitting.convert_masters import MastersResult, convert_masters
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult, as_glyph
 from ..outlines.kinks import tags_of

@@ -124,7 +124,7 @@ def convert_font_masters(
     with locked(out):
         prepare(first, glyphs, out, spec, restart)
         write_run(out, describe(first, spec, glyphs, None) | ({"axis": axis} if axis else {}))
-        tasks = tasks_of(first, _with_components(first, glyphs, spec))
+        tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec))
         summary = MastersSummary()
         options = spec.options
         if "ttf" in spec.formats:
@@ -143,7 +143,7 @@ def convert_font_masters(
                 observer(done, len(tasks), len(summary.failed))
         results = {task.name: result for task in tasks if (result := _stored(job.results, task)) is not None}
         _count(summary, results)
-        stays = _write_fonts(sources, results, out, spec, summary)
+        stays = _write_fonts(sources, results, out, spec, summary, axis)
         _write_manifest(out, tasks, results, summary, stays)
     summary.seconds = time.perf_counter() - began
     return summary
@@ -187,6 +187,8 @@ def _masters(job: MastersJob, task: Task) -> Masters:
 def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
     """Raise before the run if a format cannot be written."""
     font = sources[0]
+    if axis is not None and "otf" in spec.formats:
+        raise OutputError("single fonts become a variable font with quadratic outlines: ask for ttf, or ufo")
     for flavour in ("otf", "ttf"):
         if flavour in spec.formats and axis is None:
             from ..writers.font.variable_font import check_flavour
@@ -230,20 +232,31 @@ def _count(summary: MastersSummary, results: dict[str, MastersResult]) -> None:
 
 
 def _write_fonts(
-    sources: Sequence[Source], results: dict[str, MastersResult], out: Path, spec: RunSpec, summary: MastersSummary
+    sources: Sequence[Source],
+    results: dict[str, MastersResult],
+    out: Path,
+    spec: RunSpec,
+    summary: MastersSummary,
+    axis: str | None,
 ) -> dict[str, str]:
     """Write the run's fonts; returns why glyphs of them have their old outlines."""
     source, stays = sources[0], dict[str, str]()
-    redrawn = {name: redrawn_glyph(result) for name, result in results.items() if result.contours}
+    redrawn = {name: redrawn_glyph(result) for name, result in results.items() if result.contours or axis}
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     flavours: list[Flavour] = [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
     for flavour in flavours:
-        assert isinstance(source, Font)
-        from ..writers.font.variable_font import to_variable_font
-
         path = out / f"{file_stem(source)}.{flavour}"
         with writing(path):
-            data, facts = to_variable_font(source, redrawn, flavour, tolerance=(1 - SHARE) * tolerance)
+            if axis is None:
+                from ..writers.font.variable_font import to_variable_font
+
+                assert isinstance(source, Font)
+                data, facts = to_variable_font(source, redrawn, flavour, tolerance=(1 - SHARE) * tolerance)
+            else:
+                from ..writers.font.new_variable_font import to_new_variable_font
+
+                left = dict(summary.failed)
+                data, facts = to_new_variable_font(sources, axis, redrawn, left=left, tolerance=(1 - SHARE) * tolerance)
             write_whole(str(path), data, durable=True)
         remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
         if facts.largest_distance is not None:
@@ -251,7 +264,7 @@ def _write_fonts(
         summary.remarks.append(remark)
         stays |= facts.left
     if "ufo" in spec.formats:
-        from ..writers.designspace import write_designspace
+        from ..writers.designspace_folder import write_designspace
 
         left = write_designspace(source, redrawn, out / f"{file_stem(source)}.ufo")
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")

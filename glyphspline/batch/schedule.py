@@ -41,18 +41,23 @@ class InProcess(Executor):
 
 
 def workers(
-    jobs: int | None, seconds: float, options: Options | None = None, formats: Sequence[str] = (), expected: int = 0
+    jobs: int | None,
+    seconds: float,
+    options: Options | None = None,
+    formats: Sequence[str] = (),
+    expected: int = 0,
+    masters: bool = False,
 ) -> Executor:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
     Args:
         seconds: time limit of a batch, after which its worker is killed.
-        options, formats: of the run; the compiled code that they need is loaded before the first call.
+        options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
     """
     if jobs == 0:
         return InProcess()
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, modules_for(options, formats), expected)
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, modules_for(options, formats, masters), expected)
 
 
 def pool_size(pool: Executor) -> int:

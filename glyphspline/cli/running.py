@@ -33,7 +33,7 @@ def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterato
     else:
         from ..batch.schedule import workers
 
-        executor = workers(jobs, spec.limits.seconds, spec.options, spec.formats)
+        executor = workers(jobs, spec.limits.seconds, spec.options, spec.formats, masters=spec.masters)
     with executor:
         yield executor
 

@@ -116,6 +116,9 @@ class Masters:
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "contours", tuple(self.contours))
+
     def __repr__(self) -> str:
         tags = " ".join([axis.tag for axis in self.axes])
         counts = f"{counted(len(self), 'master')}, {counted(len(self.contours), 'contour')}"

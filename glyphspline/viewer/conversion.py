@@ -15,8 +15,8 @@ from ..curves.curvature import Comb, robust_scale
 from ..errors import GlyphsplineError
 from ..fitting.closed_curves import History, recorded
 from ..fitting.convert import convert
+from ..fitting.convert_masters import MastersResult, convert_masters
 from ..fitting.fixed_sampling import through_polygons
-from ..fitting.masters import MastersResult, convert_masters
 from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph

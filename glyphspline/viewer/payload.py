@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..fitting.masters import MastersResult
+from ..fitting.convert_masters import MastersResult
 from ..fitting.results import GlyphResult
 from ..interpolation.result import Interpolation
 from ..outlines.masters import MasterContour

@@ -43,15 +43,19 @@ KNOT = Contour(
 
 SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
-EVERYTHING = ("interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "rest")
+EVERYTHING = (
+    "interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "stacked", "rest"
+)  # fmt: skip
 """All modules of this package. Together they compile every function there is. The first ones share little, so that
 processes that begin at the same time seldom compile the same function."""
 
 
-def modules_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
+def modules_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
     """Names of the modules of this package that a run with these options needs; None: nothing is converted."""
     if options is None:
         return []
+    if masters:
+        return module_names(["stacked"])
     fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
     best = [f"{options.corners}_best"] if options.effort == "best" else []
     drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...fitting.masters import MastersResult
+from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
 from ...outlines.along_axis import AlongAxis, along_axis, places_along
 from ...outlines.kinks import Kink
