@@ -115,7 +115,7 @@ def test_merged_vertices_and_own_knots() -> None:
     [
         ([[0, 0], [1, 0], [np.nan, 1]], "not finite"),
         ([[0, 0], [1, 0], [0, 0]], "2 distinct"),
-        ([[0, 0, 0]], "shape"),
+        ([[0], [1], [2]], "shape"),
         ([[0, 0], [1e200, 0], [0, 1]], "spread"),
         (["a", "b"], "numbers"),
     ],
