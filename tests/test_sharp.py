@@ -204,7 +204,7 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     assert closer.where[q, :3].tolist() == pieces.where[q, :3].tolist()
     assert closer.errors[q] <= 0.9 * SETTINGS.near
     for k in np.flatnonzero(~poor):
-        old, new = (p.vertices[p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
+        old, new = (p.vertices[:, p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
         np.testing.assert_array_equal(old, new)
     ends = closer.vertices[closer.starts[q]], closer.vertices[closer.starts[q + 1] - 1]
     np.testing.assert_array_equal(ends, pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]][[0, -1]])
