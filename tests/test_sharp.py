@@ -206,8 +206,8 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     for k in np.flatnonzero(~poor):
         old, new = (p.vertices[:, p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
         np.testing.assert_array_equal(old, new)
-    ends = closer.vertices[closer.starts[q]], closer.vertices[closer.starts[q + 1] - 1]
-    np.testing.assert_array_equal(ends, pieces.vertices[pieces.starts[q] : pieces.starts[q + 1]][[0, -1]])
+    ends = [p.vertices[0, [p.starts[q], p.starts[q + 1] - 1]] for p in (pieces, closer)]
+    np.testing.assert_array_equal(*ends)
 
 
 def curvatures(cubics: FloatArray) -> tuple[FloatArray, FloatArray]:
