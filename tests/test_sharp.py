@@ -206,8 +206,8 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     for k in np.flatnonzero(~poor):
         old, new = (p.vertices[:, p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
         np.testing.assert_array_equal(old, new)
-    ends = [p.vertices[0, [p.starts[q], p.starts[q + 1] - 1]] for p in (pieces, closer)]
-    np.testing.assert_array_equal(*ends)
+    old, new = (p.vertices[:, [p.starts[q], p.starts[q + 1] - 1]] for p in (pieces, closer))
+    np.testing.assert_array_equal(old, new)
 
 
 def curvatures(cubics: FloatArray) -> tuple[FloatArray, FloatArray]:
