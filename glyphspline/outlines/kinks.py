@@ -68,7 +68,7 @@ class Kink:
         between: user-space values, on the axis, of the masters before and behind; one value twice at a master.
         at_masters: user-space value and turn of each master on the axis.
         made: degrees by which ``turn`` exceeds the turn in every master on the axis: made by interpolation.
-        jump: largest relative jump of curvature along the axis: |κ₁ - κ₀| / max(|κ₀|, |κ₁|), from 0 to 2.
+        jump: largest relative jump of curvature along the axis: ``|κ₁ - κ₀| / max(|κ₀|, |κ₁|)``, from 0 to 2.
         jump_location: where that is.
     """
 
