@@ -232,6 +232,17 @@ def move(given: Given, group: Group, slots: int, b: int) -> None:
 
 
 @compiled(internal=True)
+def repeated(i: int, n: int, closed: bool) -> int:
+    """The vertex that a halo repeats in the place of vertex i; negative if there is none.
+
+    An open arc has one control point more, n, kept beyond the last vertex in its block.
+    """
+    if closed:
+        return i + n if i < 0 else (i - n if i >= n else i)
+    return i if i <= n else -1
+
+
+@compiled(internal=True)
 def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
     """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed."""
     block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
@@ -240,13 +251,10 @@ def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
         inside = min(LANES, n - b * LANES)
         for k in range(4):
             to = first + (k if k < 2 else inside + k)
-            i = b * LANES + to - first - HALO
-            if given.closed:
-                i += n if i < 0 else (-n if i >= n else 0)
-            elif i < 0 or i > n:
+            i = repeated(b * LANES + to - first - HALO, n, given.closed)
+            if i < 0:
                 continue
-            # an open arc has one control point more, kept beyond the last vertex in its block
-            owner = i if i < n else n - 1
+            owner = min(i, n - 1)
             source = group.blocks
             at = np.uint64(owner // LANES * BLOCK + first + owner % LANES + HALO + i - owner)
             block[PX + np.uint64(to)], block[PY + np.uint64(to)] = source[PX + at], source[PY + at]

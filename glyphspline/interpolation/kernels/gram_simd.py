@@ -30,7 +30,7 @@ from .blocks import (
 )  # fmt: skip
 from .certificate import BEYOND, GIVEN_UP, SEARCHED, proven_in_parts
 from .footpoint import BERNSTEIN, reduce, search_piece
-from .newton_simd import GUARD, LEFT, NEWTON_PASSES, SETTLED_STEP, least_quartic, least_rise
+from .newton_simd import GUARD, NEWTON_PASSES, least_quartic, least_rise, stepped
 
 PAIR = 2 * STRIDE
 """Arrays of coordinates have a field of lanes for each: P of control points, Q of vertices, N of the next control
@@ -178,24 +178,9 @@ def _newton(S: FloatArray, m: int) -> int:
         wz = S[WZ + j]
         speed = fma(fma(fma(3.0 * h5, y, 12.0 * wz), y, fma(6.0, S[VZ + j], 4.0 * S[WW + j])), y, 4.0 * S[VW + j])
         speed = fma(speed, y, S[VV + j])
-        convex = bend > 0.05 * speed
-        slope = select(convex, bend, speed)
-        slope = select(slope > 0.0, slope, 1.0)
-        inverse = 1.0 / slope
-        step = h * inverse
-        correction = step * third * inverse
-        correction = select(correction < 0.5, correction, 0.5)
-        correction = select(correction > -0.5, correction, -0.5)
-        left = select(convex, correction * correction, 1.0)
-        correction = select(convex, correction, 0.0)
-        new = y - fma(step, correction, step)
-        new = select(new > low, new, low)
-        new = select(new < high, new, high)
-        moved = new - y
-        moved = select(moved > 0.0, moved, -moved)
+        new, settled = stepped(y, low, high, h, speed, bend, third)
         frozen = done > 0.0
-        length = high - low
-        settled = frozen | ((moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length))
+        settled = frozen | settled
         S[SY + j] = select(frozen, y, new)
         S[DONE + j] = select(settled, 1.0, 0.0)
         pending += select(settled, 0, 1)

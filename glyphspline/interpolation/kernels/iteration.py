@@ -28,6 +28,9 @@ from .vertices import UNCERTIFIED as GIVEN_UP_ON
 RUNNING, SOLVED_ONCE, SOLVED, DONE = range(4)
 """States of a polygon."""
 
+GO_ON, SOLVE, STORE = range(3)
+"""What follows a pass."""
+
 POLISHED = 1e-14
 """A frozen solve whose error is not below this share of the extent is done a second time, for its rounding errors."""
 
@@ -51,6 +54,45 @@ def largest(block: FloatArray, low: int, high: int) -> float:
 
 
 @compiled(internal=True)
+def pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int) -> None:
+    """Note which polygons have an error in block b that is not finite: they are not searched.
+
+    Args:
+        marks: where in S the flags of the vertices begin.
+    """
+    table, numbers = group.table, group.numbers
+    for q in range(slots):
+        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
+        for i in range(n):
+            if not np.inf > block[DD + np.uint64(first + i)]:
+                numbers[q, LARGEST] = np.inf
+        if numbers[q, LARGEST] == np.inf:
+            for i in range(n):
+                S[marks + np.uint64(first + i)] = 0.0
+            table[q, UNCERTIFIED] += n
+
+
+@compiled(internal=True)
+def take_in(
+    given: Given, group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int, searched: int
+) -> None:
+    """Each polygon's largest squared error so far, with those of block b, and its searches if any were ``searched``."""
+    table, numbers = group.table, group.numbers
+    count = (table[0, COUNT] + LANES - 1) // LANES
+    for q in range(slots):
+        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
+        for i in range(n if searched > 0 else 0):
+            mark = S[marks + np.uint64(first + i)]
+            table[q, SEARCHED] += mark >= MARK
+            table[q, UNCERTIFIED] += mark == GIVEN_UP
+        open_end = 0 if given.closed else 1
+        low = open_end if b == 0 else 0
+        high = n - open_end if b + 1 == count else n
+        D = largest(block, first + low, first + high) if high > low else 0.0
+        numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+
+
+@compiled(internal=True)
 def _one_pass(given: Given, group: Group, slots: int) -> None:
     """Moves, then footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
     S, table, numbers = group.scratch, group.table, group.numbers
@@ -66,26 +108,10 @@ def _one_pass(given: Given, group: Group, slots: int) -> None:
         block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
         m = whole_vectors(lanes_used(group, slots, b))
         bad, wild = seek(block, S, m)
-        for q in range(slots if wild > 0 else 0):
-            for i in range(min(LANES, table[q, COUNT] - b * LANES)):
-                if not np.inf > block[DD + np.uint64(table[q, LANE] + HALO + i)]:
-                    numbers[q, LARGEST] = np.inf
-            if numbers[q, LARGEST] == np.inf:  # not searched
-                for i in range(min(LANES, table[q, COUNT] - b * LANES)):
-                    S[BAD + np.uint64(table[q, LANE] + HALO + i)] = 0.0
-                table[q, UNCERTIFIED] += min(LANES, table[q, COUNT] - b * LANES)
+        if wild > 0:
+            pass_over(group, block, S, BAD, slots, b)
         searched = flagged(block, S, m) if bad > 0 else 0
-        for q in range(slots):
-            first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
-            for i in range(n if searched > 0 else 0):
-                mark = S[BAD + np.uint64(first + i)]
-                table[q, SEARCHED] += mark >= MARK
-                table[q, UNCERTIFIED] += mark == GIVEN_UP
-            open_end = 0 if given.closed else 1
-            low = open_end if b == 0 else 0
-            high = n - open_end if b + 1 == count else n
-            D = largest(block, first + low, first + high) if high > low else 0.0
-            numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+        take_in(given, group, block, S, BAD, slots, b, searched)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
 
@@ -140,30 +166,73 @@ def grown(array: FloatArray, size: int) -> FloatArray:
 
 
 @compiled(internal=True)
-def _after_pass(given: Given, found: Found, group: Group, q: int, history: FloatArray, every: int) -> bool:
-    """Record the error of polygon q, prepare its next pass, or store it; whether it is done."""
+def judged(given: Given, group: Group, q: int, history: FloatArray, every: int) -> int:
+    """Record the error of polygon q; whether it has another pass, is solved with its footpoints frozen, or is done."""
     table, n = group.table, group.table[q, COUNT]
-    state, error, again = table[q, STATE], np.sqrt(group.numbers[q, LARGEST]), False
+    state, error = table[q, STATE], np.sqrt(group.numbers[q, LARGEST])
     if state == SOLVED_ONCE and not error < POLISHED:
-        again = True
-    else:
-        history[table[q, PASSES] * every + table[q, ORDER]] = error / group.numbers[q, UNIT]
-        table[q, PASSES] += 1
+        return SOLVE
+    history[table[q, PASSES] * every + table[q, ORDER]] = error / group.numbers[q, UNIT]
+    table[q, PASSES] += 1
     if state == RUNNING:
         finite = np.inf > error
         if finite and not error < group.numbers[q, LIMIT] and table[q, PASSES] <= given.max_iterations:
-            if given.accelerate:
-                accelerate(group, q, given.closed, error, table[q, PASSES] == 1)
-            return False
-        again = given.solve and finite and n > (0 if given.closed else 2)
-    if not again or state == RUNNING:
-        _store(given, found, group, q)
-    if again:
-        good = solve(group, q, given.closed)
-        table[q, STATE] = SOLVED_ONCE if good and state == RUNNING else SOLVED
-        return False
+            return GO_ON
+        if given.solve and finite and n > (0 if given.closed else 2):
+            return SOLVE
+    return STORE
+
+
+@compiled(internal=True)
+def settle(group: Group, q: int, good: bool, first: bool) -> None:
+    """Note that the frozen system of polygon q is solved: it may be once more after the first time, if it was good."""
+    group.table[q, STATE] = SOLVED_ONCE if good and first else SOLVED
+
+
+@compiled(internal=True)
+def mark_done(group: Group, q: int) -> None:
+    """Note that polygon q is done."""
+    table = group.table
     table[q, STATE], table[table[q, ORDER], TOTAL] = DONE, table[q, PASSES]
-    return True
+
+
+@compiled(internal=True)
+def start_all(group: Group, slots: int) -> None:
+    """All polygons of a group before their first pass."""
+    for q in range(slots):
+        group.table[q, STATE], group.table[q, ORDER] = RUNNING, q
+        group.table[q, PASSES] = group.table[q, SEARCHED] = group.table[q, UNCERTIFIED] = 0
+
+
+@compiled(internal=True)
+def collected(
+    group: Group, slots: int, history: FloatArray, residuals: FloatArray, used: int
+) -> tuple[FloatArray, int]:
+    """The residuals with those of a group after the first ``used``, polygon after polygon; how many these are then."""
+    for q in range(slots):
+        count = group.table[q, TOTAL]
+        residuals = grown(residuals, used + count)
+        for i in range(count):
+            residuals[used + i] = history[i * slots + q]
+        used += count
+    return residuals, used
+
+
+@compiled(internal=True)
+def _after_pass(given: Given, found: Found, group: Group, q: int, history: FloatArray, every: int) -> bool:
+    """Record the error of polygon q, prepare its next pass, or store it; whether it is done."""
+    running = group.table[q, STATE] == RUNNING
+    what = judged(given, group, q, history, every)
+    if what == GO_ON and given.accelerate:
+        error = np.sqrt(group.numbers[q, LARGEST])
+        accelerate(group, q, given.closed, error, group.table[q, PASSES] == 1)
+    if what == STORE or (what == SOLVE and running):
+        _store(given, found, group, q)
+    if what == SOLVE:
+        settle(group, q, solve(group, q, given.closed), running)
+    if what == STORE:
+        mark_done(group, q)
+    return what == STORE
 
 
 @compiled(internal=True)
@@ -180,9 +249,7 @@ def iterate(
         History, residuals, and how many of these are used now.
     """
     table, every, left = group.table, slots, slots
-    for q in range(slots):
-        table[q, STATE], table[q, PASSES], table[q, SEARCHED], table[q, ORDER] = RUNNING, 0, 0, q
-        table[q, UNCERTIFIED] = 0
+    start_all(group, slots)
     while left > 0:
         _one_pass(given, group, slots)
         lanes = 0
@@ -196,9 +263,5 @@ def iterate(
                 lanes += table[q, COUNT] + 2 * HALO
         if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
             slots = close_ranks(group, slots, DONE)
-    for q in range(every):
-        residuals = grown(residuals, used + table[q, TOTAL])
-        for i in range(table[q, TOTAL]):
-            residuals[used + i] = history[i * every + q]
-        used += table[q, TOTAL]
+    residuals, used = collected(group, every, history, residuals, used)
     return history, residuals, used

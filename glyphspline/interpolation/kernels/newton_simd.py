@@ -122,6 +122,36 @@ def least_rise(slope: float, c0: float, c1: float, c2: float, c3: float, c4: flo
 
 
 @inlined
+def stepped(
+    y: float, low: float, high: float, slope: float, speed: float, bend: float, third: float
+) -> tuple[float, bool]:
+    """Newton's next estimate from y, in [low, high], with Chebyshev's term where the distance is convex; whether it may
+    be the last.
+
+    Args:
+        slope, bend, third: half the first and second, and a quarter of the third derivative of the squared distance.
+        speed: the square of it.
+    """
+    convex = bend > 0.05 * speed
+    steep = select(convex, bend, speed)
+    steep = select(steep > 0.0, steep, 1.0)
+    inverse = 1.0 / steep
+    step = slope * inverse
+    correction = step * third * inverse
+    correction = select(correction < 0.5, correction, 0.5)
+    correction = select(correction > -0.5, correction, -0.5)
+    left = select(convex, correction * correction, 1.0)
+    correction = select(convex, correction, 0.0)
+    new = y - fma(step, correction, step)
+    new = select(new > low, new, low)
+    new = select(new < high, new, high)
+    moved = new - y
+    moved = select(moved > 0.0, moved, -moved)
+    length = high - low
+    return new, (moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length)
+
+
+@inlined
 def squares(speed: float, ax: float, ay: float, c4: float, L: float) -> float:
     """``GUARD`` of the squares of the terms of q over a length L, which the coefficients of Q do not exceed by much."""
     squared = L * L
@@ -184,25 +214,10 @@ def _newton(S: FloatArray, m: int) -> int:
         qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
         speed = dot(px, py, px, py)
         bend = fma(2.0, dot(qx, qy, ax, ay), speed)
-        convex = bend > 0.05 * speed
-        slope = select(convex, bend, speed)
-        slope = select(slope > 0.0, slope, 1.0)
-        inverse = 1.0 / slope
-        step = dot(qx, qy, px, py) * inverse
         third = 3.0 * (dot(px, py, ax, ay) + dot(qx, qy, zx, zy))
-        correction = step * third * inverse
-        correction = select(correction < 0.5, correction, 0.5)
-        correction = select(correction > -0.5, correction, -0.5)
-        left = select(convex, correction * correction, 1.0)
-        correction = select(convex, correction, 0.0)
-        new = y - fma(step, correction, step)
-        new = select(new > low, new, low)
-        new = select(new < high, new, high)
-        moved = new - y
-        moved = select(moved > 0.0, moved, -moved)
+        new, settled = stepped(y, low, high, dot(qx, qy, px, py), speed, bend, third)
         frozen = done > 0.0
-        length = high - low
-        settled = frozen | ((moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length))
+        settled = frozen | settled
         S[SY + j] = select(frozen, y, new)
         S[DONE + j] = select(settled, 1.0, 0.0)
         pending += select(settled, 0, 1)

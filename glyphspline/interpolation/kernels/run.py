@@ -82,12 +82,21 @@ def run(
             slots = lane = at = zero
         if k == k1:
             break
-        u = knots_of(given, found, k, n)
-        pad_intervals(u, given.closed, knot_unit, group.h[at:])
-        table[slots, POLYGON], table[slots, COUNT], table[slots, LANE], table[slots, INTERVALS] = k, n, lane, at
-        numbers[slots, UNIT], numbers[slots, KNOT_UNIT] = unit, knot_unit
-        settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
-        numbers[slots, LIMIT] = max(given.tolerances[k], settled) * unit
+        enter(given, found, group, slots, k, n, lane, at, unit, knot_unit)
         slots, lane, at = slots + 1, lane + n + 2 * HALO, at + n + 2 * PAD
     keep_alive((blocks, scratch, h, rows, table, numbers, memory, mixing))
     return residuals[:used]
+
+
+@compiled(internal=True)
+def enter(
+    given: Given, found: Found, group: Group, q: int, k: int, n: int, lane: int, at: int, unit: float, knot_unit: float
+) -> None:
+    """Make polygon k, of n vertices, number q of a group, at ``lane`` of the blocks and ``at`` of the intervals."""
+    table, numbers, u = group.table, group.numbers, knots_of(given, found, k, n)
+    pad_intervals(u, given.closed, knot_unit, group.h[at:])
+    table[q, POLYGON], table[q, COUNT], table[q, LANE], table[q, INTERVALS] = k, n, lane, at
+    settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
+    numbers[q, UNIT], numbers[q, KNOT_UNIT], numbers[q, LIMIT] = (
+        unit, knot_unit, max(given.tolerances[k], settled) * unit,
+    )  # fmt: skip

@@ -11,20 +11,21 @@ import numpy as np
 
 from ...compiled import borrowed, compiled, keep_alive
 from ...types import FloatArray, IntArray
-from ..method import SETTLED
 from .blocks import (
-    BLOCK, COUNT, DD, END, EX, EY, HALO, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LIMIT, NATURAL, ORDER, PAD, PASSES,
-    POLYGON, SEARCHED, SLOTS, STATE, STRIDE, TOTAL, UNCERTIFIED, UNIT, WIDTH, Found, Given, Group, clear, close_ranks,
-    lanes_used, place_weights, whole_vectors,
+    BLOCK, COUNT, END, EX, EY, HALO, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, NATURAL, PAD, PASSES,
+    POLYGON, SLOTS, STATE, STRIDE, TOTAL, UNIT, WIDTH, Found, Given, Group, clear, close_ranks,
+    lanes_used, place_weights, repeated, whole_vectors,
 )  # fmt: skip
-from .certificate import GIVEN_UP
-from .certificate import SEARCHED as MARK
 from .collocation import ROW, solve
 from .footpoint import WORK
 from .gram_simd import BAD, PAIR, SECOND, SPACE_SCRATCH, flagged_space, seek_space
-from .iteration import DONE, POLISHED, RUNNING, SOLVED, SOLVED_ONCE, SPARSE, grown, largest, store_rest
+from .iteration import (
+    DONE, RUNNING, SOLVE, SPARSE, STORE, collected, grown, judged, mark_done, pass_over, settle, start_all, store_rest,
+    take_in,
+)  # fmt: skip
 from .lemma2 import fill_intervals
-from .vertices import knots_of, pad_intervals, prepare
+from .run import enter
+from .vertices import prepare
 
 BESIDE, LAST = 0, 2
 """Rows of a polygon's ends (4, d): of both ends of an open arc the rest of the control point beside it, and the end."""
@@ -106,12 +107,10 @@ def _surround(given: Given, group: Group, P: FloatArray, ends: FloatArray, slots
             inside = min(LANES, n - b * LANES)
             for k in range(4):
                 to = first + (k if k < 2 else inside + k)
-                i = b * LANES + to - first - HALO
-                if given.closed:
-                    i += n if i < 0 else (-n if i >= n else 0)
-                elif i < 0 or i > n:
+                i = repeated(b * LANES + to - first - HALO, n, given.closed)
+                if i < 0:
                     continue
-                owner = i if i < n else n - 1
+                owner = min(i, n - 1)
                 at = owner // LANES * size + first + owner % LANES + HALO + i - owner
                 to += b * size
                 for axis in range(0, d * STRIDE, STRIDE):
@@ -133,29 +132,12 @@ def _one_pass(
         block, at, to = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * size, (b + 1) * size
         m = whole_vectors(lanes_used(group, slots, b))
         bad, wild = seek_space(block, P[at:to], Q[at:to], N[at:to], S, d, m)
-        for q in range(slots if wild > 0 else 0):
-            first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
-            for i in range(n):
-                if not np.inf > block[DD + np.uint64(first + i)]:
-                    numbers[q, LARGEST] = np.inf
-            if numbers[q, LARGEST] == np.inf:  # not searched
-                for i in range(n):
-                    S[BAD + np.uint64(first + i)] = 0.0
-                table[q, UNCERTIFIED] += n
+        if wild > 0:
+            pass_over(group, block, S, BAD, slots, b)
         searched = 0
         if bad > 0:
             searched = flagged_space(block, P[at:to], Q[at:to], N[at:to], S, d, m, b4, c, work)
-        for q in range(slots):
-            first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
-            for i in range(n if searched > 0 else 0):
-                mark = S[BAD + np.uint64(first + i)]
-                table[q, SEARCHED] += mark >= MARK
-                table[q, UNCERTIFIED] += mark == GIVEN_UP
-            open_end = 0 if given.closed else 1
-            low = open_end if b == 0 else 0
-            high = n - open_end if b + 1 == count else n
-            D = largest(block, first + low, first + high) if high > low else 0.0
-            numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+        take_in(given, group, block, S, BAD, slots, b, searched)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
 
@@ -202,26 +184,15 @@ def _after_pass(
     given: Given, found: Found, group: Group, P: FloatArray, N: FloatArray, q: int, history: FloatArray, every: int
 ) -> bool:
     """Record the error of polygon q, prepare its next pass, or store it; whether it is done."""
-    table, n = group.table, group.table[q, COUNT]
-    state, error, again = table[q, STATE], np.sqrt(group.numbers[q, LARGEST]), False
-    if state == SOLVED_ONCE and not error < POLISHED:
-        again = True
-    else:
-        history[table[q, PASSES] * every + table[q, ORDER]] = error / group.numbers[q, UNIT]
-        table[q, PASSES] += 1
-    if state == RUNNING:
-        finite = np.inf > error
-        if finite and not error < group.numbers[q, LIMIT] and table[q, PASSES] <= given.max_iterations:
-            return False
-        again = given.solve and finite and n > (0 if given.closed else 2)
-    if not again or state == RUNNING:
+    running = group.table[q, STATE] == RUNNING
+    what = judged(given, group, q, history, every)
+    if what == STORE or (what == SOLVE and running):
         _store(given, found, group, P, q)
-    if again:
-        good = _solve(given, group, P, N, q)
-        table[q, STATE] = SOLVED_ONCE if good and state == RUNNING else SOLVED
-        return False
-    table[q, STATE], table[table[q, ORDER], TOTAL] = DONE, table[q, PASSES]
-    return True
+    if what == SOLVE:
+        settle(group, q, _solve(given, group, P, N, q), running)
+    if what == STORE:
+        mark_done(group, q)
+    return what == STORE
 
 
 @compiled(internal=True)
@@ -248,9 +219,7 @@ def _iterate(
     """As :func:`.iteration.iterate`. The first control points are those in N."""
     table, every, left, d = group.table, slots, slots, given.points.shape[1]
     b, c, work = np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(WORK)
-    for q in range(slots):
-        table[q, STATE], table[q, PASSES], table[q, SEARCHED], table[q, ORDER] = RUNNING, 0, 0, q
-        table[q, UNCERTIFIED] = 0
+    start_all(group, slots)
     while left > 0:
         P, N = N, P
         _one_pass(given, group, P, Q, N, ends, slots, b, c, work)
@@ -265,11 +234,7 @@ def _iterate(
                 lanes += table[q, COUNT] + 2 * HALO
         if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
             slots = _close_ranks(group, N, Q, ends, d, slots)
-    for q in range(every):
-        residuals = grown(residuals, used + table[q, TOTAL])
-        for i in range(table[q, TOTAL]):
-            residuals[used + i] = history[i * every + q]
-        used += table[q, TOTAL]
+    residuals, used = collected(group, every, history, residuals, used)
     return history, residuals, used
 
 
@@ -322,12 +287,7 @@ def run_space(
             slots = lane = at = zero
         if k == k1:
             break
-        u = knots_of(given, found, k, n)
-        pad_intervals(u, given.closed, knot_unit, group.h[at:])
-        table[slots, POLYGON], table[slots, COUNT], table[slots, LANE], table[slots, INTERVALS] = k, n, lane, at
-        numbers[slots, UNIT], numbers[slots, KNOT_UNIT] = unit, knot_unit
-        settled = SETTLED * u[n - 1] / (n - 1) if given.solve else 0.0
-        numbers[slots, LIMIT] = max(given.tolerances[k], settled) * unit
+        enter(given, found, group, slots, k, n, lane, at, unit, knot_unit)
         slots, lane, at = slots + 1, lane + n + 2 * HALO, at + n + 2 * PAD
     keep_alive((blocks, coordinates, scratch, h, rows, table, numbers, nothing, ends))
     return residuals[:used]
