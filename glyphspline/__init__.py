@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from . import notebook as display
 from ._version import __version__
+from .checks.axis_kinks import AxisKinks, Kink, KinkReport, kinks
+from .checks.check import check
+from .checks.finding import Finding
+from .checks.kinds import Thresholds
 from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
@@ -15,7 +19,6 @@ from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
 from .notebook import plot
-from .outlines.kinks import AxisKinks, Kink, KinkReport, kinks
 from .outlines.masters import DesignAxis, MasterContour, Masters
 from .outlines.outline import Contour, FontMetrics, Outline
 from .outlines.sampling import sample
@@ -62,6 +65,7 @@ __all__ = [
     "Contour",
     "ContourResult",
     "DesignAxis",
+    "Finding",
     "Font",
     "FontError",
     "FontMetrics",
@@ -81,7 +85,9 @@ __all__ = [
     "OutputError",
     "PolygonError",
     "Spline",
+    "Thresholds",
     "__version__",
+    "check",
     "convert",
     "convert_many",
     "convert_masters",

@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.checks.along_axis import along_axis, places_along
 from glyphspline.cli import app
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
-from glyphspline.outlines.along_axis import along_axis, places_along
 from glyphspline.writers.figures.axis_pages import (
     axis_page,
     curves_of,

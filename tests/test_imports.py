@@ -19,7 +19,8 @@ PACKAGE = Path(__file__).parent.parent / "glyphspline"
 BASE = {"cache", "compiled", "compiling", "errors", "extras", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
-WRITERS = FITTING | {"readers", "writers"}
+CHECKS = CURVES | {"outlines", "checks"}
+WRITERS = FITTING | {"checks", "readers", "writers"}
 PLAN = {
     "_version": set(),
     "cache": {"errors"},
@@ -31,6 +32,7 @@ PLAN = {
     "curves": BASE,
     "interpolation": CURVES,
     "outlines": CURVES,
+    "checks": CHECKS,
     "fitting": FITTING,
     "readers": CURVES | {"outlines"},
     "writers": WRITERS,

@@ -12,8 +12,8 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.checks import axis_kinks as measuring
 from glyphspline.cli import app
-from glyphspline.outlines import kinks as measuring
 from glyphspline.outlines.joins import joins
 
 from .variable_fonts import WEIGHT, polygon, quadratic, variable_font

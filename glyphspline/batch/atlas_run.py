@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ..checks.axis_kinks import tags_of
 from ..errors import GlyphsplineError, OptionError
 from ..fitting.convert import convert
 from ..fitting.convert_masters import MastersResult, convert_masters
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult, as_glyph
-from ..outlines.kinks import tags_of
 from ..readers import Source
 from ..writers.figures.atlas import Glyph, write_atlas
 from ..writers.figures.axis_pages import OfAxis, write_axis_atlas

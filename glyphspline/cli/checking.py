@@ -8,9 +8,9 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, get_args
 
+from ..checks.axis_kinks import AxisKinks, Kink, KinkReport
+from ..checks.axis_kinks import Source as VariableSource
 from ..errors import OptionError
-from ..outlines.kinks import AxisKinks, Kink, KinkReport
-from ..outlines.kinks import Source as VariableSource
 from ..types import counted
 from ..writers.figures.images import FigureKind
 from .closing import WIDE

@@ -247,7 +247,7 @@ def check(
     """
     given = dict(locals())
     with errors():
-        from ..outlines.kinks import kinks
+        from ..checks.axis_kinks import kinks
         from ..readers import open_source
         from . import checking
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ...checks.along_axis import AlongAxis, along_axis, places_along
+from ...checks.axis_kinks import Kink
 from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
-from ...outlines.along_axis import AlongAxis, along_axis, places_along
-from ...outlines.kinks import Kink
 from ...outlines.masters import Masters
 from ...types import FloatArray, rounded_up
 from ..svg.curvature_map import LONGEST, TOOTH, Teeth, teeth

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from ..curves.integrals import integrals
+from ..outlines.masters import DesignAxis, Masters
+from ..outlines.outline import Outline
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray
-from .kinks import LEAST, AxisKinks, Kink, kinks
-from .masters import DesignAxis, Masters
-from .outline import Outline
-from .sampling import CORNER_ANGLE
+from .axis_kinks import LEAST, AxisKinks, Kink, kinks
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class AlongAxis:
 
     Attributes:
         masters: the glyph. location: user-space values of the other axes.
-        found: its smooth joints; see :func:`.kinks.kinks`.
+        found: its smooth joints; see :func:`.axis_kinks.kinks`.
         energies: (v,) bending energy of the arcs, in 1/em, at the values of the axis; infinite at a cusp.
     """
 

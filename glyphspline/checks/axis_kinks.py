@@ -17,9 +17,9 @@ from typing import Any, Protocol, overload
 import numpy as np
 
 from ..errors import GlyphsplineError, is_positive, require
+from ..outlines.masters import DesignAxis, MasterContour, Masters
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
-from .masters import DesignAxis, MasterContour, Masters
-from .sampling import CORNER_ANGLE
 
 LEAST = 1e-6
 """Length in font units up to which a tangent has no direction; the next control point then gives one."""

@@ -1,0 +1,1 @@
+"""What may be wrong with outlines as a font stores them. Nothing is fitted."""

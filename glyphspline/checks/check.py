@@ -1,0 +1,68 @@
+"""Outlines checked: findings as values, from the tables of :mod:`.measured`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..outlines.outline import Outline
+from .finding import Finding
+from .kinds import KINDS, Thresholds
+
+if TYPE_CHECKING:
+    from .measured import Measured
+
+THRESHOLDS = Thresholds()
+
+
+def check(outline: Outline, thresholds: Thresholds = THRESHOLDS) -> list[Finding]:
+    """What may be wrong with an outline, the worst of each kind first, kinks before all. Nothing is fitted.
+
+    Args:
+        outline: as its font has it; see :meth:`glyphspline.Font.outline`. thresholds: from which values on it counts.
+
+    Example:
+        >>> import glyphspline as gs
+        >>> font = gs.open_font("fonts_test/kouzan-gyosho.ttf")
+        >>> found = gs.check(font.outline(font.select(text="龍")[0]))
+    """
+    return check_many([outline], thresholds)[0]
+
+
+def check_many(outlines: Sequence[Outline], thresholds: Thresholds = THRESHOLDS) -> list[list[Finding]]:
+    """As :func:`check`, of many outlines of one font at once; the result of one does not depend on the others."""
+    from .measured import measured  # imported here, so that the package opens without a compiler
+
+    if not outlines:
+        return []
+    limits = thresholds.limits(outlines[0].metrics.units_per_em)
+    return findings(outlines, measured([outline.arrays for outline in outlines], limits))
+
+
+def findings(outlines: Sequence[Outline], rows: Measured) -> list[list[Finding]]:
+    """What was measured of outlines, as values."""
+    found: list[list[Finding]] = [[] for _ in outlines]
+    columns = (rows.glyphs, rows.contours, rows.segments, rows.kinds, rows.numbers, rows.points)
+    for g, contour, segment, what, (parameter, value, detail, other), (x, y) in zip(
+        *(column.tolist() for column in columns), strict=True
+    ):
+        kind, outline = KINDS[what], outlines[g]
+        if kind.unit == "/em":
+            value *= outline.metrics.units_per_em
+        second, another = None if np.isnan(detail) else detail, None if other < 0 else int(other)
+        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=another)
+        place = contour, segment, parameter, (x, y)
+        own = Finding(
+            kind.name, kind.level, outline.name, outline.gid, *place, value, kind.unit, second, another, sentence
+        )
+        found[g].append(own)
+    return found
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A value for people: "3.1°", "12 %", "4.2 /em"."""
+    if unit == "%":
+        return f"{100 * value:.3g} %"
+    return f"{value:.3g}{unit}" if unit == "°" else f"{value:.3g} {unit}".strip()

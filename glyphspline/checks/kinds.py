@@ -1,0 +1,120 @@
+"""What is looked for in an outline: each kind of finding with its level, its unit, and the limits from which it counts.
+
+The numbers are made in compiled code, :mod:`.joints`, :mod:`.segments`, :mod:`.bends` and :mod:`.enclosed`; what they
+mean is said here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Literal, NamedTuple
+
+from ..errors import is_positive, require
+
+Level = Literal["WARN", "INFO"]
+LEVELS: tuple[Level, ...] = ("INFO", "WARN")
+
+(
+    KINK, JUMP, LUMP, INFLECTION, STRAIGHT, SLANTED, EXTREMUM, SHORT, HANDLES, OVERLAP, DIRECTION, DOUBLED, CROSSING,
+) = range(13)  # fmt: skip
+"""Numbers of the kinds in compiled code: their places in ``KINDS``."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of finding.
+
+    Attributes:
+        name: as in tables, JSON and baselines. level: how serious it is. unit: of the finding's value.
+        sentence: what it says of a finding; ``{value}`` has its unit, ``{detail}`` is the second number, and
+            ``{other}`` the other contour.
+    """
+
+    name: str
+    level: Level
+    unit: str
+    sentence: str
+
+
+KINDS = (
+    Kind("kink", "WARN", "°", "turns by {value} at a joint meant to be smooth"),
+    Kind("jump", "INFO", "/em", "curvature jumps by {value} ({detail:.0%}) at a smooth joint"),
+    Kind("lump", "INFO", "%", "curvature swells by {value} where one bend needs no other extremum"),
+    Kind("inflection", "INFO", "°", "bends back by {value} inside a segment that else bends one way"),
+    Kind("straight", "INFO", "units", "a curve within {value} of a straight line"),
+    Kind("slanted", "INFO", "°", "a line {value} off the horizontal or vertical"),
+    Kind("extremum", "INFO", "units", "no point at an extremum, {value} beyond its ends"),
+    Kind("short", "INFO", "units", "a segment of {value}"),
+    Kind("handles", "INFO", "%", "a handle reaches {value} beyond where the two handles meet"),
+    Kind("overlap", "INFO", "", "crosses contour {other}"),
+    Kind("direction", "INFO", "", "runs in the wrong direction"),
+    Kind("doubled", "INFO", "units", "runs back along itself for {value}"),
+    Kind("crossing", "INFO", "", "crosses itself"),
+)
+
+
+class Limits(NamedTuple):
+    """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`."""
+
+    kink: float
+    corner_angle: float
+    jump: float
+    relative_jump: float
+    lump: float
+    inflection: float
+    straight: float
+    straight_length: float
+    slanted: float
+    extremum: float
+    short: float
+    handles: float
+    doubled: float
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """From which value on each kind counts.
+
+    Attributes:
+        kink: degrees of turn at a joint; from ``corner_angle`` degrees on it is a corner, and meant.
+        jump: of curvature at a smooth joint, in 1/em; relative_jump: and as a share of the larger curvature.
+        lump: share by which a curvature exceeds the extrema beside it.
+        inflection: degrees by which a segment bends back.
+        straight: thousandths of an em that a curve may leave its chord and still be called straight, if the chord is as
+            long as straight_length, in thousandths too.
+        slanted: degrees off the horizontal or vertical up to which a line is nearly so.
+        extremum: thousandths of an em by which a curve passes the ends of its segment.
+        short: thousandths of an em below which a segment is very short.
+        handles: share by which a handle reaches beyond the place where both meet.
+        doubled: thousandths of an em for which a contour runs back along itself.
+    """
+
+    kink: float = 0.5
+    corner_angle: float = 12.0
+    jump: float = 1.0
+    relative_jump: float = 0.25
+    lump: float = 0.25
+    inflection: float = 1.0
+    straight: float = 0.5
+    straight_length: float = 20.0
+    slanted: float = 0.5
+    extremum: float = 1.0
+    short: float = 3.0
+    handles: float = 0.01
+    doubled: float = 5.0
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            require(is_positive(value, 1e6), f"the threshold {each.name} is above 0 and up to a million", value)
+
+    def limits(self, units_per_em: float) -> Limits:
+        """In font units and radians."""
+        from math import radians
+
+        unit = units_per_em / 1000
+        return Limits(
+            radians(self.kink), radians(self.corner_angle), self.jump / units_per_em, self.relative_jump, self.lump,
+            radians(self.inflection), self.straight * unit, self.straight_length * unit, radians(self.slanted),
+            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit,
+        )  # fmt: skip
