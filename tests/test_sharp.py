@@ -184,7 +184,7 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
     split, pieces = cut(contours)
     assert pieces.where[0, [0, 1, 2, 4]].tolist() == [0, 0, len(contours[0]), 1]
-    exact = refitted(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), SETTINGS)
+    exact, _ = refitted(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), SETTINGS, {})
     assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
     curve = assembly.curves
     bounds, _ = certify(split, exact, assembly.segments, curve, 0.01, 1.0)
@@ -199,7 +199,7 @@ def test_one_piece_is_replaced_and_the_others_stay() -> None:
     split, pieces = cut(glyph("龍").contours)
     q = int(pieces.where[:, 3].argmax())
     poor = np.arange(len(pieces.where)) == q
-    closer = refitted(split, pieces, poor, ((0.9, False),), SETTINGS)
+    closer, _ = refitted(split, pieces, poor, ((0.9, False),), SETTINGS, {})
     assert len(closer.where) == len(pieces.where)
     assert closer.where[q, :3].tolist() == pieces.where[q, :3].tolist()
     assert closer.errors[q] <= 0.9 * SETTINGS.near

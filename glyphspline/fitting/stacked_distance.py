@@ -60,26 +60,31 @@ FLAT = 1e-9
 
 @compiled
 def pair_stacks(
-    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray, limit: float
-) -> FloatArray:
-    """Certified bounds of the spans of one contour.
+    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray,
+    wanted: BoolArray, limit: float,
+) -> FloatArray:  # fmt: skip
+    """Certified bounds of the spans of one contour. One beyond the limit is a bound, but seldom the best to be had.
 
     Args:
         results: (V, r, 4, 2) and sources: (V, m, 4, 2) closed chains in all instances.
         anchors: (r + 1, 2) places on both where each span of the result begins, and the first a lap later.
         ranges: (r, 4) first and last place on the result and on the source of the arc that each span belongs to.
         laps: (r,) whether that arc is the whole contour, which has no ends.
-        limit: sections are halved until their bounds are below this.
+        wanted: (r,) the spans that are looked at; the bounds of others are NaN.
+        limit: sections are halved until their bounds are below this, or one of their arc cannot be.
     """
     V, spans = len(results), len(laps)
-    bounds = np.empty(spans)
+    bounds, lost = np.full(spans, np.nan), -1.0
     work, marks = np.empty((2, DEEPEST + 2, V, 4, 2)), np.empty((DEEPEST + 2, 5))
+    scratch = np.empty((3, V, 4, 2))
     rounding = 0.0
     for v in range(V):
         rounding = max(rounding, ROUNDING * max(extent(results[v]), extent(sources[v])))
     m = sources.shape[1]
     for k in range(spans):
-        bound, halvings = 0.0, 0
+        if not wanted[k]:
+            continue
+        bound, halvings = 0.0, MOST_HALVINGS if ranges[k, 0] == lost else 0
         y, y_end = anchors[k, 1], anchors[k + 1, 1]
         x, last = anchors[k, 0], False
         i = int(np.floor(x))
@@ -99,23 +104,26 @@ def pair_stacks(
                 A, B = work[0, top], work[1, top]
                 x0, x1, y0, y1, depth = marks[top]
                 enough = max(limit, bound)
-                most = _bound_of_pair(A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, enough)
-                if most <= enough or depth >= DEEPEST or halvings >= MOST_HALVINGS:
-                    bound = max(bound, most)
-                    top -= 1
+                most = _bound_of_pair(A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, enough, scratch)
+                if most > enough and (depth >= DEEPEST or halvings >= MOST_HALVINGS):
+                    # The arc is beyond the limit: what is left of it is not halved any more.
+                    halvings, lost = MOST_HALVINGS, ranges[k, 0]
+                elif most > enough:
+                    halvings += 1
+                    xm = (x0 + x1) / 2
+                    for v in range(V):
+                        split(A[v], 0.5, work[0, top + 1, v])
+                    z = nearest_stacked(sources, s, y0 - s, y1 - s, A[:, 0])
+                    share = (z - (y0 - s)) / (y1 - y0) if y1 > y0 else 0.5
+                    for v in range(V):
+                        split(B[v], share, work[1, top + 1, v])
+                    marks[top, 0], marks[top, 2], marks[top, 4] = xm, z + s, depth + 1
+                    top += 1
+                    marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = x0, xm, y0, z + s
+                    marks[top, 4] = depth + 1
                     continue
-                halvings += 1
-                xm = (x0 + x1) / 2
-                for v in range(V):
-                    split(A[v], 0.5, work[0, top + 1, v])
-                z = nearest_stacked(sources, s, y0 - s, y1 - s, A[:, 0])
-                share = (z - (y0 - s)) / (y1 - y0) if y1 > y0 else 0.5
-                for v in range(V):
-                    split(B[v], share, work[1, top + 1, v])
-                marks[top, 0], marks[top, 2], marks[top, 4] = xm, z + s, depth + 1
-                top += 1
-                marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = x0, xm, y0, z + s
-                marks[top, 4] = depth + 1
+                bound = max(bound, most)
+                top -= 1
             x, y = cut, stop
         bounds[k] = bound + rounding
     return bounds
@@ -124,13 +132,13 @@ def pair_stacks(
 @compiled(internal=True)
 def _bound_of_pair(
     A: FloatArray, B: FloatArray, results: FloatArray, sources: FloatArray, x0: float, x1: float, y0: float, y1: float,
-    arc: FloatArray, ring: bool, enough: float,
+    arc: FloatArray, ring: bool, enough: float, scratch: FloatArray,
 ) -> float:  # fmt: skip
-    """The smaller of the two bounds of sections (V, 4, 2); the slip bound only where the plain one is not enough."""
-    V, plain, ex, ey = len(A), 0.0, 0.0, 0.0
-    D = A - B
+    """The smaller of the two bounds of sections (V, 4, 2). Where neither is enough, the plain one."""
+    V, plain, ex, ey, D = len(A), 0.0, 0.0, 0.0, scratch[0]
     for v in range(V):
         for k in range(4):
+            D[v, k, 0], D[v, k, 1] = A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]
             plain = max(plain, length(D[v, k, 0], D[v, k, 1]))
         ex += A[v, 3, 0] - A[v, 0, 0] + B[v, 3, 0] - B[v, 0, 0]
         ey += A[v, 3, 1] - A[v, 0, 1] + B[v, 3, 1] - B[v, 0, 1]
@@ -144,72 +152,77 @@ def _bound_of_pair(
             reach = max(reach, abs(ex * D[v, k, 0] + ey * D[v, k, 1]))
     slip = np.zeros((2, 4))
     slip[:, 2] = np.inf
-    if not (_add_part(A, D, ex, ey, slip[0]) and _add_part(B, D, ex, ey, slip[1])):
+    if not (_add_part(A, D, ex, ey, slip[0], enough) and _add_part(B, D, ex, ey, slip[1], enough)):
         return plain
     for side in range(2):
-        if _slip_bound(slip, V) >= plain:
-            return plain
         x, y = (x1, y1) if side else (x0, y0)
         x_end, y_end = (arc[1], arc[3]) if side else (arc[0], arc[2])
-        good, ended = _follow(sources, D, side, y, y_end, ring, reach, ex, ey, slip[1])
-        fine, also = _follow(results, D, side, x, x_end, ring, np.inf if ended else reach, ex, ey, slip[0])
-        if good and fine and also and not ended:
-            good, _ = _follow(sources, D, side, y, y_end, ring, np.inf, ex, ey, slip[1])
-        if not (good and fine):
+        good, ended = _follow(sources, D, side, y, y_end, ring, reach, ex, ey, slip[1], enough, scratch)
+        if not good:
             return plain
-    return min(plain, _slip_bound(slip, V))
+        far = np.inf if ended else reach
+        good, also = _follow(results, D, side, x, x_end, ring, far, ex, ey, slip[0], enough, scratch)
+        if good and also and not ended:
+            good, _ = _follow(sources, D, side, y, y_end, ring, np.inf, ex, ey, slip[1], enough, scratch)
+        if not good:
+            return plain
+    return min(plain, max(_slip_bound(slip[0], V), _slip_bound(slip[1], V)))
 
 
 @compiled(internal=True)
 def _slip_bound(slip: FloatArray, V: int) -> float:
-    """The larger bound of both directions, from what :func:`_add_part` gathered."""
-    most = 0.0
-    for n in range(2):
-        alone, mixed, ratio = slip[n, 0], slip[n, 1], slip[n, 3] / slip[n, 2]
-        share = 2 * np.sqrt(ratio) / (V * (1 + ratio))
-        most = max(most, alone if mixed <= alone else share * alone + (1 - share) * mixed)
-    return most
+    """The bound in one direction, from what :func:`_add_part` gathered."""
+    alone, mixed, ratio = slip[0], slip[1], slip[3] / slip[2]
+    share = 2 * np.sqrt(ratio) / (V * (1 + ratio))
+    return alone if mixed <= alone else share * alone + (1 - share) * mixed
 
 
 @compiled(internal=True)
-def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArray) -> bool:
+def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArray, enough: float) -> bool:
     """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and the least and largest e·h; False unless
-    all e·h are positive.
+    all e·h are positive and the slip bound is still small ``enough``: more parts never make it smaller.
     """
     V = len(b)
     for i in range(3):
         for u in range(V):
-            ux, uy = b[u, i + 1, 0] - b[u, i, 0], b[u, i + 1, 1] - b[u, i, 1]
+            ux, uy, most = b[u, i + 1, 0] - b[u, i, 0], b[u, i + 1, 1] - b[u, i, 1], 0.0
             ahead = ex * ux + ey * uy
             if not ahead > FLAT * (abs(ux) + abs(uy)):
                 return False
             slip[2], slip[3] = min(slip[2], ahead), max(slip[3], ahead)
             for k in range(4):
-                slip[0] = max(slip[0], abs(ux * D[u, k, 1] - uy * D[u, k, 0]) / ahead)
+                most = max(most, abs(ux * D[u, k, 1] - uy * D[u, k, 0]))
+            slip[0] = max(slip[0], most / ahead)
+    if slip[0] > enough:
+        return False
+    for i in range(3):
+        for u in range(V):
+            ux, uy = b[u, i + 1, 0] - b[u, i, 0], b[u, i + 1, 1] - b[u, i, 1]
             for v in range(u):
-                vx, vy = b[v, i + 1, 0] - b[v, i, 0], b[v, i + 1, 1] - b[v, i, 1]
-                both = ahead + ex * vx + ey * vy
+                vx, vy, most = b[v, i + 1, 0] - b[v, i, 0], b[v, i + 1, 1] - b[v, i, 1], 0.0
                 for k in range(4):
                     cross = ux * D[v, k, 1] - uy * D[v, k, 0] + vx * D[u, k, 1] - vy * D[u, k, 0]
-                    slip[1] = max(slip[1], abs(cross) / both)
-    return True
+                    most = max(most, abs(cross))
+                slip[1] = max(slip[1], most / (ex * ux + ey * uy + ex * vx + ey * vy))
+    return _slip_bound(slip, V) <= enough
 
 
 @compiled(internal=True)
 def _follow(
     chains: FloatArray, D: FloatArray, side: int, first: float, last: float, ring: bool, reach: float, ex: float,
-    ey: float, slip: FloatArray,
+    ey: float, slip: FloatArray, enough: float, scratch: FloatArray,
 ) -> tuple[bool, bool]:  # fmt: skip
     """Take in what chains (V, m, 4, 2) have beyond a place, until they extend by ``reach`` or their arc ends.
 
     Args:
         side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end, unless it is a ``ring``.
+        scratch: (3, V, 4, 2).
 
     Returns:
-        Whether the chains get that far along e, and whether the arc ended.
+        Whether the chains get that far along e, with a slip bound that is small enough, and whether the arc ended.
     """
     V, m = len(chains), chains.shape[1]
-    part, start = np.empty((V, 4, 2)), np.empty((V, 2))
+    part, start = scratch[1], scratch[2, :, 0]
     near, far = (0, 3) if side else (3, 0)
     at = first
     for turn in range(PARTS):
@@ -227,7 +240,7 @@ def _follow(
                 start[v, 0], start[v, 1] = part[v, near, 0], part[v, near, 1]
             x, y = part[v, far, 0] - start[v, 0], part[v, far, 1] - start[v, 1]
             least = min(least, abs(ex * x + ey * y))
-        if not _add_part(part, D, ex, ey, slip):
+        if not _add_part(part, D, ex, ey, slip, enough):
             return False, False
         if least >= reach:
             return True, False

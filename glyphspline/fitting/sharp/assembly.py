@@ -142,24 +142,29 @@ def certify(
 
 def certify_masters(
     contours: SplitContours, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
-    mixes: FloatArray, limit: float,
-) -> tuple[FloatArray, BoolArray]:  # fmt: skip
-    """(P,) certified bounds in a whole design space, and whether the curves have speed everywhere.
+    mixes: FloatArray, limit: float, bounds: FloatArray, speed: BoolArray,
+) -> None:  # fmt: skip
+    """Certify pieces in a whole design space.
 
     Args:
         curves: (K, M, 4, 2) the curves in all masters; offsets: (C + 1,) where each contour begins in them.
         mixes: (V, K) weights of the masters at the corners of the design space's grid.
+        bounds: (P,) receives the certified bounds of those pieces for which it is NaN.
+        speed: (P,) receives whether their curves have speed everywhere.
     """
     results, sources = (np.einsum("vk,kmpc->vmpc", mixes, cubics) for cubics in (curves, contours.cubics))
-    bounds = np.empty(segments[-1])
     first = pieces.starts[:-1]
+    spans = np.diff(segments)
     for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
         own = np.flatnonzero(pieces.where[:, CONTOUR] == c)
+        wanted = np.isnan(bounds[own])
+        if not wanted.any():
+            continue
         source = np.ascontiguousarray(sources[:, contours.offsets[c] : contours.offsets[c + 1]])
         result = np.ascontiguousarray(results[:, a:b])
         m, r = source.shape[1], result.shape[1]
         closed = bool(pieces.where[own[0], CLOSED])
-        hints = np.concatenate([pieces.places[first[q] : first[q] + segments[q + 1] - segments[q]] for q in own])
+        hints = np.concatenate([pieces.places[first[q] : first[q] + spans[q]] for q in own])
         ranges = np.empty((r, 4))
         for q in own:
             s, e = segments[q] - a, segments[q + 1] - a
@@ -169,15 +174,16 @@ def certify_masters(
             places += m * np.ceil(max(-places[0], 0.0) / m)
         else:
             places = hints.astype(np.float64)
-            for q in own:
+            for q in own[wanted & (spans[own] > 1)]:
                 s, e = segments[q] - a, segments[q + 1] - a
-                if e - s > 1:
-                    inner = np.ascontiguousarray(result[:, s + 1 : e, 0])
-                    low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
-                    places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
+                inner = np.ascontiguousarray(result[:, s + 1 : e, 0])
+                low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
+                places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
         anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
         rings = np.full(r, closed).astype(np.int64)
-        bounds[a:b] = pair_stacks(result, source, anchors, ranges, rings, limit)
-    good = regular(results)
-    each = segments[:-1]
-    return np.maximum.reduceat(bounds, each), np.logical_and.reduceat(good, each)
+        each = np.repeat(wanted, spans[own])
+        found = pair_stacks(result, source, anchors, ranges, rings, each, limit)
+        good = regular(np.ascontiguousarray(result[:, each]))
+        starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
+        bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
+        speed[own[wanted]] = np.logical_and.reduceat(good, starts)

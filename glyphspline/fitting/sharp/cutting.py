@@ -223,23 +223,34 @@ def source_pieces(contours: SplitContours, piece: Pieces) -> Pieces:
 
 
 @compiled
-def cut_again(contours: SplitContours, piece: Pieces, cut: bool, settings: Settings) -> tuple[Pieces, Stretches]:
+def joints_again(contours: SplitContours, c: int, settings: Settings) -> Joints:
+    """The joints of contour c, in the direction in which it is fitted."""
+    a, b = contours.offsets[c], contours.offsets[c + 1]
+    cubics, degrees = contours.cubics[:, a:b].copy(), contours.degrees[a:b].copy()
+    if contours.flipped[c]:
+        cubics, degrees = cubics[:, ::-1, ::-1].copy(), degrees[::-1].copy()
+    return find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
+
+
+@compiled
+def cut_again(
+    contours: SplitContours, piece: Pieces, joints: Joints, cut: bool, settings: Settings
+) -> tuple[Pieces, Stretches]:
     """A single piece taken apart again, in the direction in which it is fitted: as it is, or cut at its corners.
+
+    Args:
+        joints: of its contour, by :func:`joints_again`.
 
     Returns:
         Lines and cubics, and the stretches that need splines: of a piece as it is, always.
     """
     c = piece.where[0, CONTOUR]
-    cubics = contours.cubics[:, contours.offsets[c] : contours.offsets[c + 1]].copy()
-    masters = len(cubics)
-    degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]].copy()
+    masters = len(contours.cubics)
     given, count = empty_pieces(masters, 1, len(piece.places)), 0 * c
     add_pieces(given, count, piece)
     if contours.flipped[c]:
-        reverse_last(given, count + 1, len(degrees))
-        cubics, degrees = cubics[:, ::-1, ::-1].copy(), degrees[::-1].copy()
+        reverse_last(given, count + 1, contours.offsets[c + 1] - contours.offsets[c])
     i, j = given.where[0, FIRST], given.where[0, LAST]
-    joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
     found = empty_pieces(masters, j - i, 2 * (j - i))
     stretches = empty_stretches(masters, j - i, 2 * len(joints.places))
     if not cut:

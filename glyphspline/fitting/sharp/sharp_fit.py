@@ -25,7 +25,8 @@ from ..options import Options
 from ..refit import Fits
 from ..results import ConvertedContours
 from .assembly import certify, certify_masters, put_together
-from .cutting import choose, cut_again, cut_all, source_pieces
+from .corners import Joints
+from .cutting import choose, cut_again, cut_all, joints_again, source_pieces
 from .pieces import CLOSED, CONTOUR, SPANS, Pieces, of_master, part
 from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
@@ -193,40 +194,56 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
-    fit = _certified(split, choose(split, pieces, settings.near), source.mixes, options, tolerance)
+    pieces = choose(split, pieces, settings.near)
+    fit = _certified(split, pieces, source.mixes, options, tolerance, None, np.full(len(pieces.where), -1))
     tries = RETRIES[options.continuity] if len(source.cubics) == 1 else RETRIES_OF_MASTERS
+    joints: dict[int, Joints] = {}
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        pieces = refitted(split, fit.pieces, poor, tries[attempt:], settings)
-        fit = _certified(split, pieces, source.mixes, options, tolerance)
+        pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints)
+        fit = _certified(split, pieces, source.mixes, options, tolerance, fit, same)
     return fit
 
 
 def refitted(
-    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[float, bool]], settings: Settings
-) -> Pieces:
-    """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments."""
-    parts, done = [], 0
-    for q in np.flatnonzero(poor).tolist():
+    contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[float, bool]], settings: Settings,
+    joints: dict[int, Joints],
+) -> tuple[Pieces, IntArray]:  # fmt: skip
+    """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments.
+
+    Args:
+        joints: those of contours looked at before; receives others.
+
+    Returns:
+        The pieces, and which of the given ones each is; -1 for others.
+    """
+    parts, same, done = [], [], 0
+    for q in [*np.flatnonzero(poor).tolist(), len(poor)]:
         parts.append(part(pieces, done, q))
-        parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings))
+        same.append(np.arange(done, q))
+        if q < len(poor):
+            parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints))
+            same.append(np.full(len(parts[-1].where), -1))
         done = q + 1
-    parts.append(part(pieces, done, len(poor)))
     where, places, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 3, 5))
     vertices, tangents = (np.concatenate([own[k] for own in parts], axis=1) for k in (2, 4))
     starts = offsets_of(np.maximum(where[:, SPANS], 1) + 1 - where[:, CLOSED])
-    return Pieces(where, starts, vertices, places, tangents, errors)
+    return Pieces(where, starts, vertices, places, tangents, errors), np.concatenate(same)
 
 
 def _refitted_piece(
-    contours: SplitContours, piece: Pieces, tries: Sequence[tuple[float, bool]], settings: Settings
-) -> Pieces:
+    contours: SplitContours, piece: Pieces, tries: Sequence[tuple[float, bool]], settings: Settings,
+    joints: dict[int, Joints],
+) -> Pieces:  # fmt: skip
     """What takes the place of a single piece."""
+    c = int(piece.where[0, CONTOUR])
     for share, cut in tries:
         near = share * settings.near
-        found, stretches = cut_again(contours, piece, cut, settings)
+        if c not in joints:
+            joints[c] = joints_again(contours, c, settings)
+        found, stretches = cut_again(contours, piece, joints[c], cut, settings)
         if len(stretches.piece):
             begun = not cut and len(contours.cubics) == 1  # slip may rule out where masters' vertices are now
             found = fit_splines(found, stretches, near, settings.search, begun)
@@ -235,10 +252,18 @@ def _refitted_piece(
     return source_pieces(contours, piece)
 
 
-def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options: Options, tolerance: float) -> SharpFit:
-    """The pieces with curves put through them, measured against the source."""
+def _certified(
+    split: SplitContours, pieces: Pieces, mixes: FloatArray, options: Options, tolerance: float,
+    before: SharpFit | None, same: IntArray,
+) -> SharpFit:  # fmt: skip
+    """The pieces with curves put through them, measured against the source.
+
+    Args:
+        before: a fit of which some of the pieces are. same: (P,) which; -1 for the others.
+    """
     count, masters = len(split.flipped), len(split.cubics)
-    splines = _interpolated(pieces, options)
+    known = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}
+    splines = dict(sorted((known | _interpolated(pieces, same < 0, options)).items()))
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
     controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
@@ -250,7 +275,10 @@ def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options:
         regular = np.ones(len(bounds), dtype=np.bool_)
     else:
         cubics = np.stack([all_cubics(curve) for curve in curves])
-        bounds, regular = certify_masters(split, pieces, segments, cubics, curves[0].offsets, mixes, tolerance)
+        bounds, regular = np.full(len(same), np.nan), np.zeros(len(same), dtype=np.bool_)
+        if before is not None:
+            bounds[same >= 0], regular[same >= 0] = before.bounds[same[same >= 0]], before.regular[same[same >= 0]]
+        certify_masters(split, pieces, segments, cubics, curves[0].offsets, mixes, tolerance, bounds, regular)
         gaps = np.full(len(bounds), np.nan)
     offsets = np.searchsorted(pieces.where[:, CONTOUR], np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
@@ -264,8 +292,8 @@ def chords(pieces: Pieces) -> FloatArray:
     return np.sqrt(squares)
 
 
-def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span, in order. Lemma 2 has an interval for all of their vertices.
+def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
+    """The splines of more than one span among the (P,) pieces that are wanted. Lemma 2 has an interval for all of their vertices.
 
     K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
     """
@@ -276,7 +304,7 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
     spans, closed = where[:, SPANS], where[:, CLOSED] > 0
     arcs: dict[int, Interpolation] = {}
     for which in (closed, (spans > 1) & ~closed):
-        chosen = np.flatnonzero(which).tolist()
+        chosen = np.flatnonzero(which & wanted).tolist()
         if not chosen:
             continue
         ring = bool(closed[chosen[0]])
@@ -291,4 +319,4 @@ def _interpolated(pieces: Pieces, options: Options) -> dict[int, Interpolation]:
             error.contour = int(where[chosen[error.contour or 0], CONTOUR])
             raise
         arcs |= zip(chosen, found, strict=True)
-    return dict(sorted(arcs.items()))
+    return arcs
