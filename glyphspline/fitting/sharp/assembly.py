@@ -170,8 +170,7 @@ def certify_masters(
             s, e = segments[q] - a, segments[q + 1] - a
             ranges[s:e] = s, e, pieces.where[q, FIRST], pieces.where[q, LAST]
         if closed:
-            places = near_places(source, hints, np.ascontiguousarray(result[:, :, 0]), True, 0.0, 0.0)
-            places += m * np.ceil(max(-places[0], 0.0) / m)
+            places = ring_places(source, result, hints)
         else:
             places = hints.astype(np.float64)
             for q in own[wanted & (spans[own] > 1)]:
@@ -187,3 +186,22 @@ def certify_masters(
         starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
         bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
         speed[own[wanted]] = np.logical_and.reduceat(good, starts)
+
+
+def ring_places(sources: FloatArray, results: FloatArray, hints: FloatArray) -> FloatArray:
+    """(r,) places of contours (V, m, 4, 2) beside the beginnings of the spans of closed curves (V, r, 4, 2)."""
+    m = sources.shape[1]
+    places = near_places(sources, hints, np.ascontiguousarray(results[:, :, 0]), True, 0.0, 0.0)
+    places += m * np.ceil(max(-places[0], 0.0) / m)
+    return places
+
+
+def ring_bounds(sources: FloatArray, results: FloatArray, hints: FloatArray, limit: float) -> FloatArray:
+    """(r,) certified bounds of the spans of closed curves; see :func:`ring_places`."""
+    m, r = sources.shape[1], results.shape[1]
+    places = ring_places(sources, results, hints)
+    anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
+    ranges = np.broadcast_to(np.array([0.0, r, 0.0, m]), (r, 4)).copy()
+    every = np.ones(r, dtype=np.bool_)
+    bounds: FloatArray = pair_stacks(results, sources, anchors, ranges, every.astype(np.int64), every, limit)
+    return bounds

@@ -27,6 +27,7 @@ from ..results import ConvertedContours
 from .assembly import certify, certify_masters, put_together
 from .corners import Joints
 from .cutting import choose, cut_again, cut_all, joints_again, source_pieces
+from .on_outline import on_outline
 from .pieces import CLOSED, CONTOUR, SPANS, Pieces, of_master, part
 from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
@@ -194,7 +195,10 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
+    lost = np.unique(pieces.where[(pieces.where[:, CLOSED] > 0) & (pieces.errors > settings.near), CONTOUR])
     pieces = choose(split, pieces, settings.near)
+    for c in lost.tolist() if len(source.cubics) > 1 else []:
+        pieces = _with_ring(pieces, c, on_outline(split, c, source.mixes, settings, options, tolerance))
     fit = _certified(split, pieces, source.mixes, options, tolerance, None, np.full(len(pieces.where), -1))
     tries = RETRIES[options.continuity] if len(source.cubics) == 1 else RETRIES_OF_MASTERS
     joints: dict[int, Joints] = {}
@@ -205,6 +209,22 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints)
         fit = _certified(split, pieces, source.mixes, options, tolerance, fit, same)
     return fit
+
+
+def _with_ring(pieces: Pieces, c: int, ring: Pieces | None) -> Pieces:
+    """Pieces with a closed curve in the place of contour c's; as they are if there is none."""
+    if ring is None:
+        return pieces
+    a, b = np.searchsorted(pieces.where[:, CONTOUR], [c, c + 1]).tolist()
+    return _joined([part(pieces, 0, a), ring, part(pieces, b, len(pieces.where))])
+
+
+def _joined(parts: Sequence[Pieces]) -> Pieces:
+    """Pieces after each other."""
+    where, places, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 3, 5))
+    vertices, tangents = (np.concatenate([own[k] for own in parts], axis=1) for k in (2, 4))
+    starts = offsets_of(np.maximum(where[:, SPANS], 1) + 1 - where[:, CLOSED])
+    return Pieces(where, starts, vertices, places, tangents, errors)
 
 
 def refitted(
@@ -227,10 +247,7 @@ def refitted(
             parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints))
             same.append(np.full(len(parts[-1].where), -1))
         done = q + 1
-    where, places, errors = (np.concatenate([own[k] for own in parts]) for k in (0, 3, 5))
-    vertices, tangents = (np.concatenate([own[k] for own in parts], axis=1) for k in (2, 4))
-    starts = offsets_of(np.maximum(where[:, SPANS], 1) + 1 - where[:, CLOSED])
-    return Pieces(where, starts, vertices, places, tangents, errors), np.concatenate(same)
+    return _joined(parts), np.concatenate(same)
 
 
 def _refitted_piece(
@@ -293,7 +310,7 @@ def chords(pieces: Pieces) -> FloatArray:
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span among the (P,) pieces that are wanted. Lemma 2 has an interval for all of their vertices.
+    """The splines of several spans among the (P,) wanted pieces. Lemma 2 has an interval for all of their vertices.
 
     K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
     """

@@ -100,15 +100,7 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     D, h, step = np.empty(n + 1), np.empty(n), np.empty(n)
     for r in range(n):
         h[r], step[r] = stretches.spacing[first + r], chord(Q, r, r + 1)
-    # Spacings grow no faster than chords may; around a closed contour from the last to the first, too.
-    for _ in range(2):
-        for r in range(n):
-            if r > 0 or closed:
-                h[r] = min(h[r], h[r - 1] + GROWTH * (step[r] + step[r - 1]) / 2)
-        for r in range(n - 1, -1, -1):
-            if r + 1 < n or closed:
-                e = (r + 1) % n
-                h[r] = min(h[r], h[e] + GROWTH * (step[r] + step[e]) / 2)
+    limit_growth(h, step, closed)
     D[0] = 0.0
     for r in range(n):
         D[r + 1] = D[r] + step[r] / h[r]
@@ -120,3 +112,19 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
         stretches.free[s],
         places[n],
     )
+
+
+@compiled(internal=True)
+def limit_growth(spacing: FloatArray, step: FloatArray, closed: int) -> None:
+    """Lessen wanted distances of vertices where they grow faster than chords may, also from the last to the first of a
+    closed contour. Both arguments are (n,); ``step`` is the length for which each holds.
+    """
+    n = len(step)
+    for _ in range(2):
+        for r in range(n):
+            if r > 0 or closed:
+                spacing[r] = min(spacing[r], spacing[r - 1] + GROWTH * (step[r] + step[r - 1]) / 2)
+        for r in range(n - 1, -1, -1):
+            if r + 1 < n or closed:
+                e = (r + 1) % n
+                spacing[r] = min(spacing[r], spacing[e] + GROWTH * (step[r] + step[e]) / 2)
