@@ -223,3 +223,44 @@ def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, call)
     assert done.exit_code == 2
     assert "not svg" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+@pytest.fixture(scope="module")
+def weights_of_blobs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A light and a bold single font."""
+    from fontTools.varLib.instancer import instantiateVariableFont
+
+    folder = tmp_path_factory.mktemp("single")
+    for value in (400, 900):
+        instantiateVariableFont(TTFont(FONTS / "variable.ttf"), {"wght": value}).save(folder / f"{value}.ttf")
+    return folder / "400.ttf", folder / "900.ttf"
+
+
+def from_call(light: Path, bold: Path, out: Path, glyphs: str) -> list[str]:
+    call = ["convert", str(light), "--from", str(bold), "--axis", "wght=400:900", "--masters", "--glyphs", glyphs]
+    return [*call, "--corners", "sharp", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+
+
+def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    light, bold = weights_of_blobs
+    out = tmp_path / "out"
+    assert CliRunner().invoke(app, from_call(light, bold, out, "o")).exit_code == 0
+    run = json.loads((out / "run.json").read_text())
+    assert run["axis"] == "wght=400:900"
+    assert [font["sha256"] for font in run["from"]] == [gs.open_font(bold).sha256]
+    assert "--from 900.ttf --axis wght=400:900" in run["command"]
+    first = (out / "results" / "o.json").stat()
+    again = CliRunner().invoke(app, from_call(light, bold, out, "o,stem"))
+    assert again.exit_code == 0, again.output
+    assert (out / "results" / "o.json").stat().st_mtime_ns == first.st_mtime_ns
+    assert [json.loads(line)["glyph"] for line in (out / "manifest.jsonl").read_text().splitlines()] == ["o", "stem"]
+
+    other = tmp_path / "900.ttf"
+    font = TTFont(bold)
+    font["head"].fontRevision = 7.0
+    font.save(other)
+    refused = CliRunner().invoke(app, from_call(light, other, out, "o"))
+    assert refused.exit_code == 2
+    assert "from.1.sha256" in refused.output + (refused.stderr if refused.stderr_bytes else "")

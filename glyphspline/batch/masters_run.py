@@ -122,8 +122,8 @@ def convert_font_masters(
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     _check(sources, spec, axis)
     with locked(out):
-        prepare(first, glyphs, out, spec, restart)
-        write_run(out, describe(first, spec, glyphs, None) | ({"axis": axis} if axis else {}))
+        prepare(first, glyphs, out, spec, restart, sources[1:], axis)
+        write_run(out, describe(first, spec, glyphs, None, sources[1:], axis))
         tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec))
         summary = MastersSummary()
         options = spec.options
