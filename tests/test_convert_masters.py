@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import weakref
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,13 +14,20 @@ from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.batch.masters_run import redrawn_glyph
 from glyphspline.batch.store import from_text, to_text
 from glyphspline.cli.commands import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
 from glyphspline.fitting.stacked_distance import pair_stacks, regular
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
-from glyphspline.types import FloatArray
+from glyphspline.readers import Font
+from glyphspline.readers.single_fonts import masters_of_fonts
+from glyphspline.types import FloatArray, MadeOnDemand
+from glyphspline.writers.designspace_folder import write_designspace
+from glyphspline.writers.font.master_deltas import Redrawn
+from glyphspline.writers.font.new_variable_font import to_new_variable_font
+from glyphspline.writers.font.variable_font import to_variable_font
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 CFF2 = FONTS / "variable-cff2.otf"
@@ -264,3 +273,57 @@ def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
     refused = CliRunner().invoke(app, from_call(light, other, out, "o"))
     assert refused.exit_code == 2
     assert "from.1.sha256" in refused.output + (refused.stderr if refused.stderr_bytes else "")
+
+
+def masters_call(out: Path, glyphs: str, *more: str) -> list[str]:
+    call = ["convert", str(CFF2), "--masters", "--glyphs", glyphs, "--corners", "sharp", "--format", "otf"]
+    return [*call, "--jobs", "0", "--out", str(out), *more]
+
+
+def manifest_of(out: Path) -> dict[str, Any]:
+    lines = [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
+    return {line["glyph"]: line for line in lines}
+
+
+def test_a_run_goes_on_with_its_glyphs_and_a_restart_has_none_of_the_old_results(tmp_path: Path) -> None:
+    def first_points(name: str) -> FloatArray:
+        text = (tmp_path / "results" / f"{name}.json").read_text()
+        return from_text(text, gs.MastersResult).contours[0].curve.points
+
+    assert CliRunner().invoke(app, masters_call(tmp_path, "o")).exit_code == 0
+    old, written = first_points("o"), (tmp_path / "results" / "o.json").stat()
+    assert CliRunner().invoke(app, masters_call(tmp_path, "n")).exit_code == 0
+    assert list(manifest_of(tmp_path)) == ["o", "n"]
+    assert (tmp_path / "results" / "o.json").stat().st_mtime_ns == written.st_mtime_ns
+    font, source = gs.open_font(next(tmp_path.glob("*.otf"))), gs.open_font(CFF2)
+    for name in ("n", "o"):  # the font has both
+        assert font.outline(name).arrays.points.shape != source.outline(name).arrays.points.shape
+    done = CliRunner().invoke(app, masters_call(tmp_path, "o", "--tolerance", "0.1", "--restart"))
+    assert done.exit_code == 0
+    assert list(manifest_of(tmp_path)) == ["o"]
+    assert first_points("o").shape != old.shape
+    assert not (tmp_path / "results" / "n.json").exists()
+
+
+def test_a_font_is_written_with_one_result_in_memory_at_a_time(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    alive: list[weakref.ref[Redrawn]] = []
+
+    def read(masters: Masters) -> Redrawn:
+        assert sum(each() is not None for each in alive) <= 2  # the one before, until its name is bound anew
+        result = redrawn_glyph(gs.convert_masters(masters))
+        alive.append(weakref.ref(result))
+        return result
+
+    font = gs.open_font(CFF2)
+    assert isinstance(font, Font)
+    cff2 = MadeOnDemand(font.glyph_names, lambda name: read(font.masters(name)))
+    to_variable_font(font, cff2, "otf", with_contours=False)
+    write_designspace(font, cff2, tmp_path / "folder")
+    pair = [gs.open_font(path) for path in weights_of_blobs]
+    glyphs = {glyph.name: glyph for glyph in masters_of_fonts(pair, "wght=400:900") if isinstance(glyph, Masters)}
+    to_new_variable_font(
+        pair, "wght=400:900", MadeOnDemand(glyphs, lambda name: read(glyphs[name])), with_contours=False
+    )
+    assert len(alive) > 8
