@@ -154,7 +154,7 @@ def test_the_slip_bound_holds_in_between_and_is_not_the_plain_one() -> None:
     results[1, 0] = np.array([[0.0, 0], [140, 2.1], [260, 1.9], [360, 0]])
     anchors = np.array([[0.0, 0], [1, 1], [2, 2]])
     ranges = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]])
-    bounds = pair_stacks(results, sources, anchors, ranges, np.zeros(2, dtype=np.int64), 0.5)
+    bounds = pair_stacks(results, sources, anchors, ranges, False, 0.5)
     assert bounds[1] < 1e-9
     assert np.abs(results - sources).max() > 15
     assert bounds[0] <= 0.5

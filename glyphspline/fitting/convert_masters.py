@@ -9,15 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import GlyphsplineError, OptionError
-from ..outlines.contour_arrays import ContourArrays, offsets_of
+from ..outlines.contour_arrays import ContourArrays
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Contour, Contours, Outline
-from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
+from ..types import BoolArray, FloatArray, counted, rounded_up
+from .convert import enclosing
 from .options import Options
+
+if TYPE_CHECKING:
+    from .sharp.sharp_fit import SharpFit
 
 SHARP = Options(corners="sharp")
 
@@ -33,7 +38,6 @@ class MastersContourResult:
         source: the contour as the font has it. curve: the result, lines and cubics, in the source's direction.
         inner: (m,) whether segment j of the result begins inside an arc: no instance has a kink or a jump of curvature
             there.
-        places: (m + 1,) places of the source near which the segments of the result begin, and the first a lap later.
         iterations: of variant 2, the most of all arcs; None if no arc has two spans.
         rate_bound: largest certified factor a step; None likewise.
         deviation_bound: certified bound of the two-sided distance to the source at every location, in font units.
@@ -47,7 +51,6 @@ class MastersContourResult:
     source: MasterContour
     curve: MasterContour
     inner: BoolArray
-    places: FloatArray
     iterations: int | None
     rate_bound: float | None
     deviation_bound: float
@@ -72,9 +75,12 @@ class MastersResult:
 
     def __repr__(self) -> str:
         segments = sum(len(contour.curve) for contour in self.contours)
-        bound = rounded_up(max((contour.deviation_bound for contour in self.contours), default=0.0), 3)
         counts = f"{counted(len(self.masters), 'master')}, {counted(len(self.contours), 'contour')}"
-        return f"<MastersResult {self.masters.name!r}: {counts}, {segments} segments, certified within {bound:g} units>"
+        said = f"<MastersResult {self.masters.name!r}: {counts}, {counted(segments, 'segment')}"
+        if not self.contours:
+            return f"{said}>"
+        bound = rounded_up(max(contour.deviation_bound for contour in self.contours), 3)
+        return f"{said}, certified within {bound:g} units>"
 
     def instance(self, location: Mapping[str, float]) -> Outline:
         """The result at a location, axis tag to user-space value: an outline that every function of outlines takes."""
@@ -121,77 +127,81 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             the glyph.
         OptionError: options that are for single outlines.
     """
-    from .sharp.pieces import CLOSED, SPANS
+    from ..outlines.segments import all_cubics  # imports the compiler, as the fit does
     from .sharp.sharp_fit import Source, fit_sharp
 
     if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
         raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
     em = masters.metrics.units_per_em
     tolerance = options.tolerance_for(em)
-    kept = [c for c, contour in enumerate(masters.contours) if _encloses(contour)]
+    every = [masters.master(k).arrays for k in range(len(masters))]
+    encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
     notes = [
-        f"contour {c} has fewer than three distinct points and is left out"
-        for c in range(len(masters.contours))
-        if c not in kept
+        f"contour {c} has fewer than three distinct points and is left out" for c in np.flatnonzero(~encloses).tolist()
     ]
+    kept = np.flatnonzero(encloses).tolist()
     if not kept:
         return MastersResult(masters, options, (), tuple(notes))
-    sources = [masters.contours[c] for c in kept]
-    degrees = np.concatenate([source.degrees for source in sources])
-    offsets = offsets_of([len(source) for source in sources])
-    starts = offsets_of([source.points.shape[1] for source in sources])
-    points = np.concatenate([source.points[0] for source in sources])
-    cubics = np.concatenate([source.cubics() for source in sources], axis=1)
+    outlines = [arrays.chosen(kept) for arrays in every]
     try:
-        for k in range(len(masters)):
-            _check(sources, kept, k)
+        _check(outlines, kept)
         mixes = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
-        source = Source(ContourArrays(points, degrees, offsets, starts), cubics, mixes)
+        source = Source(outlines[0], np.stack([all_cubics(arrays) for arrays in outlines]), mixes)
         fit = fit_sharp(source, options, tolerance, em)
     except GlyphsplineError as error:
         raise error.locate(glyph=masters.name) from error.__cause__
-    results = []
-    for c in range(len(kept)):
-        a, b = fit.offsets[c], fit.offsets[c + 1]
-        kept_ones = (fit.pieces.where[a:b, SPANS] == 1) & (fit.pieces.errors[a:b] == 0.0)
-        arcs = [fit.splines[q] for q in range(a, b) if q in fit.splines]
-        bound = float(fit.bounds[a:b].max())
-        counts = np.maximum(fit.pieces.where[a:b, SPANS], 1)
-        inner = np.ones(int(counts.sum()), dtype=np.bool_)
-        if not fit.pieces.where[a, CLOSED]:
-            inner[np.cumsum(counts) - counts] = False
-        first = fit.pieces.starts[a:b]
-        places = np.concatenate([fit.pieces.places[s : s + n] for s, n in zip(first, counts, strict=True)])
-        results.append(
-            MastersContourResult(
-                sources[c],
-                MasterContour(np.stack([_part(curve, c)[0] for curve in fit.curves]), _part(fit.curves[0], c)[1]),
-                inner,
-                np.append(places, places[0] + len(sources[c])),
-                max((arc.iterations for arc in arcs), default=None),
-                max((arc.rate_bound for arc in arcs), default=None),
-                bound,
-                bound <= tolerance,
-                int(kept_ones.sum()),
-                bool(fit.regular[a:b].all()),
-            )
-        )
-        if results[-1].kept:
-            notes.append(f"{counted(results[-1].kept, 'segment')} of contour {c} stay as the source has them")
-        if not results[-1].within_tolerance:
-            notes.append(f"contour {c} is certified to {rounded_up(bound, 3):g} units, not to {tolerance:g}")
+    curves = zip(*(Contours(curve) for curve in fit.curves), strict=True)
+    results = [
+        _contour_result(masters.contours[number], c, fit, in_all, tolerance)
+        for c, (number, in_all) in enumerate(zip(kept, curves, strict=True))
+    ]
+    for c, result in enumerate(results):
+        if result.kept:
+            notes.append(f"{counted(result.kept, 'segment')} of contour {c} stay as the source has them")
+        if not result.within_tolerance:
+            bound = rounded_up(result.deviation_bound, 3)
+            notes.append(f"contour {c} is certified to {bound:g} units, not to {tolerance:g}")
     return MastersResult(masters, options, tuple(results), tuple(notes))
 
 
-def _check(sources: Sequence[MasterContour], numbers: Sequence[int], k: int) -> None:
-    """Refuse coordinates of master k that are not finite, or too large."""
+def _contour_result(
+    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float
+) -> MastersContourResult:
+    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured."""
+    from .sharp.pieces import CLOSED, SPANS
+
+    assert fit.regular is not None  # it is a fit of masters
+    own = slice(fit.offsets[c], fit.offsets[c + 1])
+    spans = fit.pieces.where[own, SPANS]
+    segments = np.maximum(spans, 1)
+    inner = np.ones(int(segments.sum()), dtype=np.bool_)
+    if not fit.pieces.where[own.start, CLOSED]:  # every piece begins at the end of another
+        inner[np.cumsum(segments) - segments] = False
+    arcs = [fit.splines[q] for q in range(own.start, own.stop) if q in fit.splines]
+    bound = float(fit.bounds[own].max())
+    return MastersContourResult(
+        source,
+        MasterContour(np.stack([curve.points for curve in curves]), curves[0].degrees),
+        inner,
+        iterations=max((arc.iterations for arc in arcs), default=None),
+        rate_bound=max((arc.rate_bound for arc in arcs), default=None),
+        deviation_bound=bound,
+        within_tolerance=bound <= tolerance,
+        kept=int(((spans == 1) & (fit.pieces.errors[own] == 0.0)).sum()),
+        regular=bool(fit.regular[own].all()),
+    )
+
+
+def _check(outlines: Sequence[ContourArrays], numbers: Sequence[int]) -> None:
+    """Refuse coordinates in any master that are not finite, or too large; the contours have these numbers."""
     from .measures import check_coordinates
 
-    for c, source in zip(numbers, sources, strict=True):
+    for k, arrays in enumerate(outlines):
         try:
-            check_coordinates(Contours([Contour(source.points[k], source.degrees)]).arrays)
+            check_coordinates(arrays)
         except GlyphsplineError as error:
-            raise GlyphsplineError(f"master {k}: {error.message}", contour=c) from None
+            where = None if error.contour is None else numbers[error.contour]
+            raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None
 
 
 def _energy(contour: Contour) -> float:
@@ -199,13 +209,3 @@ def _energy(contour: Contour) -> float:
     from ..curves.integrals import integrals
 
     return float(integrals(np.ascontiguousarray(contour.cubics()[contour.degrees > 1]))[1])
-
-
-def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, IntArray]:
-    part = contours.part(c, c + 1)
-    return part.points, part.degrees
-
-
-def _encloses(contour: MasterContour) -> bool:
-    """Whether three of a contour's points are distinct in some master."""
-    return any(len(np.unique(points, axis=0)) >= 3 for points in contour.points)

@@ -159,25 +159,19 @@ def certify_masters(
         result = np.ascontiguousarray(results[:, a:b])
         m, r = source.shape[1], result.shape[1]
         closed = bool(pieces.where[own[0], CLOSED])
-        hints = np.concatenate([pieces.places[first[q] : first[q] + segments[q + 1] - segments[q]] for q in own])
-        ranges = np.empty((r, 4))
+        places, ranges = np.empty(r), np.empty((r, 4))
         for q in own:
             s, e = segments[q] - a, segments[q + 1] - a
-            ranges[s:e] = s, e, pieces.where[q, FIRST], pieces.where[q, LAST]
+            low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
+            ranges[s:e] = s, e, low, high
+            places[s:e] = pieces.places[first[q] : first[q] + e - s]
+            inner = s if closed else s + 1  # an arc begins where the source's does
+            if inner < e:
+                knots = np.ascontiguousarray(result[:, inner:e, 0])
+                places[inner:e] = near_places(source, places[inner:e].copy(), knots, closed, low, high)
         if closed:
-            places = near_places(source, hints, np.ascontiguousarray(result[:, :, 0]), True, 0.0, 0.0)
             places += m * np.ceil(max(-places[0], 0.0) / m)
-        else:
-            places = hints.astype(np.float64)
-            for q in own:
-                s, e = segments[q] - a, segments[q + 1] - a
-                if e - s > 1:
-                    inner = np.ascontiguousarray(result[:, s + 1 : e, 0])
-                    low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
-                    places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
         anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
-        rings = np.full(r, closed).astype(np.int64)
-        bounds[a:b] = pair_stacks(result, source, anchors, ranges, rings, limit)
-    good = regular(results)
+        bounds[a:b] = pair_stacks(result, source, anchors, ranges, closed, limit)
     each = segments[:-1]
-    return np.maximum.reduceat(bounds, each), np.logical_and.reduceat(good, each)
+    return np.maximum.reduceat(bounds, each), np.logical_and.reduceat(regular(results), each)

@@ -114,9 +114,10 @@ class SharpFit:
         offsets: (C + 1,) where in ``pieces`` each contour begins.
         splines: the interpolations of those arcs that have more than one span, by their piece.
         curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
-        bounds: (P,) certified distance of each piece from the source: of a single master as it is written, and of
-            several in the whole design space. gaps: (P,) the largest one seen; NaN for several masters.
-        regular: (P,) whether the curve has speed everywhere, in the whole design space; not looked at for a single one.
+        bounds: (P,) certified distance of each piece from the source: of a plain outline as it is written, and of
+            masters, unrounded, in the whole design space. gaps: (P,) the largest one seen; NaN for masters.
+        regular: (P,) whether the curves of masters have speed everywhere, in the whole design space; None for a plain
+            outline.
     """
 
     pieces: Pieces
@@ -126,7 +127,7 @@ class SharpFit:
     controls: tuple[Polylines, ...]
     bounds: FloatArray
     gaps: FloatArray
-    regular: BoolArray
+    regular: BoolArray | None
 
     def interpolations(self) -> list[Interpolation]:
         """All arcs of a single master; one of a single span interpolates its two ends as it is."""
@@ -160,22 +161,23 @@ class Source(NamedTuple):
 
     Attributes:
         contours: their degrees and offsets. cubics: (K, m, 4, 2) their segments in each master.
-        mixes: (V, K) weights of the masters at the corners of the design space's grid.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline, which
+            is certified as it is written.
     """
 
     contours: ContourArrays
     cubics: FloatArray
-    mixes: FloatArray
+    mixes: FloatArray | None
 
 
 def single(contours: ContourArrays) -> Source:
     """Contours by themselves: their only master."""
-    return Source(contours, all_cubics(contours)[None], np.ones((1, 1)))
+    return Source(contours, all_cubics(contours)[None], None)
 
 
 def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> SharpFit:
-    """Lines and arcs within ``tolerance`` of contours, certified: one master after rounding to the precision of the
-    options, several in the whole design space.
+    """Lines and arcs within ``tolerance`` of contours, certified: a plain outline after rounding to the precision of
+    the options, masters in the whole design space.
 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
     the source's own segments, of which each is an arc of one span.
@@ -194,7 +196,7 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
     fit = _certified(split, choose(split, pieces, settings.near), source.mixes, options, tolerance)
-    tries = RETRIES[options.continuity] if len(source.cubics) == 1 else RETRIES_OF_MASTERS
+    tries = RETRIES[options.continuity] if source.mixes is None else RETRIES_OF_MASTERS
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
@@ -235,19 +237,22 @@ def _refitted_piece(
     return source_pieces(contours, piece)
 
 
-def _certified(split: SplitContours, pieces: Pieces, mixes: FloatArray, options: Options, tolerance: float) -> SharpFit:
+def _certified(
+    split: SplitContours, pieces: Pieces, mixes: FloatArray | None, options: Options, tolerance: float
+) -> SharpFit:
     """The pieces with curves put through them, measured against the source."""
     count, masters = len(split.flipped), len(split.cubics)
     splines = _interpolated(pieces, options)
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
     controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
-    made = [put_together(of_master(pieces, v), count, knots, controls[v], chords(pieces)) for v in range(masters)]
+    lengths = chords(pieces)
+    made = [put_together(of_master(pieces, v), count, knots, controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
-    if masters == 1:
+    regular = None
+    if mixes is None:
         written = curves[0].rounded(options.precision)
         bounds, gaps = certify(split, pieces, segments, written, SHARPNESS * tolerance, tolerance)
-        regular = np.ones(len(bounds), dtype=np.bool_)
     else:
         cubics = np.stack([all_cubics(curve) for curve in curves])
         bounds, regular = certify_masters(split, pieces, segments, cubics, curves[0].offsets, mixes, tolerance)
