@@ -327,3 +327,75 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
         pair, "wght=400:900", MadeOnDemand(glyphs, lambda name: read(glyphs[name])), with_contours=False
     )
     assert len(alive) > 8
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--location", "wght=600"], "--location is not for --masters"),
+        (["--each"], "--each is not for --masters"),
+        (["--scheduler", "tcp://localhost:1"], "--scheduler is not for --masters"),
+        (["--axis", "wght=400:900"], "go together"),
+        (["--from", str(CFF2)], "go together"),
+        (["--from", str(CFF2), "--axis", "wght=400"], "an axis is like"),
+        (["--continuity", "g1"], "by tolerance"),
+    ],
+)
+def test_options_that_clash_with_masters_are_refused(more: list[str], said: str, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", *more))
+    assert done.exit_code == 2
+    assert said in done.output + (done.stderr if done.stderr_bytes else "")
+    assert not (tmp_path / "out" / "run.json").exists()
+
+
+def test_an_axis_alone_is_refused_without_masters_too(tmp_path: Path) -> None:
+    call = ["convert", str(CFF2), "--glyphs", "o", "--axis", "wght=400:900", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, [*call, "--jobs", "0"])
+    assert done.exit_code == 2
+    assert "go together" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+def test_the_summary_of_masters_as_json(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", "--names", "unicode", "--quiet", "--json"))
+    assert done.exit_code == 0
+    facts = json.loads(done.stdout)
+    assert (facts["glyphs"], facts["failed"], facts["outside"]) == (1, {}, [])
+    assert 0 < facts["bound"] <= 1
+    assert [path.name for path in (tmp_path / "out" / "results").iterdir()] == ["uni006F.json"]
+    empty = CliRunner().invoke(app, masters_call(tmp_path / "empty", "space", "--quiet", "--json"))
+    assert json.loads(empty.stdout)["bound"] is None
+
+
+def test_a_glyph_that_fails_is_named_with_the_font_that_lacks_it(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    from fontTools.subset import Subsetter
+
+    light, bold = weights_of_blobs
+    font = TTFont(bold)
+    cut = Subsetter()
+    cut.populate(text="o")
+    cut.subset(font)
+    font.save(tmp_path / "few.ttf")
+    done = CliRunner().invoke(app, from_call(light, tmp_path / "few.ttf", tmp_path / "out", "o,stem"))
+    assert done.exit_code == 1
+    lines = manifest_of(tmp_path / "out")
+    assert lines["o"]["status"] == "ok"
+    assert lines["stem"]["error"] == "few.ttf: there is no glyph 'stem' or U+006C"
+    assert "failed: stem: few.ttf: there is no glyph" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+def test_one_master_is_certified_as_several_are() -> None:
+    flat = oval(200, 350, 0.55) * [1.0, 0.0]  # a line run through twice: without speed at both ends
+    result = gs.convert_masters(masters_of(flat), gs.Options(tolerance=0.5))
+    assert not result.contours[0].regular
+    good, options = oval(200, 350, 0.55), gs.Options(precision=0, tolerance=3.0)
+    alone, twice = (gs.convert_masters(masters_of(*[good] * k), options).contours[0] for k in (1, 2))
+    assert alone.regular
+    # As it is, not rounded to whole units.
+    assert alone.deviation_bound == pytest.approx(twice.deviation_bound, rel=1e-3)
+    assert apart(alone.curve.cubics()[0], alone.source.cubics()[0]) <= alone.deviation_bound + 0.01
+
+
+def test_a_glyph_without_contours_claims_no_bound() -> None:
+    assert repr(gs.convert_masters(Masters("space"))) == "<MastersResult 'space': 1 master, 0 contours, 0 segments>"

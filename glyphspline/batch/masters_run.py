@@ -10,13 +10,13 @@ import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import GlyphsplineError, OutputError
-from ..fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
+from ..fitting.convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from ..fitting.options import Options
 from ..outlines.masters import Masters
 from ..readers import Font, Source, open_source
@@ -95,6 +95,10 @@ class MastersSummary:
         if not all(contour["regular"] for contour in entry["contours"]):
             self.stopping.append(entry["glyph"])
 
+    def facts(self) -> dict[str, Any]:
+        """The summary as JSON data."""
+        return asdict(self)
+
     def lines(self) -> Iterator[str]:
         """What is said at the end of a run."""
         said = f"{counted(self.glyphs, 'glyph')} in all masters at once, {counted(self.segments, 'segment')}"
@@ -151,7 +155,7 @@ def convert_font_masters(
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         places = tuple((s.path.absolute(), s.face_index, tuple(s.location.items())) for s in sources)
         job = MastersJob(places, axis, out.absolute(), options)
-        tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec))
+        tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec), spec.names)
         _convert(job, tasks, executor, record, observer)
         kept = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
         with finish(out, record, partial(_with_kept, kept)) as lines:
@@ -273,8 +277,9 @@ def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:
 
 
 def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
-    """Raise before the run if a format cannot be written."""
+    """Raise before the run if its options are not for masters, or a format cannot be written."""
     font = sources[0]
+    check_options(spec.options)
     if axis is not None:
         axis_of(axis, len(sources))
     if axis is not None and "otf" in spec.formats:

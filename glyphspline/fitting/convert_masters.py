@@ -130,8 +130,7 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
     from ..outlines.segments import all_cubics  # imports the compiler, as the fit does
     from .sharp.sharp_fit import Source, fit_sharp
 
-    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
-        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
+    check_options(options)
     em = masters.metrics.units_per_em
     tolerance = options.tolerance_for(em)
     every = [masters.master(k).arrays for k in range(len(masters))]
@@ -162,6 +161,12 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             bound = rounded_up(result.deviation_bound, 3)
             notes.append(f"contour {c} is certified to {bound:g} units, not to {tolerance:g}")
     return MastersResult(masters, options, tuple(results), tuple(notes))
+
+
+def check_options(options: Options) -> None:
+    """Raise an OptionError if masters cannot be converted with these options."""
+    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
+        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
 
 
 def _contour_result(
