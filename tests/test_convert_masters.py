@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import weakref
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,12 @@ from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.batch.masters_run import redrawn_glyph
+from glyphspline.batch.masters_run import MastersSummary, redrawn_glyph
 from glyphspline.batch.store import from_text, to_text
 from glyphspline.cli.commands import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
+from glyphspline.fitting.convert_masters import changes_at
 from glyphspline.fitting.stacked_distance import pair_stacks, regular
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.readers import Font
@@ -28,6 +30,8 @@ from glyphspline.writers.designspace_folder import write_designspace
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font
 from glyphspline.writers.font.variable_font import to_variable_font
+
+from . import topology
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 CFF2 = FONTS / "variable-cff2.otf"
@@ -399,3 +403,58 @@ def test_one_master_is_certified_as_several_are() -> None:
 
 def test_a_glyph_without_contours_claims_no_bound() -> None:
     assert repr(gs.convert_masters(Masters("space"))) == "<MastersResult 'space': 1 master, 0 contours, 0 segments>"
+
+
+def rings(gap: float) -> Masters:
+    """Two circles of different radius, whose vertices are not at the same angles, in a master and a wider one."""
+    outer, inner = oval(300, 300, 0.5523), np.roll(oval(300 - gap, 300 - gap, 0.5523, np.pi / 4)[::-1], 1, axis=0)
+    wider = [1.2, 1.0]
+    contours = [MasterContour(np.array([points, points * wider]), np.full(4, 3)) for points in (outer, inner)]
+    return replace(masters_of(outer, outer), contours=tuple(contours))
+
+
+def exact_crossings(outline: gs.Outline) -> dict[tuple[int, int], int]:
+    """Crossings by whole numbers, with the curves rounded to 1/10000 unit."""
+    path = []
+    for contour in outline.contours:
+        cubics = np.round(contour.cubics(), 4)
+        numbers = [" ".join(f"{x:.4f}" for x in cubic[1:].ravel()) for cubic in cubics]
+        path.append(f"M{cubics[0, 0, 0]:.4f} {cubics[0, 0, 1]:.4f}" + "".join(f"C{each}" for each in numbers) + "Z")
+    return topology.crossings(topology.path_contours("".join(path)))
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_contours_that_would_cross_in_a_master_are_fitted_more_closely(corners: str) -> None:
+    masters, options = rings(1), gs.Options(tolerance=10, corners=corners)  # type: ignore[arg-type]
+    result = gs.convert_masters(masters, options)
+    assert [(c.new_crossings, c.collapsed) for c in result.contours] == [(0, False)] * 2
+    assert not result.notes
+    one_by_one = [gs.convert_masters(replace(masters, contours=(c,)), options) for c in masters.contours]
+    by_themselves = replace(result, contours=tuple(each.contours[0] for each in one_by_one))
+    for weights in np.eye(2):
+        assert not exact_crossings(result.mixed(weights))
+        assert exact_crossings(by_themselves.mixed(weights))[0, 1] == 8  # so there was something to mend
+
+
+def test_contours_that_still_cross_are_named_with_the_place() -> None:
+    result = gs.convert_masters(rings(1), gs.Options(tolerance=20))
+    counts = [exact_crossings(result.mixed(weights)) for weights in np.eye(2)]
+    assert [c.new_crossings for c in result.contours] == [max(found[0, 1] for found in counts)] * 2
+    assert "contour 0 crosses itself or others, 8 times more than its source, at 2 of 2 corners" in result.notes[0]
+    assert result.notes[0].endswith(("as at wght=100,wdth=50", "as at wght=900,wdth=50"))
+    summary = MastersSummary()
+    good = {"segments": 4, "source_segments": 4, "deviation_bound": 1.0, "within_tolerance": True, "regular": True}
+    measures = [{**good, "new_crossings": 8, "collapsed": False}] * 2
+    summary.add({"glyph": "o", "status": "ok", "contours": measures, "error": None})
+    assert "cross where the source does not: o" in list(summary.lines())
+
+
+def test_a_contour_that_turns_round_in_one_master_has_collapsed_there() -> None:
+    result = gs.convert_masters(rings(100))
+    first, second = result.contours
+    points = second.curve.points.copy()
+    points[1] *= [-1.0, 1.0]
+    wrong = replace(second, curve=MasterContour(points, second.curve.degrees))
+    found = changes_at(np.eye(2), [first, wrong])
+    assert found.collapsed.tolist() == [False, False, False, True]
+    assert not changes_at(np.eye(2), result.contours).number

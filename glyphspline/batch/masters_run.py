@@ -34,7 +34,7 @@ from .pool import sign_of_life
 from .schedule import chunks_of, spread
 from .spec import RESULTS, RunSpec, describe, write_run
 from .store import from_text, to_text
-from .summary import NO_FACTS
+from .summary import CHANGED, NO_FACTS, listed
 from .whole import file_stem
 from .worker import reason
 
@@ -67,6 +67,8 @@ class MastersSummary:
     Attributes:
         glyphs: those that have a result. failed: the others, and why.
         outside, stopping: glyphs outside the tolerance; and not proven free of cusps.
+        crossing, collapsed: glyphs that cross, or have a contour that lost its area, at a corner of the design space
+            where the source does not.
         segments, source_segments: of all glyphs. bound: largest certified distance; None if there is no contour.
     """
 
@@ -74,6 +76,8 @@ class MastersSummary:
     failed: dict[str, str] = field(default_factory=dict)
     outside: list[str] = field(default_factory=list)
     stopping: list[str] = field(default_factory=list)
+    crossing: list[str] = field(default_factory=list)
+    collapsed: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     segments: int = 0
     source_segments: int = 0
@@ -94,6 +98,10 @@ class MastersSummary:
             self.outside.append(entry["glyph"])
         if not all(contour["regular"] for contour in entry["contours"]):
             self.stopping.append(entry["glyph"])
+        if any(contour["new_crossings"] for contour in entry["contours"]):
+            self.crossing.append(entry["glyph"])
+        if any(contour["collapsed"] for contour in entry["contours"]):
+            self.collapsed.append(entry["glyph"])
 
     def facts(self) -> dict[str, Any]:
         """The summary as JSON data."""
@@ -108,6 +116,10 @@ class MastersSummary:
             yield f"{counted(len(self.outside), 'glyph')} outside the tolerance: {_few(self.outside)}"
         if self.stopping:
             yield f"{counted(len(self.stopping), 'glyph')} not proven free of cusps everywhere: {_few(self.stopping)}"
+        if self.crossing:
+            yield f"{CHANGED['new_crossings']}: {listed(self.crossing[:NAMED], len(self.crossing))}"
+        if self.collapsed:
+            yield f"{CHANGED['collapsed']}: {listed(self.collapsed[:NAMED], len(self.collapsed))}"
         for name, error in list(self.failed.items())[:NAMED]:
             yield f"failed: {name}: {error}"
         if len(self.failed) > NAMED:
@@ -267,6 +279,8 @@ def _measures(contour: MastersContourResult) -> dict[str, Any]:
         "within_tolerance": contour.within_tolerance,
         "source_segments_kept": contour.kept,
         "regular": contour.regular,
+        "new_crossings": contour.new_crossings,
+        "collapsed": contour.collapsed,
     }
 
 

@@ -7,22 +7,23 @@ linear combination of the masters, and so a C2 spline on the same knots. The cer
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..errors import GlyphsplineError, OptionError
-from ..outlines.contour_arrays import ContourArrays
+from ..outlines.contour_arrays import ContourArrays, joined
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Contour, Contours, Outline
-from ..types import BoolArray, FloatArray, counted, rounded_up
+from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
 from .convert import enclosing
 from .options import Options
 
 if TYPE_CHECKING:
     from .sharp.sharp_fit import SharpFit
+    from .topology import Changes
 
 SHARP = Options(corners="sharp")
 
@@ -46,6 +47,10 @@ class MastersContourResult:
             source has it.
         regular: whether the curve is proven to have speed everywhere, at every location. It may lack it where the
             source's contour collapses.
+        new_crossings: most crossings, with itself and others, that the source does not have, at a corner of the design
+            space's grid; masters are among the corners. None where strands lie on each other in such numbers that they
+            are not counted. Between the corners crossings are not looked for.
+        collapsed: whether its area has gone, or changed its sign, at a corner.
     """
 
     source: MasterContour
@@ -57,6 +62,8 @@ class MastersContourResult:
     within_tolerance: bool
     kept: int
     regular: bool
+    new_crossings: int | None = None
+    collapsed: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,40 +134,133 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             the glyph.
         OptionError: options that are for single outlines.
     """
-    from ..outlines.segments import all_cubics  # imports the compiler, as the fit does
-    from .sharp.sharp_fit import Source, fit_sharp
-
     check_options(options)
-    em = masters.metrics.units_per_em
-    tolerance = options.tolerance_for(em)
     every = [masters.master(k).arrays for k in range(len(masters))]
     encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
-    notes = [
+    left_out = tuple(
         f"contour {c} has fewer than three distinct points and is left out" for c in np.flatnonzero(~encloses).tolist()
-    ]
+    )
     kept = np.flatnonzero(encloses).tolist()
     if not kept:
-        return MastersResult(masters, options, (), tuple(notes))
+        return MastersResult(masters, options, (), left_out)
     outlines = [arrays.chosen(kept) for arrays in every]
     try:
         _check(outlines, kept)
-        mixes = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
-        source = Source(outlines[0], np.stack([all_cubics(arrays) for arrays in outlines]), mixes)
-        fit = fit_sharp(source, options, tolerance, em)
+        corners = masters.grid()
+        mixes, which = np.unique(masters.weights_at(corners).round(12), axis=0, return_index=True)
+        fits = _Fits(masters, kept, outlines, mixes, corners[which], options)
+        results, found = fits.faithful()
     except GlyphsplineError as error:
         raise error.locate(glyph=masters.name) from error.__cause__
-    curves = zip(*(Contours(curve) for curve in fit.curves), strict=True)
-    results = [
-        _contour_result(masters.contours[number], c, fit, in_all, tolerance)
-        for c, (number, in_all) in enumerate(zip(kept, curves, strict=True))
-    ]
-    for c, result in enumerate(results):
-        if result.kept:
-            notes.append(f"{counted(result.kept, 'segment')} of contour {c} stay as the source has them")
-        if not result.within_tolerance:
-            bound = rounded_up(result.deviation_bound, 3)
-            notes.append(f"contour {c} is certified to {bound:g} units, not to {tolerance:g}")
-    return MastersResult(masters, options, tuple(results), tuple(notes))
+    return MastersResult(masters, options, tuple(results), (*left_out, *fits.remarks(results, found)))
+
+
+class _Fits(NamedTuple):
+    """Fits of a glyph's contours.
+
+    Attributes:
+        numbers: of the contours in the masters. outlines: these contours in each master.
+        mixes: (V, K) weights of the masters at corners (V, A) of the design space's grid, normalised.
+    """
+
+    masters: Masters
+    numbers: Sequence[int]
+    outlines: Sequence[ContourArrays]
+    mixes: FloatArray
+    corners: FloatArray
+    options: Options
+
+    @property
+    def tolerance(self) -> float:
+        return self.options.tolerance_for(self.masters.metrics.units_per_em)
+
+    def faithful(self) -> tuple[list[MastersContourResult], Changes]:
+        """Results of all contours, and what changed at each corner, (V C,).
+
+        Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
+        single outlines are.
+        """
+        from .sharp.sharp_fit import TRIES
+
+        results = self.fitted(range(len(self.numbers)), TRIES[0])
+        found = changes_at(self.mixes, results)
+        for share in TRIES[1:]:
+            wrong = found.any.reshape(len(self.mixes), -1).any(axis=0)
+            if not wrong.any():
+                break
+            closer = dict(zip(np.flatnonzero(wrong).tolist(), self.fitted(np.flatnonzero(wrong), share), strict=True))
+            trial = [closer.get(c, result) for c, result in enumerate(results)]
+            changed = changes_at(self.mixes, trial)
+            if (_outside(trial), changed.number) < (_outside(results), found.number):
+                results, found = trial, changed
+        new = found.new_crossings.reshape(len(self.mixes), -1)
+        most = [None if (own < 0).any() else int(own.max()) for own in new.T]
+        gone: BoolArray = found.collapsed.reshape(new.shape).any(axis=0)
+        measured = [
+            replace(result, new_crossings=count, collapsed=bool(lost))
+            for result, count, lost in zip(results, most, gone, strict=True)
+        ]
+        return measured, found
+
+    def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
+        """Contours fitted within a share of the tolerance."""
+        from ..outlines.segments import all_cubics
+        from .sharp.sharp_fit import Source, fit_sharp
+
+        which = [int(c) for c in which]
+        chosen = [arrays.chosen(which) for arrays in self.outlines]
+        source = Source(chosen[0], np.stack([all_cubics(arrays) for arrays in chosen]), self.mixes)
+        try:
+            fit = fit_sharp(source, self.options, share * self.tolerance, self.masters.metrics.units_per_em)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else self.numbers[which[error.contour]]
+            raise
+        curves = zip(*(Contours(curve) for curve in fit.curves), strict=True)
+        return [
+            _contour_result(self.masters.contours[self.numbers[c]], k, fit, in_all, self.tolerance)
+            for k, (c, in_all) in enumerate(zip(which, curves, strict=True))
+        ]
+
+    def remarks(self, results: Sequence[MastersContourResult], found: Changes) -> Iterator[str]:
+        """Remarks on contours that are partly the source's, miss the tolerance, or enclose something else."""
+        for c, result in enumerate(results):
+            if result.kept:
+                yield f"{counted(result.kept, 'segment')} of contour {c} stay as the source has them"
+            if not result.within_tolerance:
+                bound = rounded_up(result.deviation_bound, 3)
+                yield f"contour {c} is certified to {bound:g} units, not to {self.tolerance:g}"
+            new = found.new_crossings.reshape(len(self.mixes), -1)[:, c]
+            if (new > 0).any():
+                more = f"{new.max()} times more than its source"
+                yield f"contour {c} crosses itself or others, {more}, {self.where(np.maximum(new, 0))}"
+            elif (new < 0).any():
+                yield f"crossings of contour {c} are not counted: too many strands lie on each other"
+            lost = found.collapsed.reshape(new.size, -1)[:, c].astype(np.int64)
+            if lost.any():
+                how = "has lost its area, or runs the other way round than its source,"
+                yield f"contour {c} {how} {self.where(lost)}"
+
+    def where(self, values: IntArray) -> str:
+        """At how many corners (V,) values are not 0, and one at which they are largest, in user space."""
+        count = f"at {np.count_nonzero(values)} of {counted(len(values), 'corner')} of the design space"
+        user = self.masters.user(self.corners[int(values.argmax())])
+        return f"{count}, as at {','.join(f'{tag}={value:g}' for tag, value in user.items())}" if user else count
+
+
+def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Changes:
+    """What a glyph's C contours enclose otherwise than their sources: (V C,), with each of (V, K) weights in turn."""
+    from .topology import changes
+
+    source, written = (
+        joined([Contours([each.mixed(weights) for each in contours]).arrays for weights in mixes])
+        for contours in ([result.source for result in results], [result.curve for result in results])
+    )
+    return changes(source, written, np.arange(len(mixes) + 1) * len(results))
+
+
+def _outside(results: Sequence[MastersContourResult]) -> int:
+    """Number of contours outside the tolerance."""
+    return sum(not result.within_tolerance for result in results)
 
 
 def check_options(options: Options) -> None:
