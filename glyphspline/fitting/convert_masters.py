@@ -195,9 +195,9 @@ class _Fits(NamedTuple):
                 results, found = trial, changed
         new = found.new_crossings.reshape(len(self.mixes), -1)
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
-        gone: BoolArray = found.collapsed.reshape(new.shape).any(axis=0)
+        gone = [bool(own.any()) for own in found.collapsed.reshape(new.shape).T]
         measured = [
-            replace(result, new_crossings=count, collapsed=bool(lost))
+            replace(result, new_crossings=count, collapsed=lost)
             for result, count, lost in zip(results, most, gone, strict=True)
         ]
         return measured, found
