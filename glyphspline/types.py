@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from typing import Any, Generic, Literal, TypeAlias, TypeVar, overload
 
@@ -17,6 +17,7 @@ Names: TypeAlias = Literal["glyph", "unicode", "gid", "char"]
 """What the files of glyphs are called after."""
 
 T = TypeVar("T", covariant=True)
+Value = TypeVar("Value")
 
 
 def counted(number: int, noun: str) -> str:
@@ -69,3 +70,24 @@ class Views(Sequence[T], Generic[T]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return tuple, (self.items,)
+
+
+class MadeOnDemand(Mapping[str, Value], Generic[Value]):
+    """Values by name, each made when it is asked for and not kept: all glyphs of a CJK font would fill the memory."""
+
+    def __init__(self, names: Iterable[str], make: Callable[[str], Value]) -> None:
+        self._names, self._make = dict.fromkeys(names), make
+
+    def __getitem__(self, name: str) -> Value:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._make(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)

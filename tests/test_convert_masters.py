@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import weakref
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,13 +15,23 @@ from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.batch.masters_run import MastersSummary, redrawn_glyph
 from glyphspline.batch.store import from_text, to_text
 from glyphspline.cli.commands import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
+from glyphspline.fitting.convert_masters import changes_at
 from glyphspline.fitting.stacked_distance import pair_stacks, regular
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
-from glyphspline.types import FloatArray
+from glyphspline.readers import Font
+from glyphspline.readers.single_fonts import masters_of_fonts
+from glyphspline.types import FloatArray, MadeOnDemand
+from glyphspline.writers.designspace_folder import write_designspace
+from glyphspline.writers.font.master_deltas import Redrawn
+from glyphspline.writers.font.new_variable_font import to_new_variable_font
+from glyphspline.writers.font.variable_font import to_variable_font
+
+from . import topology
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 CFF2 = FONTS / "variable-cff2.otf"
@@ -146,7 +159,7 @@ def test_the_slip_bound_holds_in_between_and_is_not_the_plain_one() -> None:
     anchors = np.array([[0.0, 0], [1, 1], [2, 2]])
     ranges = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]])
     both = np.ones(2, dtype=np.bool_)
-    bounds = pair_stacks(results, sources, anchors, ranges, np.zeros(2, dtype=np.int64), both, 0.5)
+    bounds = pair_stacks(results, sources, anchors, ranges, False, both, 0.5)
     assert bounds[1] < 1e-9
     assert np.abs(results - sources).max() > 15
     assert bounds[0] <= 0.5
@@ -224,3 +237,225 @@ def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, call)
     assert done.exit_code == 2
     assert "not svg" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+@pytest.fixture(scope="module")
+def weights_of_blobs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A light and a bold single font."""
+    from fontTools.varLib.instancer import instantiateVariableFont
+
+    folder = tmp_path_factory.mktemp("single")
+    for value in (400, 900):
+        instantiateVariableFont(TTFont(FONTS / "variable.ttf"), {"wght": value}).save(folder / f"{value}.ttf")
+    return folder / "400.ttf", folder / "900.ttf"
+
+
+def from_call(light: Path, bold: Path, out: Path, glyphs: str) -> list[str]:
+    call = ["convert", str(light), "--from", str(bold), "--axis", "wght=400:900", "--masters", "--glyphs", glyphs]
+    return [*call, "--corners", "sharp", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+
+
+def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    light, bold = weights_of_blobs
+    out = tmp_path / "out"
+    assert CliRunner().invoke(app, from_call(light, bold, out, "o")).exit_code == 0
+    run = json.loads((out / "run.json").read_text())
+    assert run["axis"] == "wght=400:900"
+    assert [font["sha256"] for font in run["from"]] == [gs.open_font(bold).sha256]
+    assert "--from 900.ttf --axis wght=400:900" in run["command"]
+    first = (out / "results" / "o.json").stat()
+    again = CliRunner().invoke(app, from_call(light, bold, out, "o,stem"))
+    assert again.exit_code == 0, again.output
+    assert (out / "results" / "o.json").stat().st_mtime_ns == first.st_mtime_ns
+    assert [json.loads(line)["glyph"] for line in (out / "manifest.jsonl").read_text().splitlines()] == ["o", "stem"]
+
+    other = tmp_path / "900.ttf"
+    font = TTFont(bold)
+    font["head"].fontRevision = 7.0
+    font.save(other)
+    refused = CliRunner().invoke(app, from_call(light, other, out, "o"))
+    assert refused.exit_code == 2
+    assert "from.1.sha256" in refused.output + (refused.stderr if refused.stderr_bytes else "")
+
+
+def masters_call(out: Path, glyphs: str, *more: str) -> list[str]:
+    call = ["convert", str(CFF2), "--masters", "--glyphs", glyphs, "--corners", "sharp", "--format", "otf"]
+    return [*call, "--jobs", "0", "--out", str(out), *more]
+
+
+def manifest_of(out: Path) -> dict[str, Any]:
+    lines = [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
+    return {line["glyph"]: line for line in lines}
+
+
+def test_a_run_goes_on_with_its_glyphs_and_a_restart_has_none_of_the_old_results(tmp_path: Path) -> None:
+    def first_points(name: str) -> FloatArray:
+        text = (tmp_path / "results" / f"{name}.json").read_text()
+        return from_text(text, gs.MastersResult).contours[0].curve.points
+
+    assert CliRunner().invoke(app, masters_call(tmp_path, "o")).exit_code == 0
+    old, written = first_points("o"), (tmp_path / "results" / "o.json").stat()
+    assert CliRunner().invoke(app, masters_call(tmp_path, "n")).exit_code == 0
+    assert list(manifest_of(tmp_path)) == ["o", "n"]
+    assert (tmp_path / "results" / "o.json").stat().st_mtime_ns == written.st_mtime_ns
+    font, source = gs.open_font(next(tmp_path.glob("*.otf"))), gs.open_font(CFF2)
+    for name in ("n", "o"):  # the font has both
+        assert font.outline(name).arrays.points.shape != source.outline(name).arrays.points.shape
+    done = CliRunner().invoke(app, masters_call(tmp_path, "o", "--tolerance", "0.1", "--restart"))
+    assert done.exit_code == 0
+    assert list(manifest_of(tmp_path)) == ["o"]
+    assert first_points("o").shape != old.shape
+    assert not (tmp_path / "results" / "n.json").exists()
+
+
+def test_a_font_is_written_with_one_result_in_memory_at_a_time(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    alive: list[weakref.ref[Redrawn]] = []
+
+    def read(masters: Masters) -> Redrawn:
+        assert sum(each() is not None for each in alive) <= 2  # the one before, until its name is bound anew
+        result = redrawn_glyph(gs.convert_masters(masters))
+        alive.append(weakref.ref(result))
+        return result
+
+    font = gs.open_font(CFF2)
+    assert isinstance(font, Font)
+    cff2 = MadeOnDemand(font.glyph_names, lambda name: read(font.masters(name)))
+    to_variable_font(font, cff2, "otf", with_contours=False)
+    write_designspace(font, cff2, tmp_path / "folder")
+    pair = [gs.open_font(path) for path in weights_of_blobs]
+    glyphs = {glyph.name: glyph for glyph in masters_of_fonts(pair, "wght=400:900") if isinstance(glyph, Masters)}
+    to_new_variable_font(
+        pair, "wght=400:900", MadeOnDemand(glyphs, lambda name: read(glyphs[name])), with_contours=False
+    )
+    assert len(alive) > 8
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--location", "wght=600"], "--location is not for --masters"),
+        (["--each"], "--each is not for --masters"),
+        (["--scheduler", "tcp://localhost:1"], "--scheduler is not for --masters"),
+        (["--axis", "wght=400:900"], "go together"),
+        (["--from", str(CFF2)], "go together"),
+        (["--from", str(CFF2), "--axis", "wght=400"], "an axis is like"),
+        (["--continuity", "g1"], "by tolerance"),
+    ],
+)
+def test_options_that_clash_with_masters_are_refused(more: list[str], said: str, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", *more))
+    assert done.exit_code == 2
+    assert said in done.output + (done.stderr if done.stderr_bytes else "")
+    assert not (tmp_path / "out" / "run.json").exists()
+
+
+def test_an_axis_alone_is_refused_without_masters_too(tmp_path: Path) -> None:
+    call = ["convert", str(CFF2), "--glyphs", "o", "--axis", "wght=400:900", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, [*call, "--jobs", "0"])
+    assert done.exit_code == 2
+    assert "go together" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+def test_the_summary_of_masters_as_json(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", "--names", "unicode", "--quiet", "--json"))
+    assert done.exit_code == 0
+    facts = json.loads(done.stdout)
+    assert (facts["glyphs"], facts["failed"], facts["outside"]) == (1, {}, [])
+    assert 0 < facts["bound"] <= 1
+    assert [path.name for path in (tmp_path / "out" / "results").iterdir()] == ["uni006F.json"]
+    empty = CliRunner().invoke(app, masters_call(tmp_path / "empty", "space", "--quiet", "--json"))
+    assert json.loads(empty.stdout)["bound"] is None
+
+
+def test_a_glyph_that_fails_is_named_with_the_font_that_lacks_it(
+    weights_of_blobs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    from fontTools.subset import Subsetter
+
+    light, bold = weights_of_blobs
+    font = TTFont(bold)
+    cut = Subsetter()
+    cut.populate(text="o")
+    cut.subset(font)
+    font.save(tmp_path / "few.ttf")
+    done = CliRunner().invoke(app, from_call(light, tmp_path / "few.ttf", tmp_path / "out", "o,stem"))
+    assert done.exit_code == 1
+    lines = manifest_of(tmp_path / "out")
+    assert lines["o"]["status"] == "ok"
+    assert lines["stem"]["error"] == "few.ttf: there is no glyph 'stem' or U+006C"
+    assert "failed: stem: few.ttf: there is no glyph" in done.output + (done.stderr if done.stderr_bytes else "")
+
+
+def test_one_master_is_certified_as_several_are() -> None:
+    flat = oval(200, 350, 0.55) * [1.0, 0.0]  # a line run through twice: without speed at both ends
+    result = gs.convert_masters(masters_of(flat), gs.Options(tolerance=0.5))
+    assert not result.contours[0].regular
+    good, options = oval(200, 350, 0.55), gs.Options(precision=0, tolerance=3.0)
+    alone, twice = (gs.convert_masters(masters_of(*[good] * k), options).contours[0] for k in (1, 2))
+    assert alone.regular
+    # As it is, not rounded to whole units.
+    assert alone.deviation_bound == pytest.approx(twice.deviation_bound, rel=1e-3)
+    assert apart(alone.curve.cubics()[0], alone.source.cubics()[0]) <= alone.deviation_bound + 0.01
+
+
+def test_a_glyph_without_contours_claims_no_bound() -> None:
+    assert repr(gs.convert_masters(Masters("space"))) == "<MastersResult 'space': 1 master, 0 contours, 0 segments>"
+
+
+def rings(gap: float) -> Masters:
+    """Two circles of different radius, whose vertices are not at the same angles, in a master and a wider one."""
+    outer, inner = oval(300, 300, 0.5523), np.roll(oval(300 - gap, 300 - gap, 0.5523, np.pi / 4)[::-1], 1, axis=0)
+    wider = [1.2, 1.0]
+    contours = [MasterContour(np.array([points, points * wider]), np.full(4, 3)) for points in (outer, inner)]
+    return replace(masters_of(outer, outer), contours=tuple(contours))
+
+
+def exact_crossings(outline: gs.Outline) -> dict[tuple[int, int], int]:
+    """Crossings by whole numbers, with the curves rounded to 1/10000 unit."""
+    path = []
+    for contour in outline.contours:
+        cubics = np.round(contour.cubics(), 4)
+        numbers = [" ".join(f"{x:.4f}" for x in cubic[1:].ravel()) for cubic in cubics]
+        path.append(f"M{cubics[0, 0, 0]:.4f} {cubics[0, 0, 1]:.4f}" + "".join(f"C{each}" for each in numbers) + "Z")
+    return topology.crossings(topology.path_contours("".join(path)))
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_contours_that_would_cross_in_a_master_are_fitted_more_closely(corners: str) -> None:
+    masters, options = rings(1), gs.Options(tolerance=10, corners=corners)  # type: ignore[arg-type]
+    result = gs.convert_masters(masters, options)
+    assert [(c.new_crossings, c.collapsed) for c in result.contours] == [(0, False)] * 2
+    assert not result.notes
+    one_by_one = [gs.convert_masters(replace(masters, contours=(c,)), options) for c in masters.contours]
+    by_themselves = replace(result, contours=tuple(each.contours[0] for each in one_by_one))
+    for weights in np.eye(2):
+        assert not exact_crossings(result.mixed(weights))
+        assert exact_crossings(by_themselves.mixed(weights))[0, 1] == 8  # so there was something to mend
+
+
+def test_contours_that_still_cross_are_named_with_the_place() -> None:
+    result = gs.convert_masters(rings(1), gs.Options(tolerance=20))
+    counts = [exact_crossings(result.mixed(weights)) for weights in np.eye(2)]
+    assert [c.new_crossings for c in result.contours] == [max(found[0, 1] for found in counts)] * 2
+    assert "contour 0 crosses itself or others, 8 times more than its source, at 2 of 2 corners" in result.notes[0]
+    assert result.notes[0].endswith(("as at wght=100,wdth=50", "as at wght=900,wdth=50"))
+    summary = MastersSummary()
+    good = {"segments": 4, "source_segments": 4, "deviation_bound": 1.0, "within_tolerance": True, "regular": True}
+    measures = [{**good, "new_crossings": 8, "collapsed": False}] * 2
+    summary.add({"glyph": "o", "status": "ok", "contours": measures, "error": None})
+    assert "cross where the source does not: o" in list(summary.lines())
+
+
+def test_a_contour_that_turns_round_in_one_master_has_collapsed_there() -> None:
+    result = gs.convert_masters(rings(100))
+    first, second = result.contours
+    points = second.curve.points.copy()
+    points[1] *= [-1.0, 1.0]
+    wrong = replace(second, curve=MasterContour(points, second.curve.degrees))
+    found = changes_at(np.eye(2), [first, wrong])
+    assert found.collapsed.tolist() == [False, False, False, True]
+    assert not changes_at(np.eye(2), result.contours).number

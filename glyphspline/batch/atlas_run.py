@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias, TypeVar
 
 from ..checks.axis_kinks import tags_of
 from ..errors import GlyphsplineError, OptionError
@@ -18,6 +19,11 @@ from ..writers.figures.axis_pages import OfAxis, write_axis_atlas
 from ..writers.svg.curvature_map import Whose, curvature_scale
 from .files import make_folder
 from .font_run import SCALE_SAMPLE
+
+Result = TypeVar("Result", GlyphResult, MastersResult)
+
+Failed: TypeAlias = tuple[str, str]
+"""Name of a glyph, and why it could not be converted."""
 
 PROFILED = 12
 """Up to this number of glyphs, each has a profile page by default."""
@@ -50,23 +56,13 @@ def make_atlas(
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
     kept = {name: _converted(source, name, options) for name in names[:: -(-len(names) // SCALE_SAMPLE) or 1]}
     scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
-    failures = 0
-
-    def glyphs() -> Iterator[Glyph]:
-        nonlocal failures
-        for done, name in enumerate(names, 1):
-            glyph = kept.pop(name, None) or _converted(source, name, options)
-            failures += not isinstance(glyph, GlyphResult)
-            if not isinstance(glyph, GlyphResult) or glyph.contours:
-                yield glyph
-            if observer:
-                observer(done, len(names))
-
+    failed: list[str] = []
+    glyphs = _each(names, lambda name: kept.pop(name, None) or _converted(source, name, options), failed, observer)
     pages = write_atlas(
-        path, glyphs(), scale or 1 / source.metrics.units_per_em, heading=f"{source.family} {source.style}",
+        path, glyphs, scale or 1 / source.metrics.units_per_em, heading=f"{source.family} {source.style}",
         whose=comb, in_corners=in_corners, profiled=lambda glyph: glyph.outline.name in chosen,
     )  # fmt: skip
-    return pages, failures
+    return pages, len(failed)
 
 
 def make_axis_atlas(
@@ -97,23 +93,31 @@ def make_axis_atlas(
     options = replace(options, corners="sharp")
     sources = source.outlines(names[:: -(-len(names) // SCALE_SAMPLE) or 1], errors="return")
     scale = curvature_scale(as_glyph(outline) for outline in sources if not isinstance(outline, GlyphsplineError))
-    failures = 0
-
-    def glyphs() -> Iterator[OfAxis]:
-        nonlocal failures
-        for done, name in enumerate(names, 1):
-            glyph = _in_all_masters(source, name, options)
-            failures += not isinstance(glyph, MastersResult)
-            if not isinstance(glyph, MastersResult) or glyph.contours:
-                yield glyph
-            if observer:
-                observer(done, len(names))
-
+    failed: list[str] = []
+    glyphs = _each(names, lambda name: _in_all_masters(source, name, options), failed, observer)
     pages = write_axis_atlas(
-        path, glyphs(), axis, source.location, scale or 1 / source.metrics.units_per_em,
+        path, glyphs, axis, source.location, scale or 1 / source.metrics.units_per_em,
         f"{source.family} {source.style}",
     )  # fmt: skip
-    return pages, failures
+    return pages, len(failed)
+
+
+def _each(
+    names: Sequence[str],
+    made: Callable[[str], Result | Failed],
+    failed: list[str],
+    observer: Callable[[int, int], None] | None,
+) -> Iterator[Result | Failed]:
+    """The glyphs of an atlas, made one by one, without those that are empty; ``failed`` gets the names of failures."""
+    for done, name in enumerate(names, 1):
+        glyph = made(name)
+        if isinstance(glyph, tuple):
+            failed.append(name)
+            yield glyph
+        elif glyph.contours:
+            yield glyph
+        if observer:
+            observer(done, len(names))
 
 
 def _in_all_masters(source: Source, name: str, options: Options) -> OfAxis:

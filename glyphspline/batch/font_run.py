@@ -140,11 +140,19 @@ def workers_for(
     return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
-def prepare(source: Source, glyphs: Sequence[str], out: Path, spec: RunSpec, restart: bool) -> Record:
-    """Make the folders, and read the record of an earlier run."""
+def prepare(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    restart: bool,
+    others: Sequence[Source] = (),
+    axis: str | None = None,
+) -> Record:
+    """Make the folders, and read the record of an earlier run; see :func:`.spec.describe`."""
     old = None if restart else read_run(out)
     if old is not None:
-        changed = differences(old, describe(source, spec, glyphs, None))
+        changed = differences(old, describe(source, spec, glyphs, None, others, axis))
         if changed:
             raise OutputError(
                 "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)

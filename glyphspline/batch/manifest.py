@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -187,9 +187,18 @@ def entries_of(out: Path) -> Iterator[dict[str, Any]]:
         raise OutputError(f"cannot be read: {error}", font=str(path)) from error
 
 
+def _same(line: bytes) -> bytes:
+    return line
+
+
 @contextmanager
-def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
+def finish(
+    out: Path, record: Record, changed: Callable[[bytes], bytes] = _same
+) -> Iterator[Iterator[tuple[int, bytes]]]:
     """Write manifest and sizes in glyph index order, yielding each glyph's index and line.
+
+    Args:
+        changed: from a line, as it was recorded, to the one that is written.
 
     The manifest gets its name, and the journal is removed, when the block ends without an error. All other files of
     the end of a run have to be written inside the block; otherwise an interruption would leave them missing.
@@ -198,7 +207,7 @@ def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
     try:
         with writing(out / MANIFEST):
             with open(partial, "xb") as manifest, open(partial_sizes, "xb") as lengths:
-                yield _written_to(manifest, lengths, out, record)
+                yield _written_to(manifest, lengths, out, record, changed)
                 for file in (manifest, lengths):
                     file.flush()
                     os.fsync(file.fileno())
@@ -210,7 +219,19 @@ def finish(out: Path, record: Record) -> Iterator[Iterator[tuple[int, bytes]]]:
             path.unlink(missing_ok=True)
 
 
-def _written_to(manifest: BinaryIO, lengths: BinaryIO, out: Path, record: Record) -> Iterator[tuple[int, bytes]]:
+def _written_to(
+    manifest: BinaryIO, lengths: BinaryIO, out: Path, record: Record, changed: Callable[[bytes], bytes]
+) -> Iterator[tuple[int, bytes]]:
+    for gid, known, recorded in recorded_lines(out, record):
+        line = changed(recorded)
+        manifest.write(line)
+        if known is not None:
+            lengths.write(b"%d\t%s\n" % (gid, known))
+        yield gid, line
+
+
+def recorded_lines(out: Path, record: Record) -> Iterator[tuple[int, bytes | None, bytes]]:
+    """Index, sizes of files (None if they are not known) and line of each glyph, in glyph index order."""
     with ExitStack() as opened:
         files: dict[str, BinaryIO] = {}
         for gid in sorted(record.where):
@@ -219,7 +240,4 @@ def _written_to(manifest: BinaryIO, lengths: BinaryIO, out: Path, record: Record
                 files[name] = opened.enter_context(open(out / name, "rb"))
             files[name].seek(offset)
             head, tab, line = files[name].readline().rpartition(b"\t")
-            manifest.write(line)
-            if tab or gid in record.sizes:
-                lengths.write(b"%d\t%s\n" % (gid, head if tab else record.sizes[gid]))
-            yield gid, line
+            yield gid, head if tab else record.sizes.get(gid), line

@@ -1,39 +1,42 @@
 """Runs over the masters of a variable font, or of single fonts that become one: a variable font or a designspace out.
 
-Each glyph's result is a file, written whole, so that an interrupted run goes on where it was; the fonts are written
-from these files at the end.
+Each glyph's result is a file, and a line of the journal, so that an interrupted run goes on where it was. The fonts are
+written from these files at the end, glyph by glyph: results of a whole CJK font need not fit into memory.
 """
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import GlyphsplineError, OutputError
-from ..fitting.convert_masters import MastersResult, convert_masters
+from ..fitting.convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from ..fitting.options import Options
 from ..outlines.masters import Masters
-from ..readers import Font, Source
-from ..readers.single_fonts import Unmatched, masters_of_fonts
-from ..types import counted, rounded_up
+from ..readers import Font, Source, open_source
+from ..readers.single_fonts import Unmatched, axis_of, masters_of_fonts
+from ..types import MadeOnDemand, counted, rounded_up
 from ..writers.font.font_glyphs import Flavour
 from ..writers.font.master_deltas import Redrawn
-from .files import make_folder, write_whole, writing
+from .entry import journal_line
+from .files import make_folder, remove_partials, write_whole, writing
 from .font_run import Observer, prepare, tasks_of
-from .job import Place, Task
+from .job import Done, Place, Task
 from .lock import locked
-from .manifest import MANIFEST
+from .manifest import Journal, Record, finish, recorded_lines
 from .pool import sign_of_life
 from .schedule import chunks_of, spread
 from .spec import RESULTS, RunSpec, describe, write_run
 from .store import from_text, to_text
+from .summary import CHANGED, NO_FACTS, listed
 from .whole import file_stem
-from .worker import source_of
+from .worker import reason
 
 FORMATS = ("ufo", "otf", "ttf")
 """Formats of a run over masters: a designspace with its UFOs, and variable fonts."""
@@ -49,43 +52,74 @@ NAMED = 5
 
 
 class MastersJob(NamedTuple):
-    """What a worker needs: the font, or the single fonts and their axis; the folder of results; the options."""
+    """What a worker needs: the font, or the single fonts and their axis; the folder of the run; the options."""
 
     places: tuple[Place, ...]
     axis: str | None
-    results: Path
+    out: Path
     options: Options
-
-
-class Converted(NamedTuple):
-    """What a worker reports of a glyph: why it failed, or None."""
-
-    task: Task
-    error: str | None
 
 
 @dataclass
 class MastersSummary:
-    """The summary of a run over masters."""
+    """The summary of a run over masters: of all glyphs of its folder.
+
+    Attributes:
+        glyphs: those that have a result. failed: the others, and why.
+        outside, stopping: glyphs outside the tolerance; and not proven free of cusps.
+        crossing, collapsed: glyphs that cross, or have a contour that lost its area, at a corner of the design space
+            where the source does not.
+        segments, source_segments: of all glyphs. bound: largest certified distance; None if there is no contour.
+    """
 
     glyphs: int = 0
     failed: dict[str, str] = field(default_factory=dict)
     outside: list[str] = field(default_factory=list)
     stopping: list[str] = field(default_factory=list)
+    crossing: list[str] = field(default_factory=list)
+    collapsed: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     segments: int = 0
     source_segments: int = 0
-    bound: float = 0.0
+    bound: float | None = None
     seconds: float = 0.0
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Count one line of the manifest."""
+        if entry["status"] == "failed":
+            self.failed[entry["glyph"]] = entry["error"]
+            return
+        self.glyphs += 1
+        for contour in entry["contours"]:
+            self.segments += contour["segments"]
+            self.source_segments += contour["source_segments"]
+            self.bound = max(self.bound or 0.0, contour["deviation_bound"])
+        if not all(contour["within_tolerance"] for contour in entry["contours"]):
+            self.outside.append(entry["glyph"])
+        if not all(contour["regular"] for contour in entry["contours"]):
+            self.stopping.append(entry["glyph"])
+        if any(contour["new_crossings"] for contour in entry["contours"]):
+            self.crossing.append(entry["glyph"])
+        if any(contour["collapsed"] for contour in entry["contours"]):
+            self.collapsed.append(entry["glyph"])
+
+    def facts(self) -> dict[str, Any]:
+        """The summary as JSON data."""
+        return asdict(self)
 
     def lines(self) -> Iterator[str]:
         """What is said at the end of a run."""
-        said = f"{counted(self.glyphs, 'glyph')} in all masters at once, {self.segments} segments"
-        yield f"{said} for {self.source_segments} of the source, certified within {rounded_up(self.bound, 3):g} units"
+        said = f"{counted(self.glyphs, 'glyph')} in all masters at once, {counted(self.segments, 'segment')}"
+        said += f" for {self.source_segments} of the source"
+        yield said if self.bound is None else f"{said}, certified within {rounded_up(self.bound, 3):g} units"
         if self.outside:
             yield f"{counted(len(self.outside), 'glyph')} outside the tolerance: {_few(self.outside)}"
         if self.stopping:
             yield f"{counted(len(self.stopping), 'glyph')} not proven free of cusps everywhere: {_few(self.stopping)}"
+        if self.crossing:
+            yield f"{CHANGED['new_crossings']}: {listed(self.crossing[:NAMED], len(self.crossing))}"
+        if self.collapsed:
+            yield f"{CHANGED['collapsed']}: {listed(self.collapsed[:NAMED], len(self.collapsed))}"
         for name, error in list(self.failed.items())[:NAMED]:
             yield f"failed: {name}: {error}"
         if len(self.failed) > NAMED:
@@ -106,11 +140,14 @@ def convert_font_masters(
 ) -> MastersSummary:
     """Convert glyphs in all masters, and write variable fonts and a designspace.
 
+    An earlier run in the folder with the same fonts and options is continued; its other glyphs remain.
+
     Args:
         sources: a variable font or designspace alone; or, with an ``axis``, the single fonts that become one.
-        glyphs: names in the first of them. out: the folder; an earlier run in it with the same options is continued.
+        glyphs: names in the first of them. out: the folder.
         spec: its formats are among ``FORMATS``. executor: see :func:`.schedule.workers`.
         axis: like "wght=300:700", a value for each single font.
+        restart: remove the files of an earlier run first.
 
     Raises:
         OutputError: the folder cannot be written, or was made with other options; a format that the font cannot have.
@@ -121,55 +158,66 @@ def convert_font_masters(
     if unknown:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     _check(sources, spec, axis)
+    summary = MastersSummary()
     with locked(out):
-        prepare(first, glyphs, out, spec, restart)
-        write_run(out, describe(first, spec, glyphs, None) | ({"axis": axis} if axis else {}))
-        tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec))
-        summary = MastersSummary()
+        record = prepare(first, glyphs, out, spec, restart, sources[1:], axis)
+        write_run(out, describe(first, spec, glyphs, None, sources[1:], axis))
         options = spec.options
         if "ttf" in spec.formats:
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         places = tuple((s.path.absolute(), s.face_index, tuple(s.location.items())) for s in sources)
-        job = MastersJob(places, axis, out.absolute() / RESULTS, options)
-        left = [task for task in tasks if not (job.results / f"{task.stem}.json").exists()]
-        done = len(tasks) - len(left)
-        for chunk, found in spread(executor, convert_tasks, job, chunks_of(left, executor)):
-            if isinstance(found, Exception):
-                summary.failed |= {task.name: str(found) for task in chunk}
-            else:
-                summary.failed |= {task.name: error for task, error in found if error is not None}
-            done += len(chunk)
-            if observer:
-                observer(done, len(tasks), len(summary.failed))
-        results = {task.name: result for task in tasks if (result := _stored(job.results, task)) is not None}
-        _count(summary, results)
-        stays = _write_fonts(sources, results, out, spec, summary, axis)
-        _write_manifest(out, tasks, results, summary, stays)
+        job = MastersJob(places, axis, out.absolute(), options)
+        tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec), spec.names)
+        _convert(job, tasks, executor, record, observer)
+        kept = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
+        with finish(out, record, partial(_with_kept, kept)) as lines:
+            for _, line in lines:
+                summary.add(json.loads(line))
     summary.seconds = time.perf_counter() - began
     return summary
 
 
-def convert_tasks(job: MastersJob, tasks: Sequence[Task]) -> list[Converted]:
+def _convert(
+    job: MastersJob, tasks: Sequence[Task], executor: Executor, record: Record, observer: Observer | None
+) -> None:
+    """Convert the glyphs that the folder does not have, and record each in the journal once its file is written."""
+    finished = record.finished()
+    left = [task for task in tasks if task.gid not in finished]
+    if not left:
+        return
+    done, failures = len(tasks) - len(left), 0
+    journal = Journal(job.out, record)
+    try:
+        for chunk, found in spread(executor, convert_tasks, job, chunks_of(left, executor)):
+            glyphs = found if isinstance(found, list) else [_done(task, error=found.message) for task in chunk]
+            journal.add(glyphs)
+            done += len(chunk)
+            failures += sum(glyph.status == "failed" for glyph in glyphs)
+            if observer:
+                observer(done, len(tasks), failures)
+    finally:
+        journal.close()
+    remove_partials(job.out / RESULTS)
+
+
+def convert_tasks(job: MastersJob, tasks: Sequence[Task]) -> list[Done]:
     """Convert glyphs in all masters and store their results, in a worker. A glyph that fails costs only itself."""
     done = []
     for task in tasks:
         sign_of_life()
         try:
             result = convert_masters(_masters(job, task), job.options)
-            write_whole(str(job.results / f"{task.stem}.json"), to_text(result))
-            error = None
+            size = write_whole(f"{job.out}/{_file(task)}", to_text(result))
+            done.append(_done(task, result, size))
         except OutputError:
             raise
-        except GlyphsplineError as why:
-            error = str(why)
-        except Exception as why:  # a broken font raises anything
-            error = f"{type(why).__name__}: {why}"
-        done.append(Converted(task, error))
+        except Exception as error:  # a broken font raises anything
+            done.append(_done(task, error=_reason(job, error)))
     return done
 
 
 def _masters(job: MastersJob, task: Task) -> Masters:
-    sources = [source_of(*place) for place in job.places]
+    sources = _sources(job.places)
     if job.axis is None:
         return sources[0].masters(task.name)
     found = next(iter(masters_of_fonts(sources, job.axis, [task.name])))
@@ -177,16 +225,77 @@ def _masters(job: MastersJob, task: Task) -> Masters:
         from ..writers.svg.unmatched import to_unmatched_svg
 
         if found.outlines:
-            folder = job.results.parent / UNMATCHED
+            folder = job.out / UNMATCHED
             make_folder(folder)
-            write_whole(str(folder / f"{task.stem}.svg"), to_unmatched_svg(found.outlines, found.error.message))
+            write_whole(f"{folder}/{task.stem}.svg", to_unmatched_svg(found.outlines, found.error.message))
         raise found.error
     return found
 
 
+@lru_cache(maxsize=1)
+def _sources(places: tuple[Place, ...]) -> list[Source]:
+    """The fonts, opened once a process."""
+    return [open_source(path, face_index, dict(location)) for path, face_index, location in places]
+
+
+def _reason(job: MastersJob, error: Exception) -> str:
+    """The message of an error, with the name of the file if it is another font than the first."""
+    others = {str(path): path.name for path, _, _ in job.places[1:]}
+    where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
+    return f"{where}: {reason(error)}" if where else reason(error)
+
+
+def _file(task: Task) -> str:
+    return f"{RESULTS}/{task.stem}.json"
+
+
+def _done(task: Task, result: MastersResult | None = None, size: int = 0, error: str | None = None) -> Done:
+    """A glyph's line of the manifest: with its result, or why it has none."""
+    status = "failed" if result is None else ("ok" if result.contours else "empty")
+    line = {
+        "glyph": task.name,
+        "gid": task.gid,
+        "unicodes": [f"U+{code:04X}" for code in task.unicodes],
+        "status": status,
+        "files": {} if result is None else {RESULTS: _file(task)},
+        "masters": None if result is None else len(result.masters),
+        "contours": [] if result is None else [_measures(contour) for contour in result.contours],
+        "notes": [] if result is None else list(result.notes),
+        "kept": None,
+        "error": error,
+    }
+    text = json.dumps(line, ensure_ascii=False)
+    return Done(task.gid, task.name, status, journal_line([] if result is None else [size], text), 0.0, NO_FACTS, "")
+
+
+def _measures(contour: MastersContourResult) -> dict[str, Any]:
+    rate = contour.rate_bound
+    return {
+        "segments": len(contour.curve),
+        "source_segments": len(contour.source),
+        "iterations": contour.iterations,
+        "rate_bound": None if rate is None else rounded_up(rate, 6),
+        "deviation_bound": rounded_up(contour.deviation_bound, 6),
+        "within_tolerance": contour.within_tolerance,
+        "source_segments_kept": contour.kept,
+        "regular": contour.regular,
+        "new_crossings": contour.new_crossings,
+        "collapsed": contour.collapsed,
+    }
+
+
+def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:
+    """A line of the manifest that says why a font has the glyph's old outline."""
+    entry = json.loads(line)
+    return f"{json.dumps(entry | {'kept': kept.get(entry['glyph'])}, ensure_ascii=False)}\n".encode()
+
+
 def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
-    """Raise before the run if a format cannot be written."""
+    """Raise before the run if its options are not for masters, or a format cannot be written."""
     font = sources[0]
+    check_options(spec.options)
+    if axis is not None:
+        axis_of(axis, len(sources))
     if axis is not None and "otf" in spec.formats:
         raise OutputError("single fonts become a variable font with quadratic outlines: ask for ttf, or ufo")
     for flavour in ("otf", "ttf"):
@@ -207,33 +316,26 @@ def _with_components(source: Source, glyphs: Sequence[str], spec: RunSpec) -> Se
     return list(dict.fromkeys([*glyphs, *components(source, tuple(glyphs))]))
 
 
-def _stored(folder: Path, task: Task) -> MastersResult | None:
-    path = folder / f"{task.stem}.json"
+def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redrawn]:
+    """The new contours of the folder's glyphs by name, each read from its file when it is asked for."""
+    files = {}
+    for _, _, line in recorded_lines(out, record):
+        entry = json.loads(line)
+        if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
+            files[entry["glyph"]] = entry["files"][RESULTS]
+    return MadeOnDemand(files, lambda name: redrawn_glyph(_stored(out / files[name])))
+
+
+def _stored(path: Path) -> MastersResult:
     try:
-        result = from_text(path.read_text(encoding="utf-8"), MastersResult)
-    except FileNotFoundError:
-        return None
+        return from_text(path.read_text(encoding="utf-8"), MastersResult)
     except (OSError, ValueError) as error:
         raise OutputError(f"cannot be read: {error}", font=str(path)) from error
-    return result
-
-
-def _count(summary: MastersSummary, results: dict[str, MastersResult]) -> None:
-    summary.glyphs = len(results)
-    for name, result in results.items():
-        for contour in result.contours:
-            summary.segments += len(contour.curve)
-            summary.source_segments += len(contour.source)
-            summary.bound = max(summary.bound, contour.deviation_bound)
-        if not all(contour.within_tolerance for contour in result.contours):
-            summary.outside.append(name)
-        if not all(contour.regular for contour in result.contours):
-            summary.stopping.append(name)
 
 
 def _write_fonts(
     sources: Sequence[Source],
-    results: dict[str, MastersResult],
+    redrawn: Mapping[str, Redrawn],
     out: Path,
     spec: RunSpec,
     summary: MastersSummary,
@@ -241,7 +343,6 @@ def _write_fonts(
 ) -> dict[str, str]:
     """Write the run's fonts; returns why glyphs of them have their old outlines."""
     source, stays = sources[0], dict[str, str]()
-    redrawn = {name: redrawn_glyph(result) for name, result in results.items() if result.contours or axis}
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     flavours: list[Flavour] = [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
     for flavour in flavours:
@@ -251,12 +352,15 @@ def _write_fonts(
                 from ..writers.font.variable_font import to_variable_font
 
                 assert isinstance(source, Font)
-                data, facts = to_variable_font(source, redrawn, flavour, tolerance=(1 - SHARE) * tolerance)
+                data, facts = to_variable_font(
+                    source, redrawn, flavour, tolerance=(1 - SHARE) * tolerance, with_contours=False
+                )
             else:
                 from ..writers.font.new_variable_font import to_new_variable_font
 
-                left = dict(summary.failed)
-                data, facts = to_new_variable_font(sources, axis, redrawn, left=left, tolerance=(1 - SHARE) * tolerance)
+                data, facts = to_new_variable_font(
+                    sources, axis, redrawn, tolerance=(1 - SHARE) * tolerance, with_contours=False
+                )
             write_whole(str(path), data, durable=True)
         remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
         if facts.largest_distance is not None:
@@ -278,42 +382,6 @@ def redrawn_glyph(result: MastersResult) -> Redrawn:
     """A result as the writers of variable fonts take it."""
     contours = result.contours
     return Redrawn(result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours))
-
-
-def _write_manifest(
-    out: Path, tasks: Sequence[Task], results: dict[str, MastersResult], summary: MastersSummary, stays: dict[str, str]
-) -> None:
-    """A line for each glyph, in glyph index order."""
-    lines = []
-    for task in tasks:
-        result = results.get(task.name)
-        line: dict[str, Any] = {
-            "glyph": task.name,
-            "gid": task.gid,
-            "unicodes": [f"U+{code:04X}" for code in task.unicodes],
-            "status": "failed" if result is None else ("ok" if result.contours else "empty"),
-            "masters": None if result is None else len(result.masters),
-            "contours": [] if result is None else [_measures(contour) for contour in result.contours],
-            "notes": [] if result is None else list(result.notes),
-            "kept": stays.get(task.name),
-            "error": summary.failed.get(task.name),
-        }
-        lines.append(json.dumps(line, ensure_ascii=False))
-    write_whole(str(out / MANIFEST), "".join(f"{line}\n" for line in lines), durable=True)
-
-
-def _measures(contour: Any) -> dict[str, Any]:
-    rate = contour.rate_bound
-    return {
-        "segments": len(contour.curve),
-        "source_segments": len(contour.source),
-        "iterations": contour.iterations,
-        "rate_bound": None if rate is None else rounded_up(rate, 6),
-        "deviation_bound": rounded_up(contour.deviation_bound, 6),
-        "within_tolerance": contour.within_tolerance,
-        "source_segments_kept": contour.kept,
-        "regular": contour.regular,
-    }
 
 
 def _few(names: Sequence[str]) -> str:

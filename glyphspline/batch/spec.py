@@ -136,10 +136,18 @@ FIRST_MISSING = 20
 """Missing characters that ``run.json`` lists; it counts all."""
 
 
-def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_scale: float | None) -> dict[str, Any]:
+def describe(
+    source: Source,
+    spec: RunSpec,
+    glyphs: Sequence[str],
+    curvature_scale: float | None,
+    others: Sequence[Source] = (),
+    axis: str | None = None,
+) -> dict[str, Any]:
     """The content of ``run.json``, independent of the machine, the clock and the number of workers.
 
-    Its options are those in effect: tolerances are numbers, in font units.
+    Its options are those in effect: tolerances are numbers, in font units. ``others`` are further single fonts whose
+    glyphs become masters on the ``axis``.
     """
     em = source.metrics.units_per_em
     effective = {"tolerance": spec.options.tolerance_for(em), "residual_tolerance": spec.options.solver_tolerance}
@@ -147,16 +155,8 @@ def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_sca
     missing = getattr(glyphs, "missing", ())
     return {
         "glyphspline": __version__,
-        "command": shlex.join(command(source, spec, asked)),
-        "font": {
-            "file": source.path.name,
-            "sha256": source.sha256,
-            "face_index": source.face_index,
-            "location": dict(source.location),
-            "family": source.family,
-            "style": source.style,
-            "metrics": asdict(source.metrics),
-        },
+        "command": shlex.join(command(source, spec, asked, others, axis)),
+        "font": font_facts(source),
         "selection": asked,
         "selected": len(glyphs),
         "missing": {"count": len(missing), "first": list(missing[:FIRST_MISSING])},
@@ -168,6 +168,20 @@ def describe(source: Source, spec: RunSpec, glyphs: Sequence[str], curvature_sca
         "names": spec.names,
         "curvature_scale": curvature_scale,
         **({"masters": True} if spec.masters else {}),
+        **({"from": [font_facts(other) for other in others], "axis": axis} if others else {}),
+    }
+
+
+def font_facts(source: Source) -> dict[str, Any]:
+    """What ``run.json`` says of a font."""
+    return {
+        "file": source.path.name,
+        "sha256": source.sha256,
+        "face_index": source.face_index,
+        "location": dict(source.location),
+        "family": source.family,
+        "style": source.style,
+        "metrics": asdict(source.metrics),
     }
 
 
@@ -181,9 +195,15 @@ def asked_for(source: Source, glyphs: Sequence[str]) -> dict[str, Any]:
     return asked
 
 
-def command(source: Source, spec: RunSpec, asked: dict[str, Any]) -> Iterator[str]:
+def command(
+    source: Source, spec: RunSpec, asked: dict[str, Any], others: Sequence[Source] = (), axis: str | None = None
+) -> Iterator[str]:
     """The arguments of the command line that make the run's files, without the folder: what is not default."""
     yield from ("glyphspline", "convert", source.path.name)
+    for other in others:
+        yield from ("--from", other.path.name)
+    if axis is not None:
+        yield from ("--axis", axis)
     for name, value in asked.items():
         yield f"--{name}"
         if name != "all":
@@ -237,9 +257,11 @@ def differences(old: dict[str, Any], new: dict[str, Any], prefix: str = "") -> l
     found = []
     for key in dict.fromkeys([*old, *new]):
         name = f"{prefix}{key}"
-        if name in ("font.file", "curvature_scale", *REQUEST):
+        if key == "file" or name in ("curvature_scale", *REQUEST):
             continue
         a, b = old.get(key), new.get(key)
+        if key == "from" and a and b:  # fonts by their numbers
+            a, b = (dict(enumerate(fonts, 1)) for fonts in (a, b))
         if isinstance(a, dict) and isinstance(b, dict):
             found += differences(a, b, f"{name}.")
         elif a != b:

@@ -21,6 +21,7 @@ from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
+from ..readers.source import reason as library_reason
 from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
 from ..writers.figures.images import ImageKind
@@ -235,7 +236,7 @@ def reason(error: Exception) -> str:
         return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
     if isinstance(error, MemoryError):
         return "not enough memory"
-    return f"{type(error).__name__}: {error}"
+    return library_reason(error)
 
 
 def _source(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:

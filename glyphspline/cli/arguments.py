@@ -183,7 +183,7 @@ MoreFonts = Annotated[
     file_option(
         "--from",
         metavar="FONT",
-        help="With --masters and --axis: another single font, whose glyphs become masters beside FONT's. Repeatable.",
+        help="With --axis, for --masters: another single font, whose glyphs become masters beside FONT's. Repeatable.",
     ),
 ]
 NewAxis = Annotated[

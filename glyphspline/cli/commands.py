@@ -17,7 +17,7 @@ from . import arguments as opt
 from . import interruption
 from .messages import errors, listen, printable, say, stop
 from .progress import progress
-from .running import convert_fonts, convert_masters, run, workplace
+from .running import check_masters, convert_fonts, convert_masters, run, workplace
 
 PATIENCE = 60.0
 """Time limit in seconds of ``info --deep`` for some hundred glyphs."""
@@ -94,13 +94,16 @@ def convert(
     given = dict(locals())
     with errors(quiet, json_log):
         listen(quiet)
+        in_masters = given["masters"] = masters or others is not None or axis is not None
+        if in_masters:
+            check_masters(given)
         spec = opt.spec_of(given)
         from ..batch import find_fonts
 
         found = find_fonts(fonts)
         if not found:
             stop("no fonts found")
-        if masters or others:
+        if in_masters:
             with workplace(jobs, scheduler, spec) as executor:
                 failed = convert_masters(found, spec, executor, given)
             raise typer.Exit(1 if failed else 0)

@@ -8,6 +8,8 @@ from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from . import arguments as opt
 from .messages import say, stop
 from .progress import json_lines, progress
@@ -91,6 +93,23 @@ def convert_face(
     return FontRun(name, out, summary)
 
 
+NOT_OF_MASTERS = {
+    "location": "masters are of the whole design space",
+    "scheduler": "masters are converted on this machine",
+    "each": "a run over masters has one folder",
+}
+"""Options that a run over masters does not have, and why."""
+
+
+def check_masters(given: Mapping[str, Any]) -> None:
+    """Stop if the options of a run over masters clash."""
+    if bool(given["others"]) != bool(given["axis"]):
+        stop("--from FONT and --axis TAG=A:B go together")
+    for name, why in NOT_OF_MASTERS.items():
+        if given[name]:
+            stop(f"--{name} is not for --masters: {why}")
+
+
 def convert_masters(fonts: Sequence[Path], spec: RunSpec, executor: Executor, given: Mapping[str, Any]) -> bool:
     """Convert a variable font, or single fonts that become one, in all masters; whether a glyph failed."""
     from ..batch import convert_font_masters
@@ -99,8 +118,6 @@ def convert_masters(fonts: Sequence[Path], spec: RunSpec, executor: Executor, gi
     others, axis = given["others"] or [], given["axis"]
     if len(fonts) != 1:
         stop("--masters takes one font")
-    if bool(others) != bool(axis):
-        stop("--from FONT and --axis TAG=A:B go together")
     quiet, json_log = given["quiet"], given["json_log"]
     sources = [open_source(font, given["face_index"] or 0) for font in (*fonts, *others)]
     names = opt.selection_of(sources[0], given)
@@ -110,11 +127,14 @@ def convert_masters(fonts: Sequence[Path], spec: RunSpec, executor: Executor, gi
         summary = convert_font_masters(
             sources, names, given["out"], spec, executor, axis=axis, restart=not given["resume"], observer=observer
         )
+    facts = {"font": str(fonts[0]), "out": str(given["out"]), **summary.facts()}
     if json_log:
-        say(json.dumps({"out": str(given["out"]), "glyphs": summary.glyphs, "failed": len(summary.failed)}))
+        say(json.dumps(facts))
     elif not quiet:
         for line in summary.lines():
             say(line)
+    if given["as_json"]:
+        typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
     return bool(summary.failed)
 
 

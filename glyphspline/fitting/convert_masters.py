@@ -7,17 +7,23 @@ linear combination of the masters, and so a C2 spline on the same knots. The cer
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..errors import GlyphsplineError, OptionError
-from ..outlines.contour_arrays import ContourArrays, offsets_of
+from ..outlines.contour_arrays import ContourArrays, joined
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
+from .convert import enclosing
 from .options import Options
+
+if TYPE_CHECKING:
+    from .sharp.sharp_fit import SharpFit
+    from .topology import Changes
 
 SHARP = Options(corners="sharp")
 
@@ -33,7 +39,6 @@ class MastersContourResult:
         source: the contour as the font has it. curve: the result, lines and cubics, in the source's direction.
         inner: (m,) whether segment j of the result begins inside an arc: no instance has a kink or a jump of curvature
             there.
-        places: (m + 1,) places of the source near which the segments of the result begin, and the first a lap later.
         iterations: of variant 2, the most of all arcs; None if no arc has two spans.
         rate_bound: largest certified factor a step; None likewise.
         deviation_bound: certified bound of the two-sided distance to the source at every location, in font units.
@@ -42,18 +47,23 @@ class MastersContourResult:
             source has it.
         regular: whether the curve is proven to have speed everywhere, at every location. It may lack it where the
             source's contour collapses.
+        new_crossings: most crossings, with itself and others, that the source does not have, at a corner of the design
+            space's grid; masters are among the corners. None where strands lie on each other in such numbers that they
+            are not counted. Between the corners crossings are not looked for.
+        collapsed: whether its area has gone, or changed its sign, at a corner.
     """
 
     source: MasterContour
     curve: MasterContour
     inner: BoolArray
-    places: FloatArray
     iterations: int | None
     rate_bound: float | None
     deviation_bound: float
     within_tolerance: bool
     kept: int
     regular: bool
+    new_crossings: int | None = None
+    collapsed: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +82,12 @@ class MastersResult:
 
     def __repr__(self) -> str:
         segments = sum(len(contour.curve) for contour in self.contours)
-        bound = rounded_up(max((contour.deviation_bound for contour in self.contours), default=0.0), 3)
         counts = f"{counted(len(self.masters), 'master')}, {counted(len(self.contours), 'contour')}"
-        return f"<MastersResult {self.masters.name!r}: {counts}, {segments} segments, certified within {bound:g} units>"
+        said = f"<MastersResult {self.masters.name!r}: {counts}, {counted(segments, 'segment')}"
+        if not self.contours:
+            return f"{said}>"
+        bound = rounded_up(max(contour.deviation_bound for contour in self.contours), 3)
+        return f"{said}, certified within {bound:g} units>"
 
     def instance(self, location: Mapping[str, float]) -> Outline:
         """The result at a location, axis tag to user-space value: an outline that every function of outlines takes."""
@@ -121,77 +134,179 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             the glyph.
         OptionError: options that are for single outlines.
     """
-    from .sharp.pieces import CLOSED, SPANS
-    from .sharp.sharp_fit import Source, fit_sharp
-
-    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
-        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
-    em = masters.metrics.units_per_em
-    tolerance = options.tolerance_for(em)
-    kept = [c for c, contour in enumerate(masters.contours) if _encloses(contour)]
-    notes = [
-        f"contour {c} has fewer than three distinct points and is left out"
-        for c in range(len(masters.contours))
-        if c not in kept
-    ]
+    check_options(options)
+    every = [masters.master(k).arrays for k in range(len(masters))]
+    encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
+    left_out = tuple(
+        f"contour {c} has fewer than three distinct points and is left out" for c in np.flatnonzero(~encloses).tolist()
+    )
+    kept = np.flatnonzero(encloses).tolist()
     if not kept:
-        return MastersResult(masters, options, (), tuple(notes))
-    sources = [masters.contours[c] for c in kept]
-    degrees = np.concatenate([source.degrees for source in sources])
-    offsets = offsets_of([len(source) for source in sources])
-    starts = offsets_of([source.points.shape[1] for source in sources])
-    points = np.concatenate([source.points[0] for source in sources])
-    cubics = np.concatenate([source.cubics() for source in sources], axis=1)
+        return MastersResult(masters, options, (), left_out)
+    outlines = [arrays.chosen(kept) for arrays in every]
     try:
-        for k in range(len(masters)):
-            _check(sources, kept, k)
-        mixes = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
-        source = Source(ContourArrays(points, degrees, offsets, starts), cubics, mixes)
-        fit = fit_sharp(source, options, tolerance, em)
+        _check(outlines, kept)
+        corners = masters.grid()
+        mixes, which = np.unique(masters.weights_at(corners).round(12), axis=0, return_index=True)
+        fits = _Fits(masters, kept, outlines, mixes, corners[which], options)
+        results, found = fits.faithful()
     except GlyphsplineError as error:
         raise error.locate(glyph=masters.name) from error.__cause__
-    results = []
-    for c in range(len(kept)):
-        a, b = fit.offsets[c], fit.offsets[c + 1]
-        kept_ones = (fit.pieces.where[a:b, SPANS] == 1) & (fit.pieces.errors[a:b] == 0.0)
-        arcs = [fit.splines[q] for q in range(a, b) if q in fit.splines]
-        bound = float(fit.bounds[a:b].max())
-        counts = np.maximum(fit.pieces.where[a:b, SPANS], 1)
-        inner = np.ones(int(counts.sum()), dtype=np.bool_)
-        if not fit.pieces.where[a, CLOSED]:
-            inner[np.cumsum(counts) - counts] = False
-        first = fit.pieces.starts[a:b]
-        places = np.concatenate([fit.pieces.places[s : s + n] for s, n in zip(first, counts, strict=True)])
-        results.append(
-            MastersContourResult(
-                sources[c],
-                MasterContour(np.stack([_part(curve, c)[0] for curve in fit.curves]), _part(fit.curves[0], c)[1]),
-                inner,
-                np.append(places, places[0] + len(sources[c])),
-                max((arc.iterations for arc in arcs), default=None),
-                max((arc.rate_bound for arc in arcs), default=None),
-                bound,
-                bound <= tolerance,
-                int(kept_ones.sum()),
-                bool(fit.regular[a:b].all()),
-            )
-        )
-        if results[-1].kept:
-            notes.append(f"{counted(results[-1].kept, 'segment')} of contour {c} stay as the source has them")
-        if not results[-1].within_tolerance:
-            notes.append(f"contour {c} is certified to {rounded_up(bound, 3):g} units, not to {tolerance:g}")
-    return MastersResult(masters, options, tuple(results), tuple(notes))
+    return MastersResult(masters, options, tuple(results), (*left_out, *fits.remarks(results, found)))
 
 
-def _check(sources: Sequence[MasterContour], numbers: Sequence[int], k: int) -> None:
-    """Refuse coordinates of master k that are not finite, or too large."""
+class _Fits(NamedTuple):
+    """Fits of a glyph's contours.
+
+    Attributes:
+        numbers: of the contours in the masters. outlines: these contours in each master.
+        mixes: (V, K) weights of the masters at corners (V, A) of the design space's grid, normalised.
+    """
+
+    masters: Masters
+    numbers: Sequence[int]
+    outlines: Sequence[ContourArrays]
+    mixes: FloatArray
+    corners: FloatArray
+    options: Options
+
+    @property
+    def tolerance(self) -> float:
+        return self.options.tolerance_for(self.masters.metrics.units_per_em)
+
+    def faithful(self) -> tuple[list[MastersContourResult], Changes]:
+        """Results of all contours, and what changed at each corner, (V C,).
+
+        Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
+        single outlines are.
+        """
+        from .sharp.sharp_fit import TRIES
+
+        results = self.fitted(range(len(self.numbers)), TRIES[0])
+        found = changes_at(self.mixes, results)
+        for share in TRIES[1:]:
+            wrong = found.any.reshape(len(self.mixes), -1).any(axis=0)
+            if not wrong.any():
+                break
+            closer = dict(zip(np.flatnonzero(wrong).tolist(), self.fitted(np.flatnonzero(wrong), share), strict=True))
+            trial = [closer.get(c, result) for c, result in enumerate(results)]
+            changed = changes_at(self.mixes, trial)
+            if (_outside(trial), changed.number) < (_outside(results), found.number):
+                results, found = trial, changed
+        new = found.new_crossings.reshape(len(self.mixes), -1)
+        most = [None if (own < 0).any() else int(own.max()) for own in new.T]
+        gone = [bool(own.any()) for own in found.collapsed.reshape(new.shape).T]
+        measured = [
+            replace(result, new_crossings=count, collapsed=lost)
+            for result, count, lost in zip(results, most, gone, strict=True)
+        ]
+        return measured, found
+
+    def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
+        """Contours fitted within a share of the tolerance."""
+        from ..outlines.segments import all_cubics
+        from .sharp.sharp_fit import Source, fit_sharp
+
+        which = [int(c) for c in which]
+        chosen = [arrays.chosen(which) for arrays in self.outlines]
+        source = Source(chosen[0], np.stack([all_cubics(arrays) for arrays in chosen]), self.mixes)
+        try:
+            fit = fit_sharp(source, self.options, share * self.tolerance, self.masters.metrics.units_per_em)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else self.numbers[which[error.contour]]
+            raise
+        curves = zip(*(Contours(curve) for curve in fit.curves), strict=True)
+        return [
+            _contour_result(self.masters.contours[self.numbers[c]], k, fit, in_all, self.tolerance)
+            for k, (c, in_all) in enumerate(zip(which, curves, strict=True))
+        ]
+
+    def remarks(self, results: Sequence[MastersContourResult], found: Changes) -> Iterator[str]:
+        """Remarks on contours that are partly the source's, miss the tolerance, or enclose something else."""
+        for c, result in enumerate(results):
+            if result.kept:
+                yield f"{counted(result.kept, 'segment')} of contour {c} stay as the source has them"
+            if not result.within_tolerance:
+                bound = rounded_up(result.deviation_bound, 3)
+                yield f"contour {c} is certified to {bound:g} units, not to {self.tolerance:g}"
+            new = found.new_crossings.reshape(len(self.mixes), -1)[:, c]
+            if (new > 0).any():
+                more = f"{new.max()} times more than its source"
+                yield f"contour {c} crosses itself or others, {more}, {self.where(np.maximum(new, 0))}"
+            elif (new < 0).any():
+                yield f"crossings of contour {c} are not counted: too many strands lie on each other"
+            lost = found.collapsed.reshape(new.size, -1)[:, c].astype(np.int64)
+            if lost.any():
+                how = "has lost its area, or runs the other way round than its source,"
+                yield f"contour {c} {how} {self.where(lost)}"
+
+    def where(self, values: IntArray) -> str:
+        """At how many corners (V,) values are not 0, and one at which they are largest, in user space."""
+        count = f"at {np.count_nonzero(values)} of {counted(len(values), 'corner')} of the design space"
+        user = self.masters.user(self.corners[int(values.argmax())])
+        return f"{count}, as at {','.join(f'{tag}={value:g}' for tag, value in user.items())}" if user else count
+
+
+def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Changes:
+    """What a glyph's C contours enclose otherwise than their sources: (V C,), with each of (V, K) weights in turn."""
+    from .topology import changes
+
+    source, written = (
+        joined([Contours([each.mixed(weights) for each in contours]).arrays for weights in mixes])
+        for contours in ([result.source for result in results], [result.curve for result in results])
+    )
+    return changes(source, written, np.arange(len(mixes) + 1) * len(results))
+
+
+def _outside(results: Sequence[MastersContourResult]) -> int:
+    """Number of contours outside the tolerance."""
+    return sum(not result.within_tolerance for result in results)
+
+
+def check_options(options: Options) -> None:
+    """Raise an OptionError if masters cannot be converted with these options."""
+    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
+        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
+
+
+def _contour_result(
+    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float
+) -> MastersContourResult:
+    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured."""
+    from .sharp.pieces import CLOSED, SPANS
+
+    assert fit.regular is not None  # it is a fit of masters
+    own = slice(fit.offsets[c], fit.offsets[c + 1])
+    spans = fit.pieces.where[own, SPANS]
+    segments = np.maximum(spans, 1)
+    inner = np.ones(int(segments.sum()), dtype=np.bool_)
+    if not fit.pieces.where[own.start, CLOSED]:  # every piece begins at the end of another
+        inner[np.cumsum(segments) - segments] = False
+    arcs = [fit.splines[q] for q in range(own.start, own.stop) if q in fit.splines]
+    bound = float(fit.bounds[own].max())
+    return MastersContourResult(
+        source,
+        MasterContour(np.stack([curve.points for curve in curves]), curves[0].degrees),
+        inner,
+        iterations=max((arc.iterations for arc in arcs), default=None),
+        rate_bound=max((arc.rate_bound for arc in arcs), default=None),
+        deviation_bound=bound,
+        within_tolerance=bound <= tolerance,
+        kept=int(((spans == 1) & (fit.pieces.errors[own] == 0.0)).sum()),
+        regular=bool(fit.regular[own].all()),
+    )
+
+
+def _check(outlines: Sequence[ContourArrays], numbers: Sequence[int]) -> None:
+    """Refuse coordinates in any master that are not finite, or too large; the contours have these numbers."""
     from .measures import check_coordinates
 
-    for c, source in zip(numbers, sources, strict=True):
+    for k, arrays in enumerate(outlines):
         try:
-            check_coordinates(Contours([Contour(source.points[k], source.degrees)]).arrays)
+            check_coordinates(arrays)
         except GlyphsplineError as error:
-            raise GlyphsplineError(f"master {k}: {error.message}", contour=c) from None
+            where = None if error.contour is None else numbers[error.contour]
+            raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None
 
 
 def _energy(contour: Contour) -> float:
@@ -199,13 +314,3 @@ def _energy(contour: Contour) -> float:
     from ..curves.integrals import integrals
 
     return float(integrals(np.ascontiguousarray(contour.cubics()[contour.degrees > 1]))[1])
-
-
-def _part(contours: ContourArrays, c: int) -> tuple[FloatArray, IntArray]:
-    part = contours.part(c, c + 1)
-    return part.points, part.degrees
-
-
-def _encloses(contour: MasterContour) -> bool:
-    """Whether three of a contour's points are distinct in some master."""
-    return any(len(np.unique(points, axis=0)) >= 3 for points in contour.points)

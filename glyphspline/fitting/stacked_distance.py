@@ -36,7 +36,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import COARSE, extent, jet, length, newton_step, section, split
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import BoolArray, FloatArray
 from .certified_distance import ROUNDING
 
 DEEPEST = 12
@@ -60,7 +60,7 @@ FLAT = 1e-9
 
 @compiled
 def pair_stacks(
-    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, laps: IntArray,
+    results: FloatArray, sources: FloatArray, anchors: FloatArray, ranges: FloatArray, closed: bool,
     wanted: BoolArray, limit: float,
 ) -> FloatArray:  # fmt: skip
     """Certified bounds of the spans of one contour. One beyond the limit is a bound, but seldom the best to be had.
@@ -69,11 +69,11 @@ def pair_stacks(
         results: (V, r, 4, 2) and sources: (V, m, 4, 2) closed chains in all instances.
         anchors: (r + 1, 2) places on both where each span of the result begins, and the first a lap later.
         ranges: (r, 4) first and last place on the result and on the source of the arc that each span belongs to.
-        laps: (r,) whether that arc is the whole contour, which has no ends.
+        closed: whether there is one arc, the whole contour, which has no ends.
         wanted: (r,) the spans that are looked at; the bounds of others are NaN.
         limit: sections are halved until their bounds are below this, or one of their arc cannot be.
     """
-    V, spans = len(results), len(laps)
+    V, spans = len(results), results.shape[1]
     bounds, lost = np.full(spans, np.nan), -1.0
     work, marks = np.empty((2, DEEPEST + 2, V, 4, 2)), np.empty((DEEPEST + 2, 5))
     scratch = np.empty((3, V, 4, 2))
@@ -94,7 +94,7 @@ def pair_stacks(
             stop, cut = y_end, i + 1.0
             if not last:
                 stop = s + 1.0
-                cut = i + nearest_stacked(results, i, x - i, 1.0, sources[:, s % m, 3])
+                cut = i + nearest_stacked(results, i, x - i, 1.0, sources[:, s % m, 3])[0]
             for v in range(V):
                 section(results[v, i % results.shape[1]], x - i, cut - i, work[0, 0, v])
                 section(sources[v, s % m], y - s, stop - s, work[1, 0, v])
@@ -104,7 +104,7 @@ def pair_stacks(
                 A, B = work[0, top], work[1, top]
                 x0, x1, y0, y1, depth = marks[top]
                 enough = max(limit, bound)
-                most = _bound_of_pair(A, B, results, sources, x0, x1, y0, y1, ranges[k], laps[k] > 0, enough, scratch)
+                most = _bound_of_pair(A, B, results, sources, x0, x1, y0, y1, ranges[k], closed, enough, scratch)
                 if most > enough and (depth >= DEEPEST or halvings >= MOST_HALVINGS):
                     # The arc is beyond the limit: what is left of it is not halved any more.
                     halvings, lost = MOST_HALVINGS, ranges[k, 0]
@@ -113,7 +113,7 @@ def pair_stacks(
                     xm = (x0 + x1) / 2
                     for v in range(V):
                         split(A[v], 0.5, work[0, top + 1, v])
-                    z = nearest_stacked(sources, s, y0 - s, y1 - s, A[:, 0])
+                    z, _ = nearest_stacked(sources, s, y0 - s, y1 - s, A[:, 0])
                     share = (z - (y0 - s)) / (y1 - y0) if y1 > y0 else 0.5
                     for v in range(V):
                         split(B[v], share, work[1, top + 1, v])
@@ -132,7 +132,7 @@ def pair_stacks(
 @compiled(internal=True)
 def _bound_of_pair(
     A: FloatArray, B: FloatArray, results: FloatArray, sources: FloatArray, x0: float, x1: float, y0: float, y1: float,
-    arc: FloatArray, ring: bool, enough: float, scratch: FloatArray,
+    arc: FloatArray, closed: bool, enough: float, scratch: FloatArray,
 ) -> float:  # fmt: skip
     """The smaller of the two bounds of sections (V, 4, 2). Where neither is enough, the plain one."""
     V, plain, ex, ey, D = len(A), 0.0, 0.0, 0.0, scratch[0]
@@ -157,13 +157,13 @@ def _bound_of_pair(
     for side in range(2):
         x, y = (x1, y1) if side else (x0, y0)
         x_end, y_end = (arc[1], arc[3]) if side else (arc[0], arc[2])
-        good, ended = _follow(sources, D, side, y, y_end, ring, reach, ex, ey, slip[1], enough, scratch)
+        good, ended = _follow(sources, D, side, y, y_end, closed, reach, ex, ey, slip[1], enough, scratch)
         if not good:
             return plain
         far = np.inf if ended else reach
-        good, also = _follow(results, D, side, x, x_end, ring, far, ex, ey, slip[0], enough, scratch)
+        good, also = _follow(results, D, side, x, x_end, closed, far, ex, ey, slip[0], enough, scratch)
         if good and also and not ended:
-            good, _ = _follow(sources, D, side, y, y_end, ring, np.inf, ex, ey, slip[1], enough, scratch)
+            good, _ = _follow(sources, D, side, y, y_end, closed, np.inf, ex, ey, slip[1], enough, scratch)
         if not good:
             return plain
     return min(plain, max(_slip_bound(slip[0], V), _slip_bound(slip[1], V)))
@@ -209,13 +209,13 @@ def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArr
 
 @compiled(internal=True)
 def _follow(
-    chains: FloatArray, D: FloatArray, side: int, first: float, last: float, ring: bool, reach: float, ex: float,
+    chains: FloatArray, D: FloatArray, side: int, first: float, last: float, closed: bool, reach: float, ex: float,
     ey: float, slip: FloatArray, enough: float, scratch: FloatArray,
 ) -> tuple[bool, bool]:  # fmt: skip
     """Take in what chains (V, m, 4, 2) have beyond a place, until they extend by ``reach`` or their arc ends.
 
     Args:
-        side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end, unless it is a ``ring``.
+        side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end, unless it is ``closed``.
         scratch: (3, V, 4, 2).
 
     Returns:
@@ -226,12 +226,12 @@ def _follow(
     near, far = (0, 3) if side else (3, 0)
     at = first
     for turn in range(PARTS):
-        if not ring and (at >= last if side else at <= last):
+        if not closed and (at >= last if side else at <= last):
             return True, True
         s = int(np.floor(at)) if side else int(np.ceil(at)) - 1
         step = min(s + 1 - at if side else at - s, FIRST_PART * 2.0**turn)
         a, b = (at, at + step) if side else (at - step, at)
-        if not ring:
+        if not closed:
             a, b = (a, min(b, last)) if side else (max(a, last), b)
         least = np.inf
         for v in range(V):
@@ -249,16 +249,25 @@ def _follow(
 
 
 @compiled(internal=True)
-def nearest_stacked(chains: FloatArray, s: int, low: float, high: float, point: FloatArray) -> float:
-    """The parameter in [low, high] of segment s at which all instances together are nearest to (V, 2) points."""
+def _squares(chains: FloatArray, s: int, z: float, point: FloatArray) -> float:
+    """The squared distance of the instances' points at z of segment s from (V, 2) points, summed."""
+    total = 0.0
+    for v in range(len(chains)):
+        px, py, _, _, _, _ = jet(chains[v], s % chains.shape[1], z)
+        total += (px - point[v, 0]) ** 2 + (py - point[v, 1]) ** 2
+    return total
+
+
+@compiled(internal=True)
+def nearest_stacked(chains: FloatArray, s: int, low: float, high: float, point: FloatArray) -> tuple[float, float]:
+    """The parameter in [low, high] of segment s at which all instances together are nearest to (V, 2) points, and the
+    squared distance there, summed.
+    """
     V, m = len(chains), chains.shape[1]
     best, at = np.inf, low
     for k in range(COARSE + 1):
         z = low + (high - low) * k / COARSE
-        d = 0.0
-        for v in range(V):
-            px, py, _, _, _, _ = jet(chains[v], s % m, z)
-            d += (px - point[v, 0]) ** 2 + (py - point[v, 1]) ** 2
+        d = _squares(chains, s, z, point)
         if d < best:
             best, at = d, z
     for _ in range(STEPS):
@@ -274,7 +283,7 @@ def nearest_stacked(chains: FloatArray, s: int, low: float, high: float, point: 
         before, at = at, newton_step(at, slope, speed, bend, low, high)
         if abs(at - before) < 1e-9:
             break
-    return at
+    return at, _squares(chains, s, at, point)
 
 
 @compiled
@@ -300,11 +309,7 @@ def near_places(
         while s < b:
             z0, z1 = max(a - s, 0.0), min(b - s, 1.0)
             if z1 >= z0:
-                z = nearest_stacked(chains, s, z0, z1, points[:, i])
-                d = 0.0
-                for v in range(len(chains)):
-                    px, py, _, _, _, _ = jet(chains[v], s % m, z)
-                    d += (px - points[v, i, 0]) ** 2 + (py - points[v, i, 1]) ** 2
+                z, d = nearest_stacked(chains, s, z0, z1, points[:, i])
                 if d < best:
                     best, places[i] = d, s + z
             s += 1

@@ -24,6 +24,7 @@ from ..errors import OutputError
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Contour
 from ..readers import Font, Source
+from ..types import MadeOnDemand
 from .font.master_deltas import Redrawn
 from .ufo_folder import as_number, draw, smooth_ends
 
@@ -40,7 +41,7 @@ def write_designspace(
     """Write the folder, replacing an older one.
 
     Args:
-        source: what the glyphs were read from. redrawn: glyph name to its new contours.
+        source: what the glyphs were read from. redrawn: glyph name to its new contours, read one by one, some times.
         path: the folder. family: the name; None is the source's.
 
     Returns:
@@ -55,7 +56,7 @@ def write_designspace(
     if path.is_symlink() or (path.exists() and not (path.is_dir() and list(path.glob("*.designspace")))):
         raise OutputError("is there already, and holds no designspace", font=str(path))
     left = {name: reason for name, new in redrawn.items() if (reason := unlike_regions(new.masters))}
-    chosen = {name: new for name, new in redrawn.items() if name not in left}
+    chosen = MadeOnDemand([name for name in redrawn if name not in left], redrawn.__getitem__)
     if not chosen:
         why = f": {next(iter(left.values()))}" if left else ""
         raise OutputError(f"no glyph to write{why}", font=str(path))

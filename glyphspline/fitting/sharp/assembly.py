@@ -164,44 +164,37 @@ def certify_masters(
         result = np.ascontiguousarray(results[:, a:b])
         m, r = source.shape[1], result.shape[1]
         closed = bool(pieces.where[own[0], CLOSED])
-        hints = np.concatenate([pieces.places[first[q] : first[q] + spans[q]] for q in own])
-        ranges = np.empty((r, 4))
-        for q in own:
+        places, ranges = np.empty(r), np.empty((r, 4))
+        for q, look in zip(own, wanted, strict=True):
             s, e = segments[q] - a, segments[q + 1] - a
-            ranges[s:e] = s, e, pieces.where[q, FIRST], pieces.where[q, LAST]
+            low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
+            ranges[s:e] = s, e, low, high
+            places[s:e] = pieces.places[first[q] : first[q] + e - s]
+            inner = s if closed else s + 1  # an arc begins where the source's does
+            if look and inner < e:
+                knots = np.ascontiguousarray(result[:, inner:e, 0])
+                places[inner:e] = near_places(source, places[inner:e].copy(), knots, closed, low, high)
         if closed:
-            places = ring_places(source, result, hints)
-        else:
-            places = hints.astype(np.float64)
-            for q in own[wanted & (spans[own] > 1)]:
-                s, e = segments[q] - a, segments[q + 1] - a
-                inner = np.ascontiguousarray(result[:, s + 1 : e, 0])
-                low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
-                places[s + 1 : e] = near_places(source, hints[s + 1 : e], inner, False, low, high)
+            places += m * np.ceil(max(-places[0], 0.0) / m)
         anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
-        rings = np.full(r, closed).astype(np.int64)
         each = np.repeat(wanted, spans[own])
-        found = pair_stacks(result, source, anchors, ranges, rings, each, limit)
+        found = pair_stacks(result, source, anchors, ranges, closed, each, limit)
         good = regular(np.ascontiguousarray(result[:, each]))
         starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
         bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
         speed[own[wanted]] = np.logical_and.reduceat(good, starts)
 
 
-def ring_places(sources: FloatArray, results: FloatArray, hints: FloatArray) -> FloatArray:
-    """(r,) places of contours (V, m, 4, 2) beside the beginnings of the spans of closed curves (V, r, 4, 2)."""
-    m = sources.shape[1]
+def ring_bounds(sources: FloatArray, results: FloatArray, hints: FloatArray, limit: float) -> FloatArray:
+    """(r,) certified bounds of the spans of a closed curve (V, r, 4, 2), each by itself.
+
+    Args:
+        sources: (V, m, 4, 2) the contour. hints: (r,) places on it near which the spans begin.
+    """
+    m, r = sources.shape[1], results.shape[1]
     places = near_places(sources, hints, np.ascontiguousarray(results[:, :, 0]), True, 0.0, 0.0)
     places += m * np.ceil(max(-places[0], 0.0) / m)
-    return places
-
-
-def ring_bounds(sources: FloatArray, results: FloatArray, hints: FloatArray, limit: float) -> FloatArray:
-    """(r,) certified bounds of the spans of closed curves; see :func:`ring_places`."""
-    m, r = sources.shape[1], results.shape[1]
-    places = ring_places(sources, results, hints)
     anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
-    ranges = np.broadcast_to(np.array([0.0, r, 0.0, m]), (r, 4)).copy()
-    every = np.ones(r, dtype=np.bool_)
-    bounds: FloatArray = pair_stacks(results, sources, anchors, ranges, every.astype(np.int64), every, limit)
+    ranges = np.stack([np.arange(r), np.full(r, r), np.zeros(r), np.full(r, m)], axis=1).astype(np.float64)
+    bounds: FloatArray = pair_stacks(results, sources, anchors, ranges, True, np.ones(r, dtype=np.bool_), limit)
     return bounds

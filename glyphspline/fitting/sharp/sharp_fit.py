@@ -6,7 +6,7 @@ the result is within the tolerance, and measures it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -116,9 +116,10 @@ class SharpFit:
         offsets: (C + 1,) where in ``pieces`` each contour begins.
         splines: the interpolations of those arcs that have more than one span, by their piece.
         curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
-        bounds: (P,) certified distance of each piece from the source: of a single master as it is written, and of
-            several in the whole design space. gaps: (P,) the largest one seen; NaN for several masters.
-        regular: (P,) whether the curve has speed everywhere, in the whole design space; not looked at for a single one.
+        bounds: (P,) certified distance of each piece from the source: of a plain outline as it is written, and of
+            masters, unrounded, in the whole design space. gaps: (P,) the largest one seen; NaN for masters.
+        regular: (P,) whether the curves of masters have speed everywhere, in the whole design space; None for a plain
+            outline.
     """
 
     pieces: Pieces
@@ -128,7 +129,7 @@ class SharpFit:
     controls: tuple[Polylines, ...]
     bounds: FloatArray
     gaps: FloatArray
-    regular: BoolArray
+    regular: BoolArray | None
 
     def interpolations(self) -> list[Interpolation]:
         """All arcs of a single master; one of a single span interpolates its two ends as it is."""
@@ -162,22 +163,23 @@ class Source(NamedTuple):
 
     Attributes:
         contours: their degrees and offsets. cubics: (K, m, 4, 2) their segments in each master.
-        mixes: (V, K) weights of the masters at the corners of the design space's grid.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline, which
+            is certified as it is written.
     """
 
     contours: ContourArrays
     cubics: FloatArray
-    mixes: FloatArray
+    mixes: FloatArray | None
 
 
 def single(contours: ContourArrays) -> Source:
     """Contours by themselves: their only master."""
-    return Source(contours, all_cubics(contours)[None], np.ones((1, 1)))
+    return Source(contours, all_cubics(contours)[None], None)
 
 
 def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> SharpFit:
-    """Lines and arcs within ``tolerance`` of contours, certified: one master after rounding to the precision of the
-    options, several in the whole design space.
+    """Lines and arcs within ``tolerance`` of contours, certified: a plain outline after rounding to the precision of
+    the options, masters in the whole design space.
 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
     the source's own segments, of which each is an arc of one span.
@@ -195,28 +197,30 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
     split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
-    lost = np.unique(pieces.where[(pieces.where[:, CLOSED] > 0) & (pieces.errors > settings.near), CONTOUR])
+    lost = np.flatnonzero((pieces.where[:, CLOSED] > 0) & (pieces.errors > settings.near)).tolist()
+    rings = [part(pieces, q, q + 1) for q in lost] if source.mixes is not None else []
     pieces = choose(split, pieces, settings.near)
-    for c in lost.tolist() if len(source.cubics) > 1 else []:
-        pieces = _with_ring(pieces, c, on_outline(split, c, source.mixes, settings, options, tolerance))
+
+    def last(piece: Pieces) -> Pieces:
+        """What takes the place of a piece that no search has a curve for."""
+        c, ring = int(piece.where[0, CONTOUR]), None
+        if source.mixes is not None and piece.where[0, CLOSED]:
+            ring = on_outline(split, c, source.mixes, settings, options, tolerance)
+        return ring or source_pieces(split, piece)
+
+    for piece in rings:
+        a, b = np.searchsorted(pieces.where[:, CONTOUR], piece.where[0, CONTOUR] + np.arange(2)).tolist()
+        pieces = _joined([part(pieces, 0, a), last(piece), part(pieces, b, len(pieces.where))])
     fit = _certified(split, pieces, source.mixes, options, tolerance, None, np.full(len(pieces.where), -1))
-    tries = RETRIES[options.continuity] if len(source.cubics) == 1 else RETRIES_OF_MASTERS
+    tries = RETRIES[options.continuity] if source.mixes is None else RETRIES_OF_MASTERS
     joints: dict[int, Joints] = {}
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints)
+        pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints, last)
         fit = _certified(split, pieces, source.mixes, options, tolerance, fit, same)
     return fit
-
-
-def _with_ring(pieces: Pieces, c: int, ring: Pieces | None) -> Pieces:
-    """Pieces with a closed curve in the place of contour c's; as they are if there is none."""
-    if ring is None:
-        return pieces
-    a, b = np.searchsorted(pieces.where[:, CONTOUR], [c, c + 1]).tolist()
-    return _joined([part(pieces, 0, a), ring, part(pieces, b, len(pieces.where))])
 
 
 def _joined(parts: Sequence[Pieces]) -> Pieces:
@@ -229,12 +233,12 @@ def _joined(parts: Sequence[Pieces]) -> Pieces:
 
 def refitted(
     contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[float, bool]], settings: Settings,
-    joints: dict[int, Joints],
+    joints: dict[int, Joints], last: Callable[[Pieces], Pieces],
 ) -> tuple[Pieces, IntArray]:  # fmt: skip
     """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments.
 
     Args:
-        joints: those of contours looked at before; receives others.
+        joints: those of contours looked at before; receives others. last: what takes a piece's place in the end.
 
     Returns:
         The pieces, and which of the given ones each is; -1 for others.
@@ -244,7 +248,7 @@ def refitted(
         parts.append(part(pieces, done, q))
         same.append(np.arange(done, q))
         if q < len(poor):
-            parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints))
+            parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints, last))
             same.append(np.full(len(parts[-1].where), -1))
         done = q + 1
     return _joined(parts), np.concatenate(same)
@@ -252,7 +256,7 @@ def refitted(
 
 def _refitted_piece(
     contours: SplitContours, piece: Pieces, tries: Sequence[tuple[float, bool]], settings: Settings,
-    joints: dict[int, Joints],
+    joints: dict[int, Joints], last: Callable[[Pieces], Pieces],
 ) -> Pieces:  # fmt: skip
     """What takes the place of a single piece."""
     c = int(piece.where[0, CONTOUR])
@@ -266,11 +270,11 @@ def _refitted_piece(
             found = fit_splines(found, stretches, near, settings.search, begun)
         if found.errors.max() <= near:
             return choose(contours, found, near)
-    return source_pieces(contours, piece)
+    return last(piece)
 
 
 def _certified(
-    split: SplitContours, pieces: Pieces, mixes: FloatArray, options: Options, tolerance: float,
+    split: SplitContours, pieces: Pieces, mixes: FloatArray | None, options: Options, tolerance: float,
     before: SharpFit | None, same: IntArray,
 ) -> SharpFit:  # fmt: skip
     """The pieces with curves put through them, measured against the source.
@@ -284,16 +288,18 @@ def _certified(
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
     controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
-    made = [put_together(of_master(pieces, v), count, knots, controls[v], chords(pieces)) for v in range(masters)]
+    lengths = chords(pieces)
+    made = [put_together(of_master(pieces, v), count, knots, controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
-    if masters == 1:
+    regular = None
+    if mixes is None:
         written = curves[0].rounded(options.precision)
         bounds, gaps = certify(split, pieces, segments, written, SHARPNESS * tolerance, tolerance)
-        regular = np.ones(len(bounds), dtype=np.bool_)
     else:
         cubics = np.stack([all_cubics(curve) for curve in curves])
         bounds, regular = np.full(len(same), np.nan), np.zeros(len(same), dtype=np.bool_)
         if before is not None:
+            assert before.regular is not None
             bounds[same >= 0], regular[same >= 0] = before.bounds[same[same >= 0]], before.regular[same[same >= 0]]
         certify_masters(split, pieces, segments, cubics, curves[0].offsets, mixes, tolerance, bounds, regular)
         gaps = np.full(len(bounds), np.nan)

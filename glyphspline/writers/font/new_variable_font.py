@@ -25,6 +25,7 @@ from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import DesignAxis, Masters
 from ...readers import Font, Source
 from ...readers.single_fonts import axis_of
+from ...types import MadeOnDemand
 from .font_file import decomposed, to_font
 from .font_tables import postscript
 from .master_deltas import Redrawn, check_steps, rounded_deltas
@@ -43,19 +44,21 @@ def to_new_variable_font(
     *,
     tolerance: float = 0.5,
     family: str | None = None,
+    with_contours: bool = True,
 ) -> tuple[bytes, VariableSummary]:
     """The font as a TTF's bytes; the same input gives the same bytes.
 
     Args:
         sources: single fonts, UFOs or drawings, the default first; of at least two. Its named instances are these.
         axis: like "wght=300:700", a value a font.
-        redrawn: name of a glyph in the default to its contours in all masters, which are those of
-            :func:`...readers.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
+        redrawn: name of a glyph in the default to its contours in all masters, read one by one. The masters are those
+            of :func:`...readers.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
             simple glyphs.
         left: names of glyphs that have no masters, to the reasons. All glyphs that are not in ``redrawn`` look as in
             the default everywhere.
         tolerance: how far the quadratics, rounded, may be from the contours given, in units of the default.
         family: its name; None is the default's with "Spline".
+        with_contours: see :func:`.variable_font.to_variable_font`.
 
     Returns:
         The bytes, and the facts; glyphs that could not be written are added to those ``left``.
@@ -70,13 +73,14 @@ def to_new_variable_font(
     _check(default, design, redrawn)
     font = TTFont(BytesIO(to_font(default, (), "ttf", family=family)[0]), recalcTimestamp=False)
     names = _names(default, font)
-    masters = {names[name]: new.masters for name, new in redrawn.items()}
+    given = {names[name]: name for name in redrawn}
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
-    _add_advances(font, masters)
-    drawn = {names[name]: _clockwise(new) for name, new in redrawn.items()}
-    data, summary = to_variable_font(_opened(font, default.path), drawn, "ttf", tolerance=tolerance)
-    given = {stored: name for name, stored in names.items()}
+    _add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
+    drawn = MadeOnDemand(given, lambda stored: _clockwise(redrawn[given[stored]]))
+    data, summary = to_variable_font(
+        _opened(font, default.path), drawn, "ttf", tolerance=tolerance, with_contours=with_contours
+    )
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
     missed = {given[stored]: reason for stored, reason in summary.left.items()}
     return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left={**(left or {}), **missed})
@@ -85,8 +89,9 @@ def to_new_variable_font(
 def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) -> None:
     if not redrawn:
         raise OutputError("no glyph varies", font=str(default.path))
+    known = set(default.glyph_names)
     for name, new in redrawn.items():
-        if name not in default.glyph_names:
+        if name not in known:
             raise GlyphsplineError("the font has no such glyph", font=str(default.path), glyph=name)
         if new.masters.axes != (design,):
             raise OutputError(f"its masters are not along {design.tag} alone", font=str(default.path), glyph=name)

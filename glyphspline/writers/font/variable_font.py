@@ -8,7 +8,7 @@ quadratics in whole units, which meet inside an arc midway between their control
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 
 import numpy as np
@@ -31,7 +31,8 @@ class StoredGlyph:
     """A glyph as a font stores it.
 
     Attributes:
-        contours: what is drawn, numbers rounded, in the masters of :class:`.master_deltas.Redrawn`.
+        contours: what is drawn, numbers rounded, in the masters of :class:`.master_deltas.Redrawn`; none if they were
+            not asked for.
         inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
         distance: the largest from the contours that were given, in font units, at the corners of the design space and
             in between. In CFF2 a bound; in glyf from dense samples.
@@ -67,16 +68,23 @@ class VariableSummary:
 
 
 def to_variable_font(
-    source: Font, redrawn: Mapping[str, Redrawn], flavour: Flavour, *, tolerance: float = 0.5
+    source: Font,
+    redrawn: Mapping[str, Redrawn],
+    flavour: Flavour,
+    *,
+    tolerance: float = 0.5,
+    with_contours: bool = True,
 ) -> tuple[bytes, VariableSummary]:
     """The font as a file's bytes; the same input gives the same bytes.
 
     Args:
-        source: a variable font. redrawn: glyph name to its new contours. Composites stay so: redraw their components,
-            see :func:`components`.
+        source: a variable font.
+        redrawn: glyph name to its new contours, read one by one. Composites stay so: redraw their components, see
+            :func:`components`.
         flavour: "otf" for a font with CFF2 outlines, "ttf" for one with glyf.
         tolerance: for "ttf", how far the quadratics, rounded, may be from the contours given, in font units. A glyph
             that cannot be so close is written as close as it was found: see ``distance``.
+        with_contours: whether the summary has what is drawn, which is much of a large font.
 
     Raises:
         OutputError: the font is not variable, or has the other kind of outlines.
@@ -111,9 +119,11 @@ def to_variable_font(
             continue
         try:
             if strings:
-                glyphs[name] = StoredGlyph(*strings.replace(stored, new))
-            elif quadratics:
-                glyphs[name] = StoredGlyph(*quadratics.replace(stored, new, tolerance))
+                found = StoredGlyph(*strings.replace(stored, new))
+            else:
+                assert quadratics
+                found = StoredGlyph(*quadratics.replace(stored, new, tolerance))
+            glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
         except GlyphsplineError as error:
             left[name] = error.message
         except np.linalg.LinAlgError:

@@ -326,7 +326,7 @@ class Gvar:
     """The variations of a font, glyph by glyph: records that nothing changes keep their bytes."""
 
     def __init__(self, font: TTFont) -> None:
-        self._table = font["gvar"]  # decompiles a glyph when it is asked for
+        self._table = font["gvar"]
         self._axes = [axis.axisTag for axis in font["fvar"].axes]
         self._names = font.getGlyphOrder()
         data = self._data = font.reader["gvar"]
@@ -338,8 +338,9 @@ class Gvar:
         self._shared = [data[shared_at + k * length :][:length] for k in range(shared_count)]
 
     def variations(self, name: str) -> list[TupleVariation]:
-        """The tuples of a glyph."""
-        return list(self._table.variations.get(name) or [])
+        """The tuples of a glyph. The table would keep all that it was asked for, in lists of tuples."""
+        found = self._table.variations.data.get(name, ())
+        return list(found(name) if callable(found) else found)
 
     def region(self, variation: TupleVariation) -> FloatArray:
         """(A, 3) where a tuple counts."""
