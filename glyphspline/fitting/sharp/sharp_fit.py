@@ -187,7 +187,8 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         angle=float(np.radians(options.corner_angle)) if sharp else np.inf, line=LONG_LINE * em if sharp else np.inf,
         c2=options.continuity == "c2",
         search=SEARCHES[options.effort](
-            margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity]
+            margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity],
+            lays=not sharp,
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
@@ -293,7 +294,7 @@ def chords(pieces: Pieces) -> FloatArray:
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span among the (P,) pieces that are wanted. Lemma 2 has an interval for all of their vertices.
+    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval for all of their vertices.
 
     K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
     """
