@@ -47,6 +47,9 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
 
+MOVED = 0.9
+"""Share of the tolerance below which vertices of closed curves round corners are no longer moved, but laid at once."""
+
 RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
 RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0.6, True))
 """What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
@@ -188,7 +191,7 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         c2=options.continuity == "c2",
         search=SEARCHES[options.effort](
             margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity],
-            lays=not sharp,
+            lays=int(not sharp),
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
@@ -247,7 +250,8 @@ def _refitted_piece(
         found, stretches = cut_again(contours, piece, joints[c], cut, settings)
         if len(stretches.piece):
             begun = not cut and len(contours.cubics) == 1  # slip may rule out where masters' vertices are now
-            found = fit_splines(found, stretches, near, settings.search, begun)
+            lays = 2 if settings.search.lays and share < MOVED else settings.search.lays
+            found = fit_splines(found, stretches, near, settings.search._replace(lays=lays), begun)
         if found.errors.max() <= near:
             return choose(contours, found, near)
     return source_pieces(contours, piece)

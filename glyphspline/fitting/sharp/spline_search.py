@@ -28,7 +28,7 @@ from .spline_curve import (
 from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import SHORTEST_HANDLE as SHORTEST
 from .spline_fit import improve
-from .stretches import FREE, TIED, Stretches, samples_of
+from .stretches import FREE, TIED, Stretches, integrate_density, samples_of
 
 SOME_MORE = 30.0
 """A cubic that misses the tolerance by less than this factor is followed by a try with two spans."""
@@ -45,6 +45,14 @@ On long stretches of fine detail very many miss it by little, and would get two 
 FAR, FEW = 2.0, 3
 """A closed curve that may go round corners is laid on the outline once its vertices, moved, leave it this many
 tolerances off, or after so many insertions.
+"""
+
+RESPACINGS = 4
+"""How often laid vertices are spaced anew, before spans that miss the tolerance are cut."""
+
+AIM, POWER = 0.85, 0.4
+"""Share of the tolerance that spacing aims at, and the power of a span's error with which its vertices become denser:
+a quarter is right where the outline is smooth, one beside a corner.
 """
 
 STEEP = 3.0
@@ -92,7 +100,7 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
 @compiled(internal=True)
 def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int:
     """Spans for which a fit has room, begun with so many; 0 for a first guess."""
-    return min((8 if search.lays and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16, len(samples.places) - 1)
+    return min((8 if search.lays > 0 and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16, len(samples.places) - 1)
 
 
 @compiled(internal=True)
@@ -140,7 +148,8 @@ def find_spline(
     what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
     insertions = 0 * n
     best_error = last = np.inf
-    goals, laid = np.empty(fit.gram.shape[1] if search.lays and closed else 0), 0 * n
+    goals, laid = np.empty(fit.gram.shape[1] if search.lays > 0 and closed else 0), 0 * n
+    respaced, what = 0 * n, LAY if len(goals) > 0 and search.lays > 1 else BEGIN
     while True:
         # What is tried, in ``curve``.
         possible = True
@@ -152,7 +161,12 @@ def find_spline(
             insertions += 1
             possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
         elif what == LAY:
-            possible = lay_vertices(fit, samples, goals, laid, max(guess, wanted), near)
+            if laid == 0 or respaced < RESPACINGS:
+                if laid > 0:
+                    respace(samples, fit.rows, goals[:laid], AIM * near)
+                    respaced += 1
+                laid = 0 * laid
+            possible = lay_vertices(fit, samples, goals, laid, near)
             laid = curve.size[0]
         else:
             remove_vertex(curve, best, at)
@@ -192,7 +206,7 @@ def find_spline(
         # not, a new guess with one less.
         if what == REMOVE:
             mark_tried(tried, at, good, best.size[0])
-        elif not good or begun or (what == RESTART and laid > 0):
+        elif not good or begun or (laid > 0 and search.passes == 1):
             break
         if best.size[0] <= least:
             break
@@ -279,7 +293,7 @@ def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
 
 
 @compiled(internal=True)
-def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, guess: int, near: float) -> bool:
+def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, near: float) -> bool:
     """A closed curve with its vertices on the outline: more of them in spans that miss the tolerance, and where adjacent
     chords differ too much; False if there is no room.
 
@@ -293,7 +307,7 @@ def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, guess
     total = D[len(D) - 1]
     cut = np.zeros(len(goals), dtype=np.bool_)
     if laid == 0:
-        k = guess
+        k = max(int(np.ceil(total)), 6)
         if k > len(goals) - 1:
             return False
         for i in range(k):
@@ -302,7 +316,7 @@ def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, guess
         errors = span_errors(fit.rows, k)
         for s in range(k):
             beside = max(errors[s - 1], errors[(s + 1) % k])
-            cut[s] = errors[s] > near and (errors[s] >= beside or errors[s] > FAR * near)
+            cut[s] = errors[s] > near and (errors[s] >= beside or errors[s] > 2 * FAR * near)
     while True:
         count = k
         for s in range(k):
@@ -328,6 +342,21 @@ def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, guess
             steep = steep or cut[s]
         if not steep:
             return True
+
+
+@compiled(internal=True)
+def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> None:
+    """Make the wanted density higher where laid vertices are too far apart, and lower where they are too close."""
+    D, Q, n, k = samples.D, samples.Q, len(samples.places), len(goals)
+    errors, h, step = span_errors(rows, k), np.empty(n), np.empty(n)
+    s = 0 * n
+    for j in range(n):
+        while s + 1 < k and D[j] >= goals[s + 1]:
+            s += 1
+        change = min(max((errors[s] / near) ** POWER, 0.75), 2.0)
+        step[j] = chord(Q, j, (j + 1) % n)
+        h[j] = step[j] / max((D[j + 1] - D[j]) * change, 1e-300) if step[j] > 0.0 else np.inf
+    integrate_density(D, h, step, 1)
 
 
 @compiled(internal=True)

@@ -93,14 +93,12 @@ def stretches_used(stretches: Stretches, count: int) -> Stretches:
 
 
 @compiled(internal=True)
-def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
-    """The samples of a stretch, with the integral of the density of vertices."""
-    first, n = stretches.starts[s], stretches.starts[s + 1] - stretches.starts[s] - 1
-    Q, places = stretches.points[:, first : first + n + 1].copy(), stretches.places[first : first + n + 1]
-    D, h, step = np.empty(n + 1), np.empty(n), np.empty(n)
-    for r in range(n):
-        h[r], step[r] = stretches.spacing[first + r], chord(Q, r, r + 1)
-    # Spacings grow no faster than chords may; around a closed contour from the last to the first, too.
+def integrate_density(D: FloatArray, h: FloatArray, step: FloatArray, closed: int) -> None:
+    """The integral D: (n + 1,) of the density of vertices, from wanted distances h and steps: (n,).
+
+    Wanted distances grow no faster than chords may; around a closed contour from the last to the first, too.
+    """
+    n = len(h)
     for _ in range(2):
         for r in range(n):
             if r > 0 or closed:
@@ -112,6 +110,17 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     D[0] = 0.0
     for r in range(n):
         D[r + 1] = D[r] + step[r] / h[r]
+
+
+@compiled(internal=True)
+def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
+    """The samples of a stretch, with the integral of the density of vertices."""
+    first, n = stretches.starts[s], stretches.starts[s + 1] - stretches.starts[s] - 1
+    Q, places = stretches.points[:, first : first + n + 1].copy(), stretches.places[first : first + n + 1]
+    D, h, step = np.empty(n + 1), np.empty(n), np.empty(n)
+    for r in range(n):
+        h[r], step[r] = stretches.spacing[first + r], chord(Q, r, r + 1)
+    integrate_density(D, h, step, closed)
     return Samples(
         Q[:, : n + 1 - closed].copy(),
         places[: n + 1 - closed],
