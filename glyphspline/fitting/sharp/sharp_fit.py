@@ -298,7 +298,7 @@ def chords(pieces: Pieces) -> FloatArray:
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval for all of their vertices.
+    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval at all their vertices.
 
     K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
     """

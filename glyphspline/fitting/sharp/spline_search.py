@@ -100,7 +100,10 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
 @compiled(internal=True)
 def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int:
     """Spans for which a fit has room, begun with so many; 0 for a first guess."""
-    return min((8 if search.lays > 0 and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16, len(samples.places) - 1)
+    return min(
+        (8 if search.lays > 0 and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16,
+        len(samples.places) - 1,
+    )
 
 
 @compiled(internal=True)
@@ -294,8 +297,8 @@ def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
 
 @compiled(internal=True)
 def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, near: float) -> bool:
-    """A closed curve with its vertices on the outline: more of them in spans that miss the tolerance, and where adjacent
-    chords differ too much; False if there is no room.
+    """A closed curve with its vertices on the outline: more of them in spans that miss the tolerance, and where
+    adjacent chords differ too much; False if there is no room.
 
     Interpolated with vertices dense enough, any outline is within the tolerance, round corners too, from which moved
     vertices run away.
