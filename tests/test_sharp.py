@@ -169,7 +169,7 @@ def test_what_no_cubic_is_near_is_not_taken_for_one() -> None:
     assert fit_cubic(np.zeros((5, 2)), east, False, east, False, 1.0, 6, start, end) == np.inf
 
 
-SEARCH = SEARCHES["fast"](margin=0.02, residual=0.005, most=1000)
+SEARCH = SEARCHES["fast"](margin=0.02, residual=0.005, most=1000, lays=0)
 
 SETTINGS = Settings(0.9, np.radians(12.0), 20.0, True, SEARCH, 4, 2)
 

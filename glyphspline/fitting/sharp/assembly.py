@@ -183,18 +183,3 @@ def certify_masters(
         starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
         bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
         speed[own[wanted]] = np.logical_and.reduceat(good, starts)
-
-
-def ring_bounds(sources: FloatArray, results: FloatArray, hints: FloatArray, limit: float) -> FloatArray:
-    """(r,) certified bounds of the spans of a closed curve (V, r, 4, 2), each by itself.
-
-    Args:
-        sources: (V, m, 4, 2) the contour. hints: (r,) places on it near which the spans begin.
-    """
-    m, r = sources.shape[1], results.shape[1]
-    places = near_places(sources, hints, np.ascontiguousarray(results[:, :, 0]), True, 0.0, 0.0)
-    places += m * np.ceil(max(-places[0], 0.0) / m)
-    anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
-    ranges = np.stack([np.arange(r), np.full(r, r), np.zeros(r), np.full(r, m)], axis=1).astype(np.float64)
-    bounds: FloatArray = pair_stacks(results, sources, anchors, ranges, True, np.ones(r, dtype=np.bool_), limit)
-    return bounds

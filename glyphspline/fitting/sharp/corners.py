@@ -25,6 +25,9 @@ SMOOTH_KINK = np.radians(3.0)
 ONE_DIRECTION = 1e-3
 """Masters' lines have one direction if they turn by no more than this from each other, in radians."""
 
+MASTERS_RATIO = 3.0
+"""Ratio of adjacent steps from which samples are denser if there are several masters."""
+
 BEND, KINK = 0.004, 0.065
 """A spline whose vertices are h apart misses an outline by about BEND h⁴ κ³ where it bends, and by KINK h sin θ where
 it turns by θ."""
@@ -229,8 +232,11 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
 
 @compiled(internal=True)
 def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> FloatArray:
-    """The places with more between them, until no step longer than the tolerance is over twice as long as the next."""
-    m = cubics.shape[1]
+    """The places with more between them, until no step longer than the tolerance is over twice as long as the next.
+
+    Halved beside a step that differs a little, as they do between masters, steps would be halved all along the outline.
+    """
+    m, most = cubics.shape[1], 2.0 if len(cubics) == 1 else MASTERS_RATIO
     while True:
         n = len(places) - 1
         step, long = np.empty(n), np.zeros(n, dtype=np.bool_)
@@ -239,10 +245,10 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
             for i in range(n):
                 s = min(int(places[i + 1]), m - 1)
                 px, py, _, _, _, _ = jet(cubics[v], s, places[i + 1] - s)
-                step[i] = np.hypot(px - x, py - y)
+                step[i] = length(px - x, py - y)
                 x, y = px, py
             for i in range(n):
-                long[i] = long[i] or step[i] > max(2 * min(step[i - 1], step[(i + 1) % n]), tolerance)
+                long[i] = long[i] or step[i] > max(most * min(step[i - 1], step[(i + 1) % n]), tolerance)
         new, count = np.empty(2 * n + 1), 0
         for i in range(n):
             new[count] = places[i]

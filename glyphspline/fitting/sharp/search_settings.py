@@ -12,6 +12,8 @@ class Search(NamedTuple):
     Attributes:
         margin, residual: of the interpolation.
         most: spans at most: 1 where cubics alone are wanted.
+        lays: whether closed curves go round corners: 1 to lay those vertices on the outline that do not get near enough
+            by moving, 2 to lay all at once.
         cubic_rounds: most steps of a single span. rounds: of a first guess. few_rounds: of one with up to three spans.
         guess: spans of the first guess, as a share of what the density asks for.
         growth: power of a span's error with which vertices are added.
@@ -26,6 +28,7 @@ class Search(NamedTuple):
     margin: float
     residual: float
     most: int
+    lays: int
     cubic_rounds: int
     rounds: int
     few_rounds: int

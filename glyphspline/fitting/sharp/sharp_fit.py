@@ -6,7 +6,7 @@ the result is within the tolerance, and measures it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,7 +27,6 @@ from ..results import ConvertedContours
 from .assembly import certify, certify_masters, put_together
 from .corners import Joints
 from .cutting import choose, cut_again, cut_all, joints_again, source_pieces
-from .on_outline import on_outline
 from .pieces import CLOSED, CONTOUR, SPANS, Pieces, of_master, part
 from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
@@ -47,6 +46,9 @@ STRIDE = {"fast": 2, "best": 1}
 
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
+
+MOVED = 0.9
+"""Share of the tolerance below which vertices of closed curves round corners are no longer moved, but laid at once."""
 
 RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
 RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0.6, True))
@@ -190,27 +192,15 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         angle=float(np.radians(options.corner_angle)) if sharp else np.inf, line=LONG_LINE * em if sharp else np.inf,
         c2=options.continuity == "c2",
         search=SEARCHES[options.effort](
-            margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity]
+            margin=float(options.margin), residual=options.solver_tolerance, most=MOST_SPANS[options.continuity],
+            lays=int(not sharp),
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
     split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
-    lost = np.flatnonzero((pieces.where[:, CLOSED] > 0) & (pieces.errors > settings.near)).tolist()
-    rings = [part(pieces, q, q + 1) for q in lost] if source.mixes is not None else []
     pieces = choose(split, pieces, settings.near)
-
-    def last(piece: Pieces) -> Pieces:
-        """What takes the place of a piece that no search has a curve for."""
-        c, ring = int(piece.where[0, CONTOUR]), None
-        if source.mixes is not None and piece.where[0, CLOSED]:
-            ring = on_outline(split, c, source.mixes, settings, options, tolerance)
-        return ring or source_pieces(split, piece)
-
-    for piece in rings:
-        a, b = np.searchsorted(pieces.where[:, CONTOUR], piece.where[0, CONTOUR] + np.arange(2)).tolist()
-        pieces = _joined([part(pieces, 0, a), last(piece), part(pieces, b, len(pieces.where))])
     fit = _certified(split, pieces, source.mixes, options, tolerance, None, np.full(len(pieces.where), -1))
     tries = RETRIES[options.continuity] if source.mixes is None else RETRIES_OF_MASTERS
     joints: dict[int, Joints] = {}
@@ -218,7 +208,7 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         poor = fit.bounds > tolerance
         if not poor.any():
             break
-        pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints, last)
+        pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints)
         fit = _certified(split, pieces, source.mixes, options, tolerance, fit, same)
     return fit
 
@@ -233,12 +223,12 @@ def _joined(parts: Sequence[Pieces]) -> Pieces:
 
 def refitted(
     contours: SplitContours, pieces: Pieces, poor: BoolArray, tries: Sequence[tuple[float, bool]], settings: Settings,
-    joints: dict[int, Joints], last: Callable[[Pieces], Pieces],
+    joints: dict[int, Joints],
 ) -> tuple[Pieces, IntArray]:  # fmt: skip
     """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments.
 
     Args:
-        joints: those of contours looked at before; receives others. last: what takes a piece's place in the end.
+        joints: those of contours looked at before; receives others.
 
     Returns:
         The pieces, and which of the given ones each is; -1 for others.
@@ -248,7 +238,7 @@ def refitted(
         parts.append(part(pieces, done, q))
         same.append(np.arange(done, q))
         if q < len(poor):
-            parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints, last))
+            parts.append(_refitted_piece(contours, part(pieces, q, q + 1), tries, settings, joints))
             same.append(np.full(len(parts[-1].where), -1))
         done = q + 1
     return _joined(parts), np.concatenate(same)
@@ -256,7 +246,7 @@ def refitted(
 
 def _refitted_piece(
     contours: SplitContours, piece: Pieces, tries: Sequence[tuple[float, bool]], settings: Settings,
-    joints: dict[int, Joints], last: Callable[[Pieces], Pieces],
+    joints: dict[int, Joints],
 ) -> Pieces:  # fmt: skip
     """What takes the place of a single piece."""
     c = int(piece.where[0, CONTOUR])
@@ -267,10 +257,11 @@ def _refitted_piece(
         found, stretches = cut_again(contours, piece, joints[c], cut, settings)
         if len(stretches.piece):
             begun = not cut and len(contours.cubics) == 1  # slip may rule out where masters' vertices are now
-            found = fit_splines(found, stretches, near, settings.search, begun)
+            lays = 2 if settings.search.lays and share < MOVED else settings.search.lays
+            found = fit_splines(found, stretches, near, settings.search._replace(lays=lays), begun)
         if found.errors.max() <= near:
             return choose(contours, found, near)
-    return last(piece)
+    return source_pieces(contours, piece)
 
 
 def _certified(
@@ -316,7 +307,7 @@ def chords(pieces: Pieces) -> FloatArray:
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of several spans among the (P,) wanted pieces. Lemma 2 has an interval for all of their vertices.
+    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval at all their vertices.
 
     K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
     """

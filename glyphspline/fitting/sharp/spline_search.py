@@ -12,7 +12,7 @@ from ...compiled import borrowed, compiled, keep_alive
 from ...curves.cubics import jet, length
 from ...types import BoolArray, FloatArray
 from .cubic_fit import fit_cubic
-from .feet import Samples, find_places, measure_afresh, span_errors
+from .feet import Rows, Samples, find_places, measure, measure_afresh, span_errors
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
 from .spline_curve import (
@@ -28,7 +28,7 @@ from .spline_curve import (
 from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import SHORTEST_HANDLE as SHORTEST
 from .spline_fit import improve
-from .stretches import FREE, TIED, Stretches, samples_of
+from .stretches import FREE, TIED, Stretches, integrate_density, samples_of
 
 SOME_MORE = 30.0
 """A cubic that misses the tolerance by less than this factor is followed by a try with two spans."""
@@ -42,8 +42,24 @@ PATIENCE = 12
 On long stretches of fine detail very many miss it by little, and would get two or three vertices at a time.
 """
 
-BEGIN, INSERT, REMOVE, RESTART = 0, 1, 2, 3
-"""What is tried: a first guess, more vertices, one vertex less, a new guess with one less."""
+FAR, FEW = 2.0, 3
+"""A closed curve that may go round corners is laid on the outline once its vertices, moved, leave it this many
+tolerances off, or after so many insertions.
+"""
+
+RESPACINGS = 4
+"""How often laid vertices are spaced anew, before spans that miss the tolerance are cut."""
+
+AIM, POWER = 0.85, 0.4
+"""Share of the tolerance that spacing aims at, and the power of a span's error with which its vertices become denser:
+a quarter is right where the outline is smooth, one beside a corner.
+"""
+
+STEEP = 3.0
+"""Ratio of adjacent chords from which the longer one is cut where vertices are laid on the outline."""
+
+BEGIN, INSERT, REMOVE, RESTART, LAY = 0, 1, 2, 3, 4
+"""What is tried: a first guess, more vertices, one vertex less, a new guess with one less; vertices on the outline."""
 
 
 @compiled
@@ -70,7 +86,7 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
             for v in range(masters):
                 p[v, r, 0], p[v, r, 1] = pieces.vertices[v, at, 0], pieces.vertices[v, at, 1]
         begun = k if given else 0 * k
-        fit = empty_fit(masters, n, most_spans(samples, search, begun), closed)
+        fit = empty_fit(masters, n, most_spans(samples, search, begun, closed), closed)
         k, error = find_spline(
             borrowed(fit), borrowed(samples), near, search, begun, pieces.errors[q] if k == 1 else np.inf, p, places,
             tangents,
@@ -82,9 +98,12 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
 
 
 @compiled(internal=True)
-def most_spans(samples: Samples, search: Search, given: int) -> int:
+def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int:
     """Spans for which a fit has room, begun with so many; 0 for a first guess."""
-    return min(2 * max(spans_wanted(samples, search), 4, given) + 16, len(samples.places) - 1)
+    return min(
+        (8 if search.lays > 0 and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16,
+        len(samples.places) - 1,
+    )
 
 
 @compiled(internal=True)
@@ -132,6 +151,8 @@ def find_spline(
     what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
     insertions = 0 * n
     best_error = last = np.inf
+    goals, laid = np.empty(fit.gram.shape[1] if search.lays > 0 and closed else 0), 0 * n
+    respaced, what = 0 * n, LAY if len(goals) > 0 and search.lays > 1 else BEGIN
     while True:
         # What is tried, in ``curve``.
         possible = True
@@ -142,11 +163,23 @@ def find_spline(
         elif what == INSERT:
             insertions += 1
             possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
+        elif what == LAY:
+            if laid == 0 or respaced < RESPACINGS:
+                if laid > 0:
+                    respace(samples, fit.rows, goals[:laid], AIM * near)
+                    respaced += 1
+                laid = 0 * laid
+            possible = lay_vertices(fit, samples, goals, laid, near)
+            laid = curve.size[0]
         else:
             remove_vertex(curve, best, at)
         error = np.inf
         hold_tied(curve, directions, samples.free)
-        if possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
+        if what == LAY:
+            if possible and interpolate_cold(curve, search.margin, search.residual) < search.residual:
+                guess_feet(samples, goals[:laid], fit.rows)
+                error = measure(samples, curve, near, fit.rows, fit.rows)
+        elif possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
             k = curve.size[0]
             rounds = search.few_rounds if k <= 3 else (search.removal_rounds if what == REMOVE else search.rounds)
             start, width = slots_beside(curve, at, search.reach) if what == REMOVE else (0 * k, k + 1 - closed)
@@ -161,6 +194,11 @@ def find_spline(
         if best.size[0] == 0:  # more vertices, or another guess
             slow = slow + 1 if error > 4 * near and error > 0.7 * last else 0
             last = error
+            if len(goals) > 0 and (what == LAY or error > FAR * near or insertions >= FEW):
+                if what == LAY and (not possible or error == np.inf):
+                    return 0, np.inf
+                what = LAY
+                continue
             what = INSERT if possible and error < np.inf and slow < 3 else BEGIN
             if what == BEGIN:
                 if starts == STARTS or begun:
@@ -171,7 +209,7 @@ def find_spline(
         # not, a new guess with one less.
         if what == REMOVE:
             mark_tried(tried, at, good, best.size[0])
-        elif not good or begun:
+        elif not good or begun or (laid > 0 and search.passes == 1):
             break
         if best.size[0] <= least:
             break
@@ -189,7 +227,11 @@ def find_spline(
         what, tries = REMOVE, tries - 1
         if at < 0:
             what, guess = RESTART, best.size[0] - 1
-    measure_afresh(samples, best, near, fit.rows)
+    if best.size[0] == laid:
+        guess_feet(samples, goals[:laid], fit.rows)
+        measure(samples, best, near, fit.rows, fit.rows)
+    else:
+        measure_afresh(samples, best, near, fit.rows)
     find_places(samples, best, fit.rows, places)
     for v in range(len(p)):
         for i in range(best.size[0] + 1 - closed):
@@ -216,16 +258,10 @@ def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
     if k > most:
         return False
     curve.size[0] = k
-    j = 0 * k
-    for i in range(k + 1 - closed):
-        goal = D[len(D) - 1] * i / k
-        while j + 2 < len(D) and D[j + 1] <= goal:
-            j += 1
-        after = (j + 1) % n
-        share = min(max((goal - D[j]) / max(D[j + 1] - D[j], 1e-300), 0.0), 1.0)
-        for v in range(len(Q)):
-            p[v, i, 0] = Q[v, j, 0] + share * (Q[v, after, 0] - Q[v, j, 0])
-            p[v, i, 1] = Q[v, j, 1] + share * (Q[v, after, 1] - Q[v, j, 1])
+    goals = np.empty(k + 1 - closed)
+    for i in range(len(goals)):
+        goals[i] = D[len(D) - 1] * i / k
+    put_on_outline(samples, goals, p)
     if closed:
         return True
     directions = samples.directions
@@ -242,6 +278,103 @@ def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
                 tangents[v, end, axis] = share * directions[v, end, axis]
     set_handles(curve, tangents)
     return True
+
+
+@compiled(internal=True)
+def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
+    """Put vertices p on the outline where the density's integral reaches the goals, which increase."""
+    Q, D, n = samples.Q, samples.D, len(samples.places)
+    j = 0 * n
+    for i in range(len(goals)):
+        while j + 2 < len(D) and D[j + 1] <= goals[i]:
+            j += 1
+        after = (j + 1) % n
+        share = min(max((goals[i] - D[j]) / max(D[j + 1] - D[j], 1e-300), 0.0), 1.0)
+        for v in range(len(Q)):
+            p[v, i, 0] = Q[v, j, 0] + share * (Q[v, after, 0] - Q[v, j, 0])
+            p[v, i, 1] = Q[v, j, 1] + share * (Q[v, after, 1] - Q[v, j, 1])
+
+
+@compiled(internal=True)
+def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, near: float) -> bool:
+    """A closed curve with its vertices on the outline: more of them in spans that miss the tolerance, and where
+    adjacent chords differ too much; False if there is no room.
+
+    Interpolated with vertices dense enough, any outline is within the tolerance, round corners too, from which moved
+    vertices run away.
+
+    Args:
+        goals: (room,) integrals of the density up to the vertices. laid: how many there are; 0 for the first guess.
+    """
+    curve, D, k = fit.curve, samples.D, laid
+    total = D[len(D) - 1]
+    cut = np.zeros(len(goals), dtype=np.bool_)
+    if laid == 0:
+        k = max(int(np.ceil(total)), 6)
+        if k > len(goals) - 1:
+            return False
+        for i in range(k):
+            goals[i] = total * i / k
+    else:
+        errors = span_errors(fit.rows, k)
+        for s in range(k):
+            beside = max(errors[s - 1], errors[(s + 1) % k])
+            cut[s] = errors[s] > near and (errors[s] >= beside or errors[s] > 2 * FAR * near)
+    while True:
+        count = k
+        for s in range(k):
+            count += cut[s]
+        if count > len(goals) - 1:
+            return False
+        at = count - 1
+        for s in range(k - 1, -1, -1):
+            if cut[s]:
+                goals[at] = (goals[s] + (goals[s + 1] if s + 1 < k else total + goals[0])) / 2
+                at -= 1
+            goals[at] = goals[s]
+            at -= 1
+        k = count
+        curve.size[0] = k
+        put_on_outline(samples, goals[:k], curve.p)
+        steep = False
+        for s in range(k):
+            last, after = s - 1 if s > 0 else k - 1, s + 1 if s + 1 < k else 0
+            own = chord(curve.p, s, after)
+            beside = min(chord(curve.p, last, s), chord(curve.p, after, after + 1 if after + 1 < k else 0))
+            cut[s] = own > STEEP * beside
+            steep = steep or cut[s]
+        if not steep:
+            return True
+
+
+@compiled(internal=True)
+def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> None:
+    """Make the wanted density higher where laid vertices are too far apart, and lower where they are too close."""
+    D, Q, n, k = samples.D, samples.Q, len(samples.places), len(goals)
+    errors, h, step = span_errors(rows, k), np.empty(n), np.empty(n)
+    s = 0 * n
+    for j in range(n):
+        while s + 1 < k and D[j] >= goals[s + 1]:
+            s += 1
+        change = min(max((errors[s] / near) ** POWER, 0.75), 2.0)
+        step[j] = chord(Q, j, (j + 1) % n)
+        h[j] = step[j] / max((D[j + 1] - D[j]) * change, 1e-300) if step[j] > 0.0 else np.inf
+    integrate_density(D, h, step, 1)
+
+
+@compiled(internal=True)
+def guess_feet(samples: Samples, goals: FloatArray, rows: Rows) -> None:
+    """First guesses for the feet on a closed curve whose vertices are laid: the samples' places between these."""
+    D, k, n = samples.D, len(goals), len(samples.places)
+    s = 0 * n
+    for j in range(n):
+        while s + 1 < k and D[j] >= goals[s + 1]:
+            s += 1
+        after = goals[s + 1] if s + 1 < k else D[len(D) - 1] + goals[0]
+        x = min(max((D[j] - goals[s]) / max(after - goals[s], 1e-300), 0.0), 1.0)
+        for v in range(len(rows.used)):
+            rows.span[v, j], rows.x[v, j] = s, x
+    rows.used[:] = n
 
 
 @compiled(internal=True)

@@ -93,6 +93,26 @@ def stretches_used(stretches: Stretches, count: int) -> Stretches:
 
 
 @compiled(internal=True)
+def integrate_density(D: FloatArray, h: FloatArray, step: FloatArray, closed: int) -> None:
+    """The integral D: (n + 1,) of the density of vertices, from wanted distances h and steps: (n,).
+
+    Wanted distances grow no faster than chords may; around a closed contour from the last to the first, too.
+    """
+    n = len(h)
+    for _ in range(2):
+        for r in range(n):
+            if r > 0 or closed:
+                h[r] = min(h[r], h[r - 1] + GROWTH * (step[r] + step[r - 1]) / 2)
+        for r in range(n - 1, -1, -1):
+            if r + 1 < n or closed:
+                e = (r + 1) % n
+                h[r] = min(h[r], h[e] + GROWTH * (step[r] + step[e]) / 2)
+    D[0] = 0.0
+    for r in range(n):
+        D[r + 1] = D[r] + step[r] / h[r]
+
+
+@compiled(internal=True)
 def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     """The samples of a stretch, with the integral of the density of vertices."""
     first, n = stretches.starts[s], stretches.starts[s + 1] - stretches.starts[s] - 1
@@ -100,10 +120,7 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     D, h, step = np.empty(n + 1), np.empty(n), np.empty(n)
     for r in range(n):
         h[r], step[r] = stretches.spacing[first + r], chord(Q, r, r + 1)
-    limit_growth(h, step, closed)
-    D[0] = 0.0
-    for r in range(n):
-        D[r + 1] = D[r] + step[r] / h[r]
+    integrate_density(D, h, step, closed)
     return Samples(
         Q[:, : n + 1 - closed].copy(),
         places[: n + 1 - closed],
@@ -112,19 +129,3 @@ def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
         stretches.free[s],
         places[n],
     )
-
-
-@compiled(internal=True)
-def limit_growth(spacing: FloatArray, step: FloatArray, closed: int) -> None:
-    """Lessen wanted distances of vertices where they grow faster than chords may, also from the last to the first of a
-    closed contour. Both arguments are (n,); ``step`` is the length for which each holds.
-    """
-    n = len(step)
-    for _ in range(2):
-        for r in range(n):
-            if r > 0 or closed:
-                spacing[r] = min(spacing[r], spacing[r - 1] + GROWTH * (step[r] + step[r - 1]) / 2)
-        for r in range(n - 1, -1, -1):
-            if r + 1 < n or closed:
-                e = (r + 1) % n
-                spacing[r] = min(spacing[r], spacing[e] + GROWTH * (step[r] + step[e]) / 2)
