@@ -11,6 +11,7 @@ import numpy as np
 
 from ..curves.bezier import split
 from ..types import FloatArray, IntArray
+from .elastic import elastic_nodes
 from .landmarks import CORNER, STRONG, WEAK, Landmarks, wrapped
 from .outline import Contour
 from .pairing import cheapest_pairs
@@ -29,14 +30,19 @@ STRETCH = (1.0, 0.1)
 STARTS = (4, 5)
 """Landmarks from which alignments are tried, the most distinct ones, and partners tried for each."""
 
-BEND = 0.6
-"""Weight of a quarter circle of turn on an arc, where the whole length of the arc has the weight 1."""
+GAIN = 0.3
 
-ROUND = 0.02
-"""Of the em: reach, to both sides, over which the turn is averaged."""
+NODES = 128
+"""Nodes of an arc, besides its joints."""
+
+BEND = 1.5
+"""Weight of direction beside length: pieces of arcs whose directions differ by a quarter circle over this are unlike."""
 
 SNAP = 5e-3
 """Of the em: joints of both contours that would be cut nearer than this to each other become a pair."""
+
+SLIVER = 5e-4
+"""Of the em: joints nearer than this are one, whatever their tangents."""
 
 PARALLEL = np.radians(25.0)
 """Largest angle between the tangents of two joints that become a pair by being near."""
@@ -51,12 +57,9 @@ def common_cuts(one: Landmarks, other: Landmarks) -> tuple[FloatArray, FloatArra
     """
     pairs, cost = strong_pairs(one, other)
     laps = len(one.cubics), len(other.cubics)
-    anchors = np.stack([one.places[pairs[:, 0]], other.places[pairs[:, 1]]], axis=1)
-    anchors[:, 1] += laps[1] * np.concatenate([[0], np.cumsum(np.diff(anchors[:, 1]) < 0)])
-    cuts: list[tuple[float, float]] = []
-    for (a, c), (b, d) in pairwise([*anchors.tolist(), (anchors[0] + laps).tolist()]):
-        for (a0, c0), (b0, d0) in pairwise([(a, c), *weak_pairs(one, a, b, other, c, d), (b, d)]):
-            cuts += [(a0, c0), *_arc(one, a0, b0, other, c0, d0)]
+    i, j = sure_pair(one, other, pairs)
+    a, b = float(one.places[i]), float(other.places[j])
+    cuts = [(a, b), *_arc(one, a, a + laps[0], other, b, b + laps[1])]
     found = np.array(cuts)
     found -= np.floor(found[:, :1] / laps[0]) * laps
     found = found[np.argsort(found[:, 0], kind="stable")]
@@ -81,42 +84,17 @@ def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
 
 
-def weak_pairs(one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: float) -> list[tuple[float, float]]:
-    """Places of landmarks that correspond inside two arcs, from a to b and from c to d, that do."""
-    mine, its = one.inside(a, b), other.inside(c, d)
-    if not len(mine) or not len(its):
-        return []
-    tables, turns = [], []
-    for of, start, end, which in ((one, a, b, mine), (other, c, d, its)):
-        ends, first = of.rows(np.array([start, end]), before=True), of.rows(np.array([start]))[0]
-        inner = np.stack([
-            of.weights[which % len(of)],
-            of.rows(of.lap_places(which))[:, 0],
-            of.rows(of.lap_places(which), before=True)[:, 1],
-            of.rows(of.lap_places(which))[:, 1],
-        ], axis=1)  # fmt: skip
-        table = np.concatenate([[[0.0, first[0], ends[0, 1], first[1]]], inner])
-        table[:, 1] = (table[:, 1] - first[0]) / (ends[1, 0] - first[0])
-        tables.append(table)
-        turns.append(ends[1, 1] - ends[0, 1])
-    apart = tables[0][:, None, 1] - tables[1][:, 1]
-    costs = APART * apart * apart + UNLIKE * np.abs(tables[0][:, None, 0] - tables[1][:, 0])
-    for k in (2, 3):
-        costs += DIRECTION * 2 * (1 - np.cos(tables[0][:, None, k] - tables[1][:, k]))
-    kinds = one.kinds[mine % len(one)][:, None] - other.kinds[its % len(other)]
-    costs[1:, 1:] += KIND * np.abs(kinds).sum(axis=2)
-    weights = tables[0][:, None, 0], tables[1][None, :, 0]
-    both = (np.minimum(*weights) >= WEAK) | (np.maximum(*weights) >= CORNER[0])
-    allowed = np.where(both & (costs < weights[0] + weights[1]), costs, np.inf)
-    allowed[0], allowed[:, 0] = np.inf, np.inf
-    allowed[0, 0] = 0.0
-    _, pairs = cheapest_pairs(
-        allowed, tables[0], tables[1], np.array(turns), np.zeros((1, 2), dtype=np.int64), STRETCH[1]
-    )
-    pairs = pairs[pairs[:, 0] > 0] - 1
-    return list(
-        zip(one.lap_places(mine[pairs[:, 0]]).tolist(), other.lap_places(its[pairs[:, 1]]).tolist(), strict=True)
-    )
+def sure_pair(one: Landmarks, other: Landmarks, pairs: IntArray) -> tuple[int, int]:
+    """The pair of which no landmark has another partner that is nearly as good."""
+    costs = pair_costs(one, other)
+    gains = one.weights[:, None] + other.weights - costs
+    best = -np.inf
+    for i, j in pairs.tolist():
+        others = np.concatenate([np.delete(gains[i], j), np.delete(gains[:, j], i)])
+        clear = gains[i, j] - 0.9 * others.max(initial=0.0)
+        if clear > best:
+            best, chosen = clear, (i, j)
+    return chosen
 
 
 def pair_costs(one: Landmarks, other: Landmarks) -> FloatArray:
@@ -146,74 +124,83 @@ def _starts(allowed: FloatArray, bars: FloatArray) -> IntArray:
     return np.array(starts, dtype=np.int64).reshape(-1, 2)
 
 
-class _Course:
-    """An arc of a contour by a parameter from 0 to 1 that mixes length and turn.
+class _Arc:
+    """An arc of a contour, with nodes at its ends, its joints, and evenly between them.
 
-    The turn is the mean of a stretch around, so that a corner which the other contour rounds has a stretch for it.
+    Attributes:
+        joints: places of those inside. length: of the arc. nodes: (n + 1,) from 0 to 1, as shares of the length.
+        ways: (n,) directions of the chords between nodes.
     """
 
     def __init__(self, of: Landmarks, start: float, end: float) -> None:
-        self.at, rows = of.between(start, end)
+        self.joints: FloatArray = np.arange(np.floor(start) + 1.0, np.ceil(end))
+        self._at, rows = of.between(start, end)
         along = rows[:, 0] - rows[0, 0]
         self.length: float = along[-1]
-        turned = rows[:, 2] - rows[0, 2]
-        reach = np.minimum(ROUND * of.em, np.minimum(along, self.length - along))
-        sums = np.append(0.0, np.cumsum(np.diff(along) * (turned[1:] + turned[:-1]) / 2))
-        ahead, behind = np.interp(along + reach, along, sums), np.interp(along - reach, along, sums)
-        turned = np.where(reach > 0, (ahead - behind) / np.where(reach > 0, 2 * reach, 1.0), turned)
-        self.turned: FloatArray = turned
-        self.along = along / self.length
-        self.mixed = self.along
+        self._along = along / self.length
+        within = of.places + np.ceil((start - of.places) / len(of.cubics)) * len(of.cubics)
+        which = np.flatnonzero((within > start) & (within < end))
+        which = which[np.argsort(within[which])]
+        inner = self.shares(within[which])
+        self.which = which
+        even = np.arange(1, NODES) / NODES
+        apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf)
+        self.nodes: FloatArray = np.concatenate([[0.0], np.sort([*inner, *even[apart > 0.3 / NODES]]), [1.0]])
+        self.marks: IntArray = np.searchsorted(self.nodes, inner)
+        steps = np.diff(of.at(self.places(self.nodes)), axis=0)
+        self.ways: FloatArray = np.arctan2(steps[:, 1], steps[:, 0])
 
-    def mix(self, turn: float) -> None:
-        """Have the turn count for as much as ``turn``, in radians, though the arc may turn more."""
-        weight = BEND * turn / (np.pi / 2)
-        share = self.turned / self.turned[-1] if self.turned[-1] > 0 else self.along
-        self.mixed = (self.along + weight * share) / (1 + weight)
+    def shares(self, places: FloatArray) -> FloatArray:
+        """The shares of the length up to places inside."""
+        return np.interp(places, self._at, self._along)
 
-    def parameters(self, places: FloatArray) -> FloatArray:
-        """The parameters of places inside the arc."""
-        return np.interp(places, self.at, self.mixed)
-
-    def places(self, parameters: FloatArray) -> FloatArray:
-        """The places at parameters."""
-        return np.interp(parameters, self.mixed, self.at)
+    def places(self, shares: FloatArray) -> FloatArray:
+        """The places at shares of the length."""
+        return np.interp(shares, self._along, self._at)
 
 
 def _arc(one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: float) -> list[tuple[float, float]]:
     """The common places inside two arcs that correspond."""
-    mine, its = _joints_inside(a, b), _joints_inside(c, d)
-    if not len(mine) and not len(its):
+    first, second = _Arc(one, a, b), _Arc(other, c, d)
+    if not len(first.joints) and not len(second.joints):
         return []
-    first, second = _Course(one, a, b), _Course(other, c, d)
-    turn = min(float(first.turned[-1]), float(second.turned[-1]))
-    first.mix(turn)
-    second.mix(turn)
-    x, y = first.parameters(mine), second.parameters(its)
-    pair = _nearest(one, mine, x, other, its, y, (first.length + second.length) / 2)
-    if pair is not None:
-        u, v = float(mine[pair[0]]), float(its[pair[1]])
-        return [*_arc(one, a, u, other, c, v), (u, v), *_arc(one, u, b, other, v, d)]
-    cuts = [*zip(mine, second.places(x), strict=True), *zip(first.places(y), its, strict=True)]
-    return sorted(cuts)
+    alike = np.cos(np.minimum(BEND * np.abs(wrapped(first.ways[:, None] - second.ways)), np.pi / 2))
+    steps = [np.maximum(np.diff(arc.nodes), 1e-9) for arc in (first, second)]
+    gains = np.zeros((len(first.nodes), len(second.nodes)))
+    bars = one.weights[:, None] + other.weights
+    saved = GAIN * np.maximum(bars - pair_costs(one, other), 0.0)
+    gains[np.ix_(first.marks, second.marks)] = saved[np.ix_(first.which, second.which)]
+    pairs = elastic_nodes(*steps, alike, gains)
+    s, t = first.nodes[pairs[:, 0]], second.nodes[pairs[:, 1]]
+    common = (s + t) / 2
+    x = np.interp(first.shares(first.joints), s, common)
+    y = np.interp(second.shares(second.joints), t, common)
+    same = _same(one, first.joints, x, other, second.joints, y, (first.length + second.length) / 2)
+    i, j = same[:, 0], same[:, 1]
+    mine = second.places(np.interp(np.interp(x, [0, *x[i], 1], [0, *y[j], 1]), common, t))
+    its = first.places(np.interp(np.interp(y, [0, *y[j], 1], [0, *x[i], 1]), common, s))
+    mine[i] = second.joints[j]
+    left = np.delete(np.arange(len(y)), j)
+    return sorted([*zip(first.joints, mine, strict=True), *zip(its[left], second.joints[left], strict=True)])
 
 
-def _nearest(
+def _same(
     one: Landmarks, mine: FloatArray, x: FloatArray, other: Landmarks, its: FloatArray, y: FloatArray, length: float
-) -> tuple[int, int] | None:
-    """Which joints of both arcs are nearest, if they are near enough to be one."""
-    if not len(x) or not len(y):
-        return None
-    gap = np.abs(x[:, None] - y) * length
+) -> IntArray:
+    """(p, 2) which joints of both arcs are one, as they are near enough: the nearest first, and in order."""
+    apart = np.abs(x[:, None] - y) * length / one.em
+    gap = apart
     for before in (True, False):
         turned = one.rows(mine, before=before)[:, None, 1] - other.rows(its, before=before)[:, 1]
-        gap = np.where(np.abs(wrapped(turned)) < PARALLEL, gap, np.inf)
-    i, j = np.unravel_index(int(gap.argmin()), gap.shape)
-    return (int(i), int(j)) if gap[i, j] < SNAP * one.em else None
-
-
-def _joints_inside(start: float, end: float) -> FloatArray:
-    return np.arange(np.floor(start) + 1.0, np.ceil(end))
+        gap = np.where((np.abs(wrapped(turned)) < PARALLEL) | (apart < SLIVER), gap, np.inf)
+    found: list[tuple[int, int]] = []
+    for k in np.argsort(gap, axis=None, kind="stable").tolist():
+        i, j = divmod(k, len(y))
+        if not gap[i, j] < SNAP:
+            break
+        if all((p - i) * (q - j) > 0 for p, q in found):
+            found.append((i, j))
+    return np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
 
 
 def cut(contour: Contour, places: FloatArray) -> Contour:
