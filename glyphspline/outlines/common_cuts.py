@@ -30,7 +30,9 @@ STRETCH = (1.0, 0.1)
 STARTS = (4, 5)
 """Landmarks from which alignments are tried, the most distinct ones, and partners tried for each."""
 
-GAIN = 0.3
+PLACE = 1.0
+
+GAIN = 0.03
 
 NODES = 128
 """Nodes of an arc, besides its joints."""
@@ -148,6 +150,9 @@ class _Arc:
         self.nodes: FloatArray = np.concatenate([[0.0], np.sort([*inner, *even[apart > 0.3 / NODES]]), [1.0]])
         self.marks: IntArray = np.searchsorted(self.nodes, inner)
         steps = np.diff(of.at(self.places(self.nodes)), axis=0)
+        low, high = of.points.min(axis=0), of.points.max(axis=0)
+        points = (of.at(self.places(self.nodes)) - low) / np.where(high > low, high - low, 1.0)
+        self.middles: FloatArray = (points[1:] + points[:-1]) / 2
         self.ways: FloatArray = np.arctan2(steps[:, 1], steps[:, 0])
 
     def shares(self, places: FloatArray) -> FloatArray:
@@ -165,6 +170,8 @@ def _arc(one: Landmarks, a: float, b: float, other: Landmarks, c: float, d: floa
     if not len(first.joints) and not len(second.joints):
         return []
     alike = np.cos(np.minimum(BEND * np.abs(wrapped(first.ways[:, None] - second.ways)), np.pi / 2))
+    apart = first.middles[:, None] - second.middles
+    alike -= PLACE * (apart * apart).sum(axis=2)
     steps = [np.maximum(np.diff(arc.nodes), 1e-9) for arc in (first, second)]
     gains = np.zeros((len(first.nodes), len(second.nodes)))
     bars = one.weights[:, None] + other.weights

@@ -54,6 +54,9 @@ HEIGHT = 2e-3
 CHORD = 5e-3
 """Of the em: length of the chords whose directions are those on both sides of a landmark; less where a segment ends."""
 
+ROUNDING = 0.7
+"""Units by which the direction of a handle may be off at its end: coordinates are often rounded to units."""
+
 NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
 tangent is within so many degrees of that at the extremum."""
@@ -102,7 +105,7 @@ class Landmarks:
     def _find(self) -> None:
         m = len(self.cubics)
         joints = np.arange(float(m))
-        degrees = np.degrees(np.abs(self.turns))
+        degrees = np.degrees(np.maximum(np.abs(self.turns) - self._doubts(), 0.0))
         share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
         corner: BoolArray = degrees >= CORNER_ANGLE
         straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
@@ -147,6 +150,12 @@ class Landmarks:
             turned = wrapped(np.arctan2(step[:, 1], step[:, 0]) - direction)
             found.append(direction + np.where(step.any(axis=1), turned, 0.0))
         return found[0], found[1]
+
+    def _doubts(self) -> FloatArray:
+        """(m,) radians of the turn at each joint that rounded coordinates may have made."""
+        arms = [np.hypot(*first_direction(cubics).T) for cubics in (self.cubics, self.cubics[:, ::-1])]
+        one, other = (np.arctan2(ROUNDING, arm) for arm in arms)
+        return one + np.roll(other, 1)
 
     def _ends(self) -> FloatArray:
         """(m,) how much one of the segments at each joint bends more, in the mean, than the other: 0 to 1."""
