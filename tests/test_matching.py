@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.bezier import split
-from glyphspline.outlines.common_cuts import common_cuts, cut
+from glyphspline.outlines.common_cuts import NODES, common_cuts, cut
 from glyphspline.outlines.landmarks import NEAR, Landmarks
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.matching import match_masters
@@ -114,7 +114,7 @@ def test_a_rounded_corner_takes_the_sharp_one_to_its_middle() -> None:
     ])  # fmt: skip
     masters = matched(outline(polygon_contour(5 * SQUARE)), outline(round_end))
     found = partner(masters, (500, 0))
-    np.testing.assert_allclose(found, (500 - 100 * (1 - 0.5**0.5), 100 * (1 - 0.5**0.5)), atol=2.0)
+    np.testing.assert_allclose(found, (500 - 100 * (1 - 0.5**0.5), 100 * (1 - 0.5**0.5)), atol=0.5 * 2000 / NODES)
 
 
 def test_an_o_without_corners_is_matched_by_its_tangents() -> None:

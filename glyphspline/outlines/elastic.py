@@ -60,7 +60,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
 
 @compiled(internal=True)
 def _mean(one: FloatArray, other: FloatArray, alike: FloatArray, p: int, q: int, a: float, b: float) -> float:
-    """The mean of ``alike`` along pieces of the lengths a and b, from p and from q on, each at its own constant speed."""
+    """The mean of ``alike`` along pieces of the lengths a and b, from p and from q on, each at constant speed."""
     x, y, total, done = one[p] / a, other[q] / b, 0.0, 0.0
     while done < 1.0 - 1e-9:
         step = min(x, y)
