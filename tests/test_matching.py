@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import glyphspline as gs
 from glyphspline.curves.bezier import split
 from glyphspline.outlines.common_cuts import NODES, common_cuts, cut
+from glyphspline.outlines.elastic import elastic_nodes
 from glyphspline.outlines.landmarks import NEAR, Landmarks
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.matching import match_masters
@@ -136,6 +137,35 @@ def test_inserted_joints_stay_where_they_are() -> None:
     assert marks.shape[1] == 8
     np.testing.assert_allclose(partner(masters, L_SHAPE[4]), BOLD_L[4], atol=1e-12)
     assert masters.contours[0].degrees.tolist() == [1] * 8
+
+
+def test_a_corner_takes_the_joint_that_the_other_master_hardly_shows() -> None:
+    """Where two strokes meet, the light master's two joints are all but straight; in the bold one they are a step."""
+    light = np.array([[273, 536], [533, 817], [545, 828], [1158, 1490], [1097, 1490], [258, 584]], dtype=float)
+    bold = np.array([[403, 261], [820, 739], [858, 723], [1481, 1490], [1002, 1490], [403, 603]], dtype=float)
+    masters = matched(outline(polygon_contour(light)), outline(polygon_contour(bold)))
+    for mark, true in zip(light, bold, strict=True):
+        np.testing.assert_allclose(partner(masters, mark), true, atol=1e-12)
+
+
+def test_rounded_coordinates_make_no_corners() -> None:
+    """Two units long, and rounded: such a piece of a circle turns by 27° at both ends."""
+    points = np.array([[0, 0], [200, 0], [202, 1], [400, 1], [400, 300], [0, 300]], dtype=float)
+    found = Landmarks(polygon_contour(points), 1000.0)
+    np.testing.assert_array_equal(found.points[found.corners], points[[0, 3, 4, 5]])
+
+
+@pytest.mark.parametrize(("one", "other"), [((0.5, 0.5), (0.2, 0.8)), ((0.8, 0.2), (0.3, 0.7))])
+def test_elastic_alignment_pairs_equal_directions(one: tuple[float, float], other: tuple[float, float]) -> None:
+    """An arc goes right and then up, so does another one, in other shares: they turn at the same nodes."""
+    mine, its = (np.concatenate([np.full(20, share / 20) for share in shares]) for shares in (one, other))
+    right = np.repeat([True, False], 20)
+    alike = np.where(right[:, None] == right, 1.0, 0.0)
+    pairs = elastic_nodes(mine, its, alike, np.zeros((41, 41)))
+    assert pairs[0].tolist() == [0, 0]
+    assert pairs[-1].tolist() == [40, 40]
+    assert [20, 20] in pairs.tolist()
+    assert (np.diff(pairs, axis=0) > 0).all()
 
 
 def test_near_joints_become_one() -> None:

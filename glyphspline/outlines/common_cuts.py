@@ -179,8 +179,8 @@ def _aligned(one: _Lap, other: _Lap) -> FloatArray:
     alike -= PLACE * (apart * apart).sum(axis=2)
     gains = np.zeros((len(one.nodes), len(other.nodes)))
     gains[np.ix_(one.marks, other.marks)] = GAIN * pair_gains(one.of, other.of)[np.ix_(one.inner, other.inner)]
-    lengths = [np.maximum(np.diff(lap.nodes), 1e-9) for lap in (one, other)]
-    pairs = elastic_nodes(*lengths, alike, gains)
+    mine, its = (np.maximum(np.diff(lap.nodes), 1e-9) for lap in (one, other))
+    pairs = elastic_nodes(mine, its, alike, gains)
     s, t = one.nodes[pairs[:, 0]], other.nodes[pairs[:, 1]]
     common = (s + t) / 2
     x = np.interp(one.shares(one.joints), s, common)
