@@ -155,6 +155,13 @@ def test_rounded_coordinates_make_no_corners() -> None:
     np.testing.assert_array_equal(found.points[found.corners], points[[0, 3, 4, 5]])
 
 
+@pytest.mark.parametrize(("small", "large"), [(0.01, 2.0), (2.0, 0.01)])
+def test_a_dot_too_small_for_corners(small: float, large: float) -> None:
+    """A unit wide, its corners may be made by rounding: that is no landmark in it, but its place is its partner's."""
+    masters = matched(outline(polygon_contour(small * SQUARE)), outline(polygon_contour(large * SQUARE)))
+    np.testing.assert_allclose(area(masters.master(1).contours[0]), (100 * large) ** 2)
+
+
 @pytest.mark.parametrize(("one", "other"), [((0.5, 0.5), (0.2, 0.8)), ((0.8, 0.2), (0.3, 0.7))])
 def test_elastic_alignment_pairs_equal_directions(one: tuple[float, float], other: tuple[float, float]) -> None:
     """An arc goes right and then up, so does another one, in other shares: they turn at the same nodes."""

@@ -125,6 +125,8 @@ def in_box(landmarks: Landmarks, points: FloatArray) -> FloatArray:
 
 def _starts(allowed: FloatArray, bars: FloatArray) -> IntArray:
     """(k, 2) pairs of which one is surely right: of landmarks whose best partner is far better than the next."""
+    if not allowed.size:
+        return np.empty((0, 2), dtype=np.int64)
     gains = np.sort(np.where(allowed < np.inf, bars - allowed, 0.0), axis=1)[:, ::-1]
     distinct = gains[:, 0] - (0.9 * gains[:, 1] if gains.shape[1] > 1 else 0.0)
     starts = []
