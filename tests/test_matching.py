@@ -175,6 +175,14 @@ def test_elastic_alignment_pairs_equal_directions(one: tuple[float, float], othe
     assert (np.diff(pairs, axis=0) > 0).all()
 
 
+def test_elastic_alignment_of_few_pieces_with_many() -> None:
+    for n, m in ((1, 40), (3, 200), (200, 3), (1, 1)):
+        pairs = elastic_nodes(np.full(n, 1 / n), np.full(m, 1 / m), np.ones((n, m)), np.zeros((n + 1, m + 1)))
+        assert pairs[0].tolist() == [0, 0]
+        assert pairs[-1].tolist() == [n, m]
+        assert len(pairs) <= min(n, m) + 1
+
+
 def test_near_joints_become_one() -> None:
     """The same inserted joint, but for two units, leaves no sliver."""
     light, bold = (np.insert(L_SHAPE, 5, [x, 700], axis=0) for x in (90, 92))

@@ -8,7 +8,7 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 
 STEP = 8
-"""Pieces of one arc, at most, that are one step of the alignment."""
+"""Pieces of one arc, at most, that are one step of the alignment; more if one arc has many more than the other."""
 
 
 @compiled
@@ -28,6 +28,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
         (p, 2) indices of nodes, both columns ascending.
     """
     n, m = alike.shape
+    reach = max(STEP, 2 * (max(n, m) // min(n, m) + 1))  # so that there is an alignment, whatever their numbers
     best, came = np.full((n + 1, m + 1), -np.inf), np.zeros((n + 1, m + 1), dtype=np.int64)
     best[0, 0] = 0.0
     for i in range(1, n + 1):
@@ -35,10 +36,10 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
             if (i == n) != (j == m):
                 continue
             a = 0.0
-            for di in range(1, min(STEP, i) + 1):
+            for di in range(1, min(reach, i) + 1):
                 a += one[i - di]
                 b = 0.0
-                for dj in range(1, min(STEP, j) + 1):
+                for dj in range(1, min(reach, j) + 1):
                     b += other[j - dj]
                     before = best[i - di, j - dj] + gains[i, j]
                     bound = np.sqrt(a * b)
@@ -46,7 +47,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
                         continue
                     total = before + bound * _mean(one, other, alike, i - di, j - dj, a, b)
                     if total > best[i, j]:
-                        best[i, j], came[i, j] = total, di * (STEP + 1) + dj
+                        best[i, j], came[i, j] = total, di * (reach + 1) + dj
     pairs, count = np.empty((n + m + 2, 2), dtype=np.int64), 0
     i, j = n, m
     while True:
@@ -55,7 +56,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
         if i == 0 or j == 0:
             return pairs[:count][::-1].copy()
         step = came[i, j]
-        i, j = i - step // (STEP + 1), j - step % (STEP + 1)
+        i, j = i - step // (reach + 1), j - step % (reach + 1)
 
 
 @compiled(internal=True)
