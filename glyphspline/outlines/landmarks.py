@@ -33,13 +33,10 @@ and a cubic or quadratic, though it may be straight; where the curvature jumps. 
 inserted, have none."""
 
 STRONG = 0.3
-"""Weight from which landmarks are paired around the whole contour; the others are between two such pairs."""
+"""Weight from which landmarks take part in the search for the surest pair."""
 
 STRAIGHT = 2.0
 """Degrees of turn up to which a segment is straight."""
-
-WEAK = 0.02
-"""Weight up to which a landmark is nothing but a joint: only a corner takes it for a partner."""
 
 SHOWS, REACH = 12.0, 0.06
 """Degrees of turn from which the end of a line or a jump of curvature has its full weight; of a jump those within so
@@ -54,6 +51,9 @@ HEIGHT = 2e-3
 CHORD = 5e-3
 """Of the em: length of the chords whose directions are those on both sides of a landmark; less where a segment ends."""
 
+ROUNDING = 0.7
+"""Units by which the direction of a handle may be off at its end: coordinates are often rounded to units."""
+
 NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
 tangent is within so many degrees of that at the extremum."""
@@ -66,7 +66,6 @@ class Landmarks:
         contour: without segments of no length. cubics: (m, 4, 2) its segments.
         places: (n,) of the landmarks, ascending; all joints are among them, and the extrema between joints.
         weights: (n,) what it costs to leave a landmark without a partner; 0 for joints that nothing distinguishes.
-        kinds: (n, 2) of the segments before and after: 0 for a line, 0.5 for a straight curve, 1 for another curve.
         points: (n, 2). before, after: (n,) direction on both sides, in radians, unwrapped: it tells how far the contour
             turned from its start. lengths: (n,) along the contour, as parts of its whole length.
     """
@@ -102,14 +101,13 @@ class Landmarks:
     def _find(self) -> None:
         m = len(self.cubics)
         joints = np.arange(float(m))
-        degrees = np.degrees(np.abs(self.turns))
+        degrees = np.degrees(np.maximum(np.abs(self.turns) - self._doubts(), 0.0))
         share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
         corner: BoolArray = degrees >= CORNER_ANGLE
         straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
         line = self.contour.degrees == 1
         smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * self._ends(), BREAK * self._jumps())
         smooth = np.maximum(smooth, np.where(line != np.roll(line, 1), DRAWN_END, 0.0))
-        kinds = np.where(line, 0.0, np.where(straight, 0.5, 1.0))
         weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
         table = self.rows(joints)[:, 0]
         places = []
@@ -130,8 +128,6 @@ class Landmarks:
         order = np.argsort(every, kind="stable")
         self.places: FloatArray = every[order]
         self.weights: FloatArray = np.concatenate([weights, np.full(len(places), EXTREMUM)])[order]
-        sides = np.stack([np.roll(kinds, 1), kinds], axis=1)
-        self.kinds: FloatArray = np.concatenate([sides, np.ones((len(places), 2))])[order]
         self.points: FloatArray = self.at(self.places)
         self.before, self.after = self._directions()
         self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
@@ -147,6 +143,12 @@ class Landmarks:
             turned = wrapped(np.arctan2(step[:, 1], step[:, 0]) - direction)
             found.append(direction + np.where(step.any(axis=1), turned, 0.0))
         return found[0], found[1]
+
+    def _doubts(self) -> FloatArray:
+        """(m,) radians of the turn at each joint that rounded coordinates may have made."""
+        arms = [np.hypot(*first_direction(cubics).T) for cubics in (self.cubics, self.cubics[:, ::-1])]
+        one, other = (np.arctan2(ROUNDING, arm) for arm in arms)
+        return one + np.roll(other, 1)
 
     def _ends(self) -> FloatArray:
         """(m,) how much one of the segments at each joint bends more, in the mean, than the other: 0 to 1."""
@@ -190,12 +192,6 @@ class Landmarks:
     def table(self, which: IntArray) -> FloatArray:
         """(k, 4) weight, length and directions of landmarks, as :func:`.pairing.cheapest_pairs` takes them."""
         return np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
-
-    def inside(self, start: float, end: float) -> IntArray:
-        """Indices of the landmarks between two places; they count on past the number of landmarks."""
-        every = np.arange(3 * len(self))
-        places = self.lap_places(every)
-        return every[(places > start) & (places < end)]
 
     def lap_places(self, which: IntArray) -> FloatArray:
         """The places of landmarks whose indices count on past their number."""

@@ -1,8 +1,8 @@
 """Masters of a glyph out of outlines whose points do not correspond: single fonts of a family, say.
 
-Contours are paired first (:mod:`.contour_pairs`), then their corners and other landmarks (:mod:`.pairing`); the arcs
-between these are put on common places, and all masters are cut there (:mod:`.common_cuts`). Every master keeps exactly
-the outline it had.
+Contours are paired first (:mod:`.contour_pairs`), then one of their landmarks each (:mod:`.pairing`); from there the
+whole contours are aligned (:mod:`.elastic`), and all masters are cut where any has a joint (:mod:`.common_cuts`). Every
+master keeps exactly the outline it had.
 """
 
 from __future__ import annotations
