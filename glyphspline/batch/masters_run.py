@@ -69,7 +69,8 @@ class MastersSummary:
         outside, stopping: glyphs outside the tolerance; and not proven free of cusps.
         crossing, collapsed: glyphs that cross, or have a contour that lost its area, at a corner of the design space
             where the source does not.
-        segments, source_segments: of all glyphs. bound: largest certified distance; None if there is no contour.
+        segments, source_segments: of all glyphs. kept: of the segments those that stay as the source has them.
+        bound: largest certified distance; None if there is no contour.
     """
 
     glyphs: int = 0
@@ -81,6 +82,7 @@ class MastersSummary:
     remarks: list[str] = field(default_factory=list)
     segments: int = 0
     source_segments: int = 0
+    kept: int = 0
     bound: float | None = None
     seconds: float = 0.0
 
@@ -93,6 +95,7 @@ class MastersSummary:
         for contour in entry["contours"]:
             self.segments += contour["segments"]
             self.source_segments += contour["source_segments"]
+            self.kept += contour["source_segments_kept"]
             self.bound = max(self.bound or 0.0, contour["deviation_bound"])
         if not all(contour["within_tolerance"] for contour in entry["contours"]):
             self.outside.append(entry["glyph"])
@@ -112,6 +115,8 @@ class MastersSummary:
         said = f"{counted(self.glyphs, 'glyph')} in all masters at once, {counted(self.segments, 'segment')}"
         said += f" for {self.source_segments} of the source"
         yield said if self.bound is None else f"{said}, certified within {rounded_up(self.bound, 3):g} units"
+        if self.kept:
+            yield f"{counted(self.kept, 'segment')} of them stay as the source has them: no curve for all masters there"
         if self.outside:
             yield f"{counted(len(self.outside), 'glyph')} outside the tolerance: {_few(self.outside)}"
         if self.stopping:
