@@ -445,7 +445,7 @@ def test_contours_that_still_cross_are_named_with_the_place() -> None:
     assert result.notes[0].endswith(("as at wght=100,wdth=50", "as at wght=900,wdth=50"))
     summary = MastersSummary()
     good = {"segments": 4, "source_segments": 4, "deviation_bound": 1.0, "within_tolerance": True, "regular": True}
-    measures = [{**good, "new_crossings": 8, "collapsed": False}] * 2
+    measures = [{**good, "source_segments_kept": 0, "new_crossings": 8, "collapsed": False}] * 2
     summary.add({"glyph": "o", "status": "ok", "contours": measures, "error": None})
     assert "cross where the source does not: o" in list(summary.lines())
 
