@@ -30,6 +30,10 @@ MOST_PASSES = 200
 """Passes of variant 2 before a curve counts as lost."""
 
 
+HELD, FREE, TIED = 0, 1, 2
+"""What the tangent at an end may do: see :class:`.stretches.Stretches`."""
+
+
 class Curve(NamedTuple):
     """A cubic spline of k spans and its vertices in K masters, in arrays that have room for more.
 
@@ -128,7 +132,7 @@ def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
     """Make the handles of tied ends the directions (K, 2, 2) times one number."""
     k, X = curve.size[0], curve.X
     for end in range(2):
-        if curve.size[1] or free[end] < 2:
+        if curve.size[1] or free[end] != TIED:
             continue
         at, tip = (0, 1) if end == 0 else (k + 2, k + 1)
         along = whole = 0.0

@@ -20,7 +20,7 @@ from ...compiled import compiled
 from ...curves.cubics import jet, length
 from ...types import FloatArray, IntArray
 from .feet import EXTRA, Rows, Samples, empty_rows, rows_of
-from .spline_curve import Curve, empty_curve, inner_vertices, span_weights
+from .spline_curve import FREE, TIED, Curve, empty_curve, inner_vertices, span_weights
 
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
@@ -287,7 +287,7 @@ def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, wi
     for i in (0, k):
         if not closed and start <= i < start + width:
             r = 2 * (i - start)
-            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] == 1 else 1e9 * max(mean, 1.0))
+            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] == FREE else 1e9 * max(mean, 1.0))
             longer = fit.longer[v, min(i, 1)]
             if not np.isnan(longer):
                 A[r + 1, r + 1] += 1e6 * max(mean, 1.0)
@@ -299,7 +299,7 @@ def agree_on_handles(fit: Fit, samples: Samples, start: int, width: int) -> bool
     """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
     k, closed, tied = fit.curve.size[0], fit.curve.size[1], False
     for end, i in ((0, 0), (1, k)):
-        if closed or samples.free[end] != 2 or not start <= i < start + width:
+        if closed or samples.free[end] != TIED or not start <= i < start + width:
             continue
         tied, along, whole = True, 0.0, 0.0
         for v in range(len(fit.step)):

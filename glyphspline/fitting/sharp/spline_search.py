@@ -16,6 +16,8 @@ from .feet import Rows, Samples, find_places, measure, measure_afresh, span_erro
 from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
 from .search_settings import Search
 from .spline_curve import (
+    FREE,
+    TIED,
     Curve,
     chord,
     copy_curve,
@@ -28,7 +30,7 @@ from .spline_curve import (
 from .spline_equations import Fit, empty_fit, third_along
 from .spline_fit import SHORTEST_HANDLE as SHORTEST
 from .spline_fit import improve
-from .stretches import FREE, TIED, Stretches, integrate_density, samples_of
+from .stretches import Stretches, integrate_density, samples_of
 
 SOME_MORE = 30.0
 """A cubic that misses the tolerance by less than this factor is followed by a try with two spans."""

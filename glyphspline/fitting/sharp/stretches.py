@@ -10,10 +10,7 @@ from ...compiled import compiled
 from ...types import FloatArray, IntArray
 from .corners import Joints
 from .feet import Samples
-from .spline_curve import chord
-
-HELD, FREE, TIED = 0, 1, 2
-"""What the tangents at an end may do."""
+from .spline_curve import FREE, HELD, TIED, chord
 
 GROWTH = 1.35
 """How fast the wanted distance of vertices grows along the outline: by exp(1.35) < 4 from one to the next."""
