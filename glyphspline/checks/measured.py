@@ -12,8 +12,12 @@ from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
 from .joints import joint_findings
-from .kinds import Limits
+from .kinds import KINDS, Thresholds
 from .table import CONTOUR, OTHER, PLACE, VALUE, WHAT
+
+
+PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
+"""Kinds whose values compiled code has in 1/unit."""
 
 
 class Measured(NamedTuple):
@@ -34,12 +38,14 @@ class Measured(NamedTuple):
     points: FloatArray
 
 
-def measured(outlines: Sequence[ContourArrays], limits: Limits) -> Measured:
-    """Measure the contours of glyphs, all passes over all glyphs."""
+def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float) -> Measured:
+    """Measure the contours of glyphs of one em, all passes over all glyphs."""
+    limits = thresholds.limits(units_per_em)
     contours = joined(outlines)
     glyphs = offsets_of([outline.num_contours for outline in outlines])
     cubics = all_cubics(contours)
     table = np.concatenate([joint_findings(cubics, contours, limits)])
+    table[np.isin(table[:, WHAT], PER_EM), VALUE] *= units_per_em
     table = table[np.lexsort((-table[:, VALUE], table[:, WHAT]))]
     numbers = table[:, PLACE:].copy()
     contour = table[:, CONTOUR].astype(np.int64)
