@@ -52,7 +52,9 @@ def findings(glyphs: Sequence[tuple[str, int]], rows: Measured) -> list[list[Fin
         second, another = None if np.isnan(detail) else detail, None if other < 0 else int(other)
         sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=another)
         place = contour, segment, parameter, (x, y)
-        found[g].append(Finding(kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence))
+        found[g].append(
+            Finding(kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence)
+        )
     return found
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import typer
 
 from ..checks.baseline import Baseline
+from ..checks.finding import Finding, severity
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import GlyphsplineError, OptionError, OutputError
 from ..writers.figures.images import FigureKind
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from ..checks.axis_kinks import AxisKinks, KinkReport
-    from ..checks.finding import Finding
     from ..readers import Source
 
 STDOUT = Path("-")
@@ -76,7 +76,7 @@ class Asked:
 
     Attributes:
         kinds: names. kept: findings of this level or above are kept, others only counted.
-        axis, steps: as :func:`glyphspline.batch.check_run.check_font` has them; of one axis, its tag; None for all, and for the default.
+        axis: tag of the only one, or None. steps: of :func:`glyphspline.batch.check_run.check_font`; None: its own.
         baseline: known findings, or None. written: where all findings are added, or None.
         numbers: whether kinks along axes are wanted in numbers. plot: file of the diagram. drawn: keep sources.
     """
@@ -175,9 +175,10 @@ def run(given: Mapping[str, Any]) -> list[Face]:
     if given["ghmarkdown"] is not None:
         put(given["ghmarkdown"], findings.as_markdown(faces, shown, level))
     if given["html"] is not None:
-        from ..report.findings_page import findings_page
+        from ..report.findings_page import CheckedFont, findings_page
 
-        put(given["html"], findings_page([(face.source, face.font, face.findings) for face in faces if face.source]))
+        fonts_drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
+        put(given["html"], findings_page(fonts_drawn))
     if given["as_json"]:
         put(STDOUT, findings.as_json(faces, asked.thresholds))
     elif shown and not files and not given["quiet"]:
@@ -243,13 +244,13 @@ def check_face(
 ) -> Face:
     """Check one face of the font called ``name``."""
     from ..batch.check_run import STEPS, check_font
+    from ..report.findings_page import home_of
 
     names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
     if alone and not names:
         stop("none of the glyphs asked for is in the font")
     tags = tags_of(source, asked, alone)
-    home = {axis.tag: axis.default for axis in source.axes} | dict(source.location)
-    face = Face(name, source.family, source.style, source if asked.drawn else None, home)
+    face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
     with progress(given["quiet"]) as observer:
         steps = STEPS if asked.steps is None else asked.steps
         rows = check_font(source, names, asked.thresholds, axes=tags, steps=steps, executor=pool, observer=observer)
@@ -298,14 +299,6 @@ def keep(face: Face, findings: list[Finding], asked: Asked) -> None:
     face.levels.update([item.level for item in findings])
     least = level_number(asked.kept)
     face.findings += [item for item in findings if level_number(item.level) >= least]
-
-
-def severity(finding: Finding) -> tuple[Any, ...]:
-    """By which findings are sorted, the worst first: level, kind, value, and then their place."""
-    return (
-        -level_number(finding.level), ORDER[finding.kind], -finding.value, finding.gid, finding.contour,
-        finding.segment, finding.parameter,
-    )  # fmt: skip
 
 
 def measure_axes(face: Face, source: Source, names: Sequence[str], asked: Asked) -> None:

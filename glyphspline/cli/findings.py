@@ -11,6 +11,7 @@ from dataclasses import asdict
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from ..checks.finding import place_on_axes, severity
 from ..checks.kinds import KINDS, Level
 from ..types import counted
 from .closing import WIDE
@@ -38,20 +39,8 @@ LEVEL_OF: Mapping[str, Level] = {kind.name: kind.level for kind in KINDS}
 
 def worst_first(faces: Sequence[Face]) -> list[tuple[Face, Finding]]:
     """The findings of all faces in one list."""
-    from .checking import severity
-
     every = [(face, finding) for face in faces for finding in face.findings]
     return sorted(every, key=lambda pair: severity(pair[1])) if len(faces) > 1 else every
-
-
-def place(finding: Finding, home: Mapping[str, float]) -> str:
-    """Where a finding is on the axes, those left out that are at home: "wght 632 (400 to 900)"."""
-    moved = [f"{tag} {value:.4g}" for tag, value in finding.location.items() if value != home.get(tag)]
-    if finding.between is None:
-        return ", ".join(moved)
-    low, high = finding.between
-    between = "in a master" if low == high else f"{low:.4g} to {high:.4g}"
-    return f"{', '.join(moved) or 'default'} ({between})"
 
 
 def table(found: Sequence[tuple[Face, Finding]], shown: int, several: bool) -> str:
@@ -70,7 +59,7 @@ def table(found: Sequence[tuple[Face, Finding]], shown: int, several: bool) -> s
     for face, finding in found[:shown]:
         cells = [face.font] * several + [finding.glyph, finding.level, str(finding.contour), str(finding.segment)]
         cells += ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
-        cells += [place(finding, face.home)] * located
+        cells += [place_on_axes(finding, face.home)] * located
         lines.add_row(*[Text(printable(cell)) for cell in cells])
     text = StringIO()
     Console(file=text, width=WIDE, color_system=None).print(lines)
@@ -168,7 +157,7 @@ def as_markdown(faces: Sequence[Face], found: Sequence[tuple[Face, Finding]], le
     for face, item in found[:MARKDOWN_ROWS]:
         cells = [_code(face.font)] * (len(faces) > 1) + [_code(item.glyph), item.level, str(item.contour)]
         cells += [str(item.segment), "{:.0f}, {:.0f}".format(*item.point), _plain(f"{item.kind}: {item.sentence}")]
-        cells += [_plain(place(item, face.home))] * located
+        cells += [_plain(place_on_axes(item, face.home))] * located
         lines.append(f"| {' | '.join(cells)} |")
     if len(found) > MARKDOWN_ROWS:
         lines += ["", f"And {len(found) - MARKDOWN_ROWS} more."]
