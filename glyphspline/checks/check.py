@@ -50,11 +50,10 @@ def findings(glyphs: Sequence[tuple[str, int]], rows: Measured) -> list[list[Fin
     ):
         kind, (name, gid) = KINDS[what], glyphs[g]
         second, another = None if np.isnan(detail) else detail, None if other < 0 else int(other)
-        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=another)
+        whom = "itself" if another is None else f"contour {another}"
+        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom)
         place = contour, segment, parameter, (x, y)
-        found[g].append(
-            Finding(kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence)
-        )
+        found[g].append(Finding(kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence))
     return found
 
 
