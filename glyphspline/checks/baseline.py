@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from ..errors import GlyphsplineError, OutputError
-from .finding import Finding
+from .finding import SMALLER_IS_WORSE, Finding, badness
 
 FORMAT = "glyphspline baseline 1"
 
 DIGITS = 3
-"""Significant digits of a value: a finding is worse if it is larger in these."""
+"""Significant digits of a value: a finding is worse only if these say so."""
 
 Key: TypeAlias = tuple[str, str, int, int]
 """Glyph, kind, contour, segment."""
@@ -24,30 +25,28 @@ class Baseline:
     """Known findings of fonts.
 
     A finding is known by its font's family and style, its glyph, kind, contour and segment. Of several with the same
-    key the largest is compared with the largest, the next with the next: along two axes a joint may kink twice.
+    key the worst is compared with the worst, the next with the next: along two axes a joint may kink twice.
     """
 
     def __init__(self) -> None:
         self._known: dict[str, dict[Key, list[float]]] = {}
 
     def add(self, font: str, findings: Iterable[Finding]) -> None:
-        """Take in all findings of a glyph of a font. Two fonts of one name keep the larger values of both."""
+        """Take in all findings of a glyph of a font. Of two fonts of one name the worse values of both are kept."""
         known = self._known.setdefault(font, {})
-        for key, values in _by_key(findings).items():
-            rounded = sorted((_rounded(finding.value) for finding in values), reverse=True)
-            before = known.get(key, [])
-            longer, shorter = (rounded, before) if len(rounded) > len(before) else (before, rounded)
-            known[key] = [max(pair) for pair in zip(shorter, longer, strict=False)] + longer[len(shorter) :]
+        for key, own in _by_key(findings).items():
+            pairs = zip_longest(_worst_first(key, map(_value, own)), known.get(key, ()))
+            known[key] = [_worst_first(key, [value for value in pair if value is not None])[0] for pair in pairs]
 
     def new(self, font: str, findings: Iterable[Finding]) -> list[Finding]:
         """Of all findings of a glyph those that are new, or worse than they were, in their order."""
         findings, known = list(findings), self._known.get(font, {})
         old: set[int] = set()
-        for key, values in _by_key(findings).items():
-            values.sort(key=lambda finding: -finding.value)
-            pairs = zip(values, known.get(key, ()), strict=False)
-            old |= {id(finding) for finding, value in pairs if _rounded(finding.value) <= value}
-        return [finding for finding in findings if id(finding) not in old]
+        for key, own in _by_key(findings).items():
+            own.sort(key=badness, reverse=True)
+            pairs = zip(own, known.get(key, ()), strict=False)
+            old |= {id(item) for item, value in pairs if _worst_first(key, [value, _value(item)])[0] == value}
+        return [item for item in findings if id(item) not in old]
 
     def write(self, path: Path) -> None:
         """Write a file; the order of fonts and findings is theirs, not that of the run.
@@ -83,8 +82,8 @@ class Baseline:
         baseline = cls()
         try:
             for font, rows in data["fonts"].items():
-                known = {(str(a), str(b), int(c), int(d)): [float(v) for v in values] for a, b, c, d, values in rows}
-                baseline._known[font] = {key: sorted(values, reverse=True) for key, values in known.items()}
+                known = {(str(a), str(b), int(c), int(d)): map(float, values) for a, b, c, d, values in rows}
+                baseline._known[font] = {key: _worst_first(key, values) for key, values in known.items()}
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise GlyphsplineError("is a broken baseline", font=str(path)) from error
         return baseline
@@ -97,5 +96,9 @@ def _by_key(findings: Iterable[Finding]) -> dict[Key, list[Finding]]:
     return found
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}")
+def _value(finding: Finding) -> float:
+    return float(f"{finding.value:.{DIGITS}g}")
+
+
+def _worst_first(key: Key, values: Iterable[float]) -> list[float]:
+    return sorted(values, reverse=key[1] not in SMALLER_IS_WORSE)

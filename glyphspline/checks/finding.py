@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 
 from .kinds import KINDS, LEVELS, Level
 
+SMALLER_IS_WORSE = frozenset({"short", "straight"})
+"""Kinds of which the smaller value is the worse."""
+
 _ORDER = {kind.name: k for k, kind in enumerate(KINDS)}
 
 
@@ -43,10 +46,15 @@ class Finding:
     between: tuple[float, float] | None = None
 
 
+def badness(finding: Finding) -> float:
+    """A number that is larger for the worse of two findings of a kind."""
+    return -finding.value if finding.kind in SMALLER_IS_WORSE else finding.value
+
+
 def severity(finding: Finding) -> tuple[float, ...]:
     """By which findings are sorted, the worst first: level, kind and value, and of equal ones their place."""
     return (
-        -LEVELS.index(finding.level), _ORDER[finding.kind], -finding.value, finding.gid, finding.contour,
+        -LEVELS.index(finding.level), _ORDER[finding.kind], -badness(finding), finding.gid, finding.contour,
         finding.segment, finding.parameter,
     )  # fmt: skip
 

@@ -6,6 +6,7 @@
   GS.usePalette(setup.palette);
   const at = (id) => document.getElementById(id);
   const NEAR = 0.07, FAR = 0.6; // half the width of what is shown around a place, in em: at least, at most
+  const CLOSE = 6; // times the length of a very short segment, which is shown closer than others
   const CARDS = 120, ROWS = 300; // at a time
   const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump"]); // it is drawn over
   const FULL = 0.9; // share of the teeth in view that are shorter than a full one
@@ -31,6 +32,7 @@
     const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const half = 0.6 * Math.max(right - left, bottom - top);
+    if (row.kind === "short" && !whole) return [(left + right) / 2, (top + bottom) / 2, Math.min(NEAR * em, CLOSE * Math.max(half, em / 1000))];
     if (whole || row.kind === "direction") return [(left + right) / 2, (top + bottom) / 2, Math.max(half, NEAR * em)];
     const size = Math.min(FAR * em, Math.max(NEAR * em, half)); // a long segment is shown near its place
     return half <= FAR * em ? [(left + right) / 2, (top + bottom) / 2, size] : [row.x, -row.y, size];
@@ -60,10 +62,21 @@
       GS.dots(handles.map(([, b]) => b), "handles"),
       ...(found ? [GS.svg("path", { class: "found", d: bezier(found) })] : []),
       ...(row.kind === "direction" ? [GS.svg("path", { class: "found", d: (contours[row.contour] ?? []).map(bezier).join("") })] : []),
+      GS.svg("path", { class: "tangents", d: tangents(row, contours, 0.8 * half) }),
       GS.dots(pieces.map((p) => p[0]), "vertices"),
       GS.dots([[row.x, -row.y]], "mark"),
     );
     card.querySelector(".comb-scale").textContent = scale > 0 ? `comb: a full tooth is ${GS.number(scale * em)}/em` : "no curvature in view";
+  };
+
+  /** The two tangents of a joint, each drawn on beyond it: the angle between them is the turn. */
+  const tangents = (row, contours, half) => {
+    const pieces = contours[row.contour], piece = pieces?.[row.segment];
+    if (row.kind !== "kink" || !piece) return "";
+    const away = (points) => points.map(([x, y]) => [x - points[0][0], y - points[0][1]]).find(([x, y]) => x || y);
+    return [piece, [...pieces.at(row.segment - 1)].reverse()].map((points) => [points[0], away(points)]).filter(([, to]) => to)
+      .map(([[x, y], [dx, dy]]) => [x, y, dx / Math.hypot(dx, dy) * half, dy / Math.hypot(dx, dy) * half])
+      .map(([x, y, dx, dy]) => join([x, y], [x - dx, y - dy])).join("");
   };
 
   const drawn = new WeakSet();

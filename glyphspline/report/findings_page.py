@@ -22,7 +22,7 @@ LISTED = 20_000
 """Findings in the table: the worst."""
 
 PRECISION = 2
-"""Decimals of path data."""
+"""Decimals of path data and points."""
 
 SCRIPTS = ("shapes.js", "findings.js")
 
@@ -74,7 +74,9 @@ def findings_page(fonts: Sequence[CheckedFont]) -> str:
         f"{escape(kind.name)} <span>{counts[kind.name]}</span></label>"
         for kind in kinds
     )
-    heading = f"Findings in {fonts[0].name if len(fonts) == 1 else f'{len(fonts)} fonts'}"
+    heading = f"{len(fonts)} fonts"
+    if len(fonts) == 1:
+        heading = f"{fonts[0].source.family} {fonts[0].source.style}"
     return page_of("findings.html", ("theme.css", "findings.css"), SCRIPTS, setup, heading, kinds=switches)
 
 

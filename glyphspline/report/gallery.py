@@ -117,7 +117,9 @@ def _end_of(path: Path, size: int) -> bytes:
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
     setup = {"runs": list(runs), "measures": measures(), "palette": palette()}
-    page = page_of("gallery.html", ("theme.css", "gallery.css"), SCRIPTS, setup, heading=heading, layers=layer_switches())
+    page = page_of(
+        "gallery.html", ("theme.css", "gallery.css"), SCRIPTS, setup, heading=heading, layers=layer_switches()
+    )
     _replace(out_dir / "index.html", page)
 
 

@@ -14,7 +14,9 @@ from ..writers.svg.markup import text
 from .data import as_json
 
 
-def page_of(template: str, styles: Sequence[str], scripts: Sequence[str], setup: Any, heading: str, **parts: str) -> str:
+def page_of(
+    template: str, styles: Sequence[str], scripts: Sequence[str], setup: Any, heading: str, **parts: str
+) -> str:
     """A page as HTML. Nothing runs in it but its scripts, by their hash.
 
     Args:
