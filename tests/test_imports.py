@@ -41,6 +41,7 @@ PLAN = {
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
     "cli": WRITERS | {"report", "batch", "viewer"},
+    "fontspector": WRITERS | {"cli"},
     "__main__": {"cli"},
 }
 """What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""

@@ -78,7 +78,8 @@ class Asked:
         kinds: names. kept: findings of this level or above are kept, others only counted.
         axis: tag of the only one, or None. steps: of :func:`glyphspline.batch.check_run.check_font`; None: its own.
         baseline: known findings, or None. written: where all findings are added, or None.
-        numbers: whether kinks along axes are wanted in numbers. plot: file of the diagram. drawn: keep sources.
+        numbers: whether kinks along axes are wanted in numbers. plot: file of the diagram, or None.
+        drawn: whether sources are kept, for drawings.
     """
 
     thresholds: Thresholds
@@ -138,6 +139,27 @@ def require_figure(path: Path | None) -> None:
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
 
 
+def asked_of(given: Mapping[str, Any]) -> Asked:
+    """What is looked for, from the command's arguments by name.
+
+    Raises:
+        GlyphsplineError: an option or the baseline is of no use.
+    """
+    every = any(given[name] for name in ("as_json", "csv", "html"))
+    return Asked(
+        thresholds=thresholds_of(given["thresholds"], given["corner_angle"]),
+        kinds=kinds_of(given["kinds"]),
+        kept=given["loglevel"] or ("INFO" if every else "WARN"),
+        axis=given["axis"],
+        steps=given["steps"],
+        baseline=None if given["baseline"] is None else Baseline.read(Path(given["baseline"])),
+        written=None if given["write_baseline"] is None else Baseline(),
+        numbers=given["as_json"],
+        plot=given["plot"],
+        drawn=given["html"] is not None,
+    )
+
+
 def run(given: Mapping[str, Any]) -> list[Face]:
     """The command, from its arguments by name: check, write what is asked for, and say the rest.
 
@@ -147,18 +169,11 @@ def run(given: Mapping[str, Any]) -> list[Face]:
     from ..batch import find_fonts
     from . import findings
 
-    files = [name for name in ("csv", "ghmarkdown") if given[name] == STDOUT]
-    if len(files) + given["as_json"] > 1:
+    piped = [name for name in ("csv", "ghmarkdown") if given[name] == STDOUT]
+    if len(piped) + given["as_json"] > 1:
         stop("only one of --json, --csv - and --ghmarkdown - goes to standard output")
     require_figure(given["plot"])
-    baseline = None if given["baseline"] is None else Baseline.read(given["baseline"])
-    level: Level = given["loglevel"] or "WARN"
-    every = any(given[name] for name in ("as_json", "csv", "html"))
-    asked = Asked(
-        thresholds_of(given["thresholds"], given["corner_angle"]), kinds_of(given["kinds"]),
-        given["loglevel"] or ("INFO" if every else "WARN"), given["axis"], given["steps"], baseline,
-        None if given["write_baseline"] is None else Baseline(), given["as_json"], given["plot"], bool(given["html"]),
-    )  # fmt: skip
+    asked = asked_of(given)
     fonts = find_fonts(given["fonts"])
     if not fonts:
         stop("no fonts found")
@@ -168,6 +183,7 @@ def run(given: Mapping[str, Any]) -> list[Face]:
     faces = list(check_fonts(fonts, asked, given, alone))
     if asked.written is not None:
         asked.written.write(given["write_baseline"])
+    level: Level = given["loglevel"] or "WARN"
     found = findings.worst_first(faces)
     shown = [pair for pair in found if level_number(pair[1].level) >= level_number(level)]
     if given["csv"] is not None:
@@ -177,11 +193,11 @@ def run(given: Mapping[str, Any]) -> list[Face]:
     if given["html"] is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
-        fonts_drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(given["html"], findings_page(fonts_drawn))
+        drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
+        put(given["html"], findings_page(drawn))
     if given["as_json"]:
         put(STDOUT, findings.as_json(faces, asked.thresholds))
-    elif shown and not files and not given["quiet"]:
+    elif shown and not piped and not given["quiet"]:
         put(STDOUT, findings.table(shown, given["rows"], len(faces) > 1))
     if not given["quiet"]:
         for line in findings.sentences(faces, len(shown), given["rows"], level):
