@@ -19,12 +19,15 @@ from ..curves.bezier import evaluate
 from ..curves.contacts import crossing_contacts
 from ..curves.crossings import meetings
 from ..curves.cubics import directions, jet, length, split
-from ..curves.integrals import area
+from ..curves.integrals import area, integrals
 from ..outlines.contour_arrays import ContourArrays
 from ..types import BoolArray, FloatArray, IntArray
 from .joints import NO_HANDLE, ROUNDING
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, Limits
 from .table import COLUMNS, add
+
+NEARLY_ALL = 0.9
+"""Share of a contour that lies on another one in the same direction, from which it is a copy."""
 
 STEPS = 16
 """Chords a segment on the two sides of a spur."""
@@ -80,21 +83,37 @@ def _crossed(crossed: FloatArray) -> FloatArray:
 
 
 def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least: float) -> FloatArray:
-    """Pairs of contours that lie on each other for a length, and contours on themselves: from (k, 6) contacts."""
+    """Contours that lie on themselves or on others, from (k, 6) contacts.
+
+    Of two contours that run in one direction where they lie on each other, one is told only if nearly all of it does:
+    parts that overlap may share an edge.
+    """
     stretches = touching[touching[:, 4] > touching[:, 2]]
     rows = []
     for c, d in np.unique(stretches[:, :2].astype(np.int64), axis=0).tolist():
-        own = stretches[(stretches[:, :2] == (c, d)).all(axis=1)]
-        begin, end = own[np.argsort(own[:, 2], kind="stable")][:, [2, 4]].T
-        reached = np.maximum.accumulate(np.concatenate([[0.0], end[:-1]]))
-        fresh = np.clip(end - np.maximum(begin, reached), 0.0, None) / (end - begin)  # what no row before has
-        segments = np.minimum(begin.astype(np.int64), offsets[c + 1] - offsets[c] - 1)
-        of_contour = cubics[offsets[c] + segments]
-        chords = evaluate(of_contour, end - segments) - evaluate(of_contour, begin - segments)
-        total = float(np.hypot(*chords.T) @ fresh)
+        own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
+        own = own[np.argsort(own[:, 0], kind="stable")]
+        one, other = (cubics[offsets[k] : offsets[k + 1]] for k in (c, d))
+        along = own[:, 3] > own[:, 1]
+        total = _length_of(one, own[:, ::2]) if c == d else _length_of(one, own[~along, ::2])
+        if c != d and total < least:
+            total = _length_of(one, own[along, ::2])
+            least_along = max(least, NEARLY_ALL * min(integrals(one)[0], integrals(other)[0]))
+            if total < least_along:
+                continue
         if total >= least:
-            rows.append((DOUBLED, c, begin[0], total, np.nan, -1 if c == d else d))
+            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
     return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+
+
+def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
+    """Length of the union of straight stretches (k, 2) of a chain (m, 4, 2), between places, by where they begin."""
+    begin, end = stretches.T
+    reached = np.maximum.accumulate(np.concatenate([[0.0], end]))[:-1]
+    fresh = np.clip(end - np.maximum(begin, reached), 0.0, None) / (end - begin)  # what no stretch before has
+    segments = np.minimum(begin.astype(np.int64), len(chain) - 1)
+    chords = evaluate(chain[segments], end - segments) - evaluate(chain[segments], begin - segments)
+    return float(np.hypot(*chords.T) @ fresh)
 
 
 @compiled
