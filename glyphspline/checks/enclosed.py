@@ -19,12 +19,15 @@ from ..curves.bezier import evaluate
 from ..curves.contacts import crossing_contacts
 from ..curves.crossings import meetings
 from ..curves.cubics import directions, jet, length, split
-from ..curves.integrals import area
+from ..curves.integrals import area, integrals
 from ..outlines.contour_arrays import ContourArrays
 from ..types import BoolArray, FloatArray, IntArray
 from .joints import NO_HANDLE, ROUNDING
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, Limits
 from .table import COLUMNS, add
+
+NEARLY_ALL = 0.9
+"""Share of a contour that lies on another one in the same direction, from which it is a copy."""
 
 STEPS = 16
 """Chords a segment on the two sides of a spur."""
@@ -35,8 +38,8 @@ HALVINGS = 20
 LOOKED_AT = 0.41
 """Parameter of the point of a segment whose two sides are looked at: contours may share ends and middles of theirs."""
 
-DEEPEST = 64
-"""Most halvings of a segment that a ray may meet: its points are one by then."""
+MOST_HALVINGS = 128
+"""Most halvings of a segment for a ray: those around the ray's beginning cannot be told from a point by then."""
 
 
 def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, limits: Limits) -> FloatArray:
@@ -80,21 +83,37 @@ def _crossed(crossed: FloatArray) -> FloatArray:
 
 
 def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least: float) -> FloatArray:
-    """Pairs of contours that lie on each other for a length, and contours on themselves: from (k, 6) contacts."""
+    """Contours that lie on themselves or on others, from (k, 6) contacts.
+
+    Of two contours that run in one direction where they lie on each other, one is told only if nearly all of it does:
+    parts that overlap may share an edge.
+    """
     stretches = touching[touching[:, 4] > touching[:, 2]]
     rows = []
     for c, d in np.unique(stretches[:, :2].astype(np.int64), axis=0).tolist():
-        own = stretches[(stretches[:, :2] == (c, d)).all(axis=1)]
-        begin, end = own[np.argsort(own[:, 2], kind="stable")][:, [2, 4]].T
-        reached = np.maximum.accumulate(np.concatenate([[0.0], end[:-1]]))
-        fresh = np.clip(end - np.maximum(begin, reached), 0.0, None) / (end - begin)  # what no row before has
-        segments = np.minimum(begin.astype(np.int64), offsets[c + 1] - offsets[c] - 1)
-        of_contour = cubics[offsets[c] + segments]
-        chords = evaluate(of_contour, end - segments) - evaluate(of_contour, begin - segments)
-        total = float(np.hypot(*chords.T) @ fresh)
+        own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
+        own = own[np.argsort(own[:, 0], kind="stable")]
+        one, other = (cubics[offsets[k] : offsets[k + 1]] for k in (c, d))
+        along = own[:, 3] > own[:, 1]
+        total = _length_of(one, own[:, ::2]) if c == d else _length_of(one, own[~along, ::2])
+        if c != d and total < least:
+            total = _length_of(one, own[along, ::2])
+            least_along = max(least, NEARLY_ALL * min(integrals(one)[0], integrals(other)[0]))
+            if total < least_along:
+                continue
         if total >= least:
-            rows.append((DOUBLED, c, begin[0], total, np.nan, -1 if c == d else d))
+            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
     return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+
+
+def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
+    """Length of the union of straight stretches (k, 2) of a chain (m, 4, 2), between places, by where they begin."""
+    begin, end = stretches.T
+    reached = np.maximum.accumulate(np.concatenate([[0.0], end]))[:-1]
+    fresh = np.clip(end - np.maximum(begin, reached), 0.0, None) / (end - begin)  # what no stretch before has
+    segments = np.minimum(begin.astype(np.int64), len(chain) - 1)
+    chords = evaluate(chain[segments], end - segments) - evaluate(chain[segments], begin - segments)
+    return float(np.hypot(*chords.T) @ fresh)
 
 
 @compiled
@@ -129,7 +148,7 @@ def contour_findings(
                     box[axis] = min(box[axis], cubics[s, k, axis])
                     box[2 + axis] = max(box[2 + axis], cubics[s, k, axis])
     areas, outer = np.empty(len(boxes)), np.empty(len(boxes), dtype=np.bool_)
-    pieces = np.empty((DEEPEST + 1, 4, 2))
+    pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
     for g in range(len(glyphs) - 1):
         most = total = 0.0
         for c in range(glyphs[g], glyphs[g + 1]):
@@ -183,7 +202,10 @@ def runs_back(cubics: FloatArray, i: int, j: int, degrees: IntArray) -> bool:
 
 @compiled(internal=True)
 def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
-    """For how long the two sides of a closed chain (m, 4, 2) lie on each other from a joint on, not farther apart."""
+    """For how long the two sides of a closed chain (m, 4, 2) lie on each other from a joint on, not farther apart.
+
+    0 if not even one of the two segments at the joint lies on the other side as a whole: a sharp tip is no spur.
+    """
     m, run, back = len(cubics), 0.0, 0
     most = m * STEPS // 2
     x0, y0 = cubics[joint, 0, 0], cubics[joint, 0, 1]
@@ -207,6 +229,9 @@ def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
                 else:
                     low = t
             x, y, _, _, _, _ = jet(cubics, segment, low)
+            end_x, end_y = cubics[(joint - 1) % m, 0, 0], cubics[(joint - 1) % m, 0, 1]
+            if k < STEPS and back < STEPS and length(x - end_x, y - end_y) > 2 * apart:
+                return 0.0
             return run + length(x - x0, y - y0)
         run += length(x - x0, y - y0)
         x0, y0 = x, y
@@ -231,13 +256,13 @@ def winding(cubics: FloatArray, first: int, last: int, x: float, y: float, piece
     """How often the contour of the segments from ``first`` up to ``last`` runs around a point, counter-clockwise.
 
     Args:
-        pieces: (DEEPEST + 1, 4, 2), for the halves of a segment that the ray to the right of the point may meet.
+        pieces: (MOST_HALVINGS + 1, 4, 2), for the halves of a segment that the ray to the right of the point may meet.
     """
     found = 0
     for s in range(first, last):
         for k in range(8):
             pieces[0, k // 2, k % 2] = cubics[s, k // 2, k % 2]
-        top = 0
+        top, halvings = 0, 0
         while top >= 0:
             b = pieces[top]
             left = right = above = 0
@@ -247,12 +272,12 @@ def winding(cubics: FloatArray, first: int, last: int, x: float, y: float, piece
                 above += b[k, 1] > y
             if left == 4 or above == 0 or above == 4:
                 top -= 1
-            elif right == 4 or top == DEEPEST:
+            elif right == 4 or halvings == MOST_HALVINGS:
                 found += int(b[3, 1] > y) - int(b[0, 1] > y)
                 top -= 1
             else:
                 for k in range(8):
                     pieces[top + 1, k // 2, k % 2] = pieces[top, k // 2, k % 2]
                 split(pieces[top + 1], 0.5, pieces[top])
-                top += 1
+                top, halvings = top + 1, halvings + 1
     return found

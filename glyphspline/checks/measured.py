@@ -28,6 +28,8 @@ class Measured(NamedTuple):
         kinds: (n,) number of the kind.
         numbers: (n, 4) local parameter, value, second number or NaN, another contour of the glyph or -1.
         points: (n, 2) where it is.
+        locations: (n, A) user-space values of the axes where it is worst; A is 0 if the font is looked at as it is.
+        between: (n, 2) user-space values of the masters on both sides, or NaN.
     """
 
     glyphs: IntArray
@@ -36,6 +38,12 @@ class Measured(NamedTuple):
     kinds: IntArray
     numbers: FloatArray
     points: FloatArray
+    locations: FloatArray
+    between: FloatArray
+
+    def chosen(self, rows: IntArray) -> Measured:
+        """Some of the rows."""
+        return Measured(*(column[rows] for column in self))
 
 
 def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float) -> Measured:
@@ -58,4 +66,5 @@ def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_pe
     return Measured(
         owners, contour - glyphs[owners], segments, table[:, WHAT].astype(np.int64), numbers,
         evaluate(cubics[contours.offsets[contour] + segments], numbers[:, 0]),
+        np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
     )  # fmt: skip
