@@ -151,9 +151,10 @@
     const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
     document.documentElement.dataset.theme = dark ? "light" : "dark";
   });
-  for (const item of [...boxes, at("font")]) item.addEventListener("change", update);
+  const choose = () => { update(); scrollTo(0, 0); };
+  for (const item of [...boxes, at("font")]) item.addEventListener("change", choose);
   let pause;
-  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(update, 120); });
+  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(choose, 120); });
   update();
   document.body.dataset.ready = "yes";
 })();
