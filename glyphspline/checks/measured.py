@@ -43,7 +43,7 @@ class Measured(NamedTuple):
 
     def chosen(self, rows: IntArray) -> Measured:
         """Some of the rows."""
-        return Measured(*(column[rows] for column in self))
+        return self._make([column[rows] for column in self])
 
 
 def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float) -> Measured:
@@ -68,3 +68,9 @@ def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_pe
         evaluate(cubics[contours.offsets[contour] + segments], numbers[:, 0]),
         np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
     )  # fmt: skip
+
+
+def nothing() -> Measured:
+    """No findings."""
+    none = np.zeros(0, dtype=np.int64)
+    return Measured(none, none, none, none, np.zeros((0, 4)), np.zeros((0, 2)), np.zeros((0, 0)), np.zeros((0, 2)))

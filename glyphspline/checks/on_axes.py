@@ -157,7 +157,7 @@ def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn
         np.array([(0.0, turn.turn, turn.made, -1.0) for turn in turns]),
         np.array(points), np.array(users), np.array([turn.between for turn in turns]),
     )  # fmt: skip
-    return Measured(*(np.concatenate(pair) for pair in zip(own, rows, strict=True)))
+    return Measured._make([np.concatenate(pair) for pair in zip(own, rows, strict=True)])
 
 
 def _worst(rows: Measured) -> Measured:
