@@ -35,7 +35,8 @@ if extras & {"view", "all"}:
     import glyphspline.viewer
     for name in ("viewer.html", "viewer.css", "viewer.js"):
         assert files("glyphspline.viewer").joinpath(name).read_bytes(), name
-for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "zoom.js", "findings.html", "findings.css", "findings.js"):
+findings = ("findings.html", "findings.css", "findings.js")
+for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "zoom.js", *findings):
     assert files("glyphspline.report").joinpath(name).read_bytes(), name
 assert files("glyphspline").joinpath("py.typed").is_file()
 """

@@ -224,14 +224,14 @@ def test_a_baseline_leaves_only_what_is_new_or_worse(tmp_path: Path) -> None:
     again = checked(font, "--baseline", known, "-l", "INFO", "-e", "INFO")
     assert (again.exit_code, again.stdout) == (0, "")
     assert "not counted, as the baseline has them: 3" in again.stderr
-    drawings(font, {"two": turning(2.001)})  # the same in three digits
-    drawings(font, {"five": turning(4)})  # better
-    assert checked(font, "--baseline", known, "-e", "INFO").exit_code == 0
-    drawings(font, {"two": turning(2.2)})
-    worse = checked(font, "--baseline", known, "-e", "WARN")
+
+    def later(number: int, **changed: str) -> Path:
+        return drawings(tmp_path / str(number) / "font", {**FAULTS, **changed})
+
+    assert checked(later(1, two=turning(2.001), five=turning(4)), "--baseline", known, "-e", "INFO").exit_code == 0
+    worse = checked(later(2, two=turning(2.2)), "--baseline", known, "-e", "WARN")
     assert (worse.exit_code, [row[0] for row in lines_of(worse)[1:]]) == (1, ["two"])
-    drawings(font, {"two": turning(2), "new": turning(1)})
-    new = checked(font, "--baseline", known, "-e", "WARN", "--json")
+    new = checked(later(3, new=turning(1)), "--baseline", known, "-e", "WARN", "--json")
     assert new.exit_code == 1
     (facts,) = json.loads(new.stdout)["fonts"]
     assert ([item["glyph"] for item in facts["findings"]], facts["known"]) == (["new"], 3)

@@ -66,7 +66,7 @@ def place_on_axes(finding: Finding, home: Mapping[str, float]) -> str:
         finding: of a font with axes, or not. home: user-space value of each axis where the font is open.
     """
     moved = ", ".join([f"{tag} {value:.4g}" for tag, value in finding.location.items() if value != home.get(tag)])
-    if finding.between is None:
+    if finding.between is None or not moved:
         return moved
     low, high = finding.between
-    return f"{moved or 'default'} ({'in a master' if low == high else f'{low:.4g} to {high:.4g}'})"
+    return f"{moved} ({'in a master' if low == high else f'{low:.4g} to {high:.4g}'})"

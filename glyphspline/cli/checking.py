@@ -246,7 +246,7 @@ def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], a
                     if pool is None and (many or given["jobs"]):
                         from ..batch.schedule import workers
 
-                        pool = stack.enter_context(workers(given["jobs"], PATIENCE))
+                        pool = stack.enter_context(workers(given["jobs"], PATIENCE, checks=True))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
                     yield check_face(source, name, asked, given, pool, alone)
             except GlyphsplineError as error:
