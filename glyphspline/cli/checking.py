@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 STDOUT = Path("-")
 
 POOL_FROM = 2000
-"""Glyphs of a face from which worker processes are worth their start."""
+POOL_FROM_ALONG_AXES = 100
+"""Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
 
 PATIENCE = 60.0
 """Seconds that a worker may be silent."""
@@ -242,13 +243,14 @@ def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], a
         for font in fonts:
             try:
                 for source in faces_of(font, location, face_index):
-                    many = len(source.glyph_names) >= POOL_FROM and given["jobs"] != 0
-                    if pool is None and (many or given["jobs"]):
+                    least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
+                    names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
+                    if pool is None and (given["jobs"] or (given["jobs"] is None and len(names) >= least)):
                         from ..batch.schedule import workers
 
                         pool = stack.enter_context(workers(given["jobs"], PATIENCE, checks=True))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
-                    yield check_face(source, name, asked, given, pool, alone)
+                    yield check_face(source, name, names, asked, pool, alone=alone, quiet=given["quiet"])
             except GlyphsplineError as error:
                 if alone:
                     raise
@@ -256,18 +258,17 @@ def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], a
 
 
 def check_face(
-    source: Source, name: str, asked: Asked, given: Mapping[str, Any], pool: Executor | None, alone: bool
+    source: Source, name: str, names: Sequence[str], asked: Asked, pool: Executor | None, *, alone: bool, quiet: bool
 ) -> Face:
-    """Check one face of the font called ``name``."""
+    """Check glyphs of one face of the font called ``name``."""
     from ..batch.check_run import STEPS, check_font
     from ..report.findings_page import home_of
 
-    names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
     if alone and not names:
         stop("none of the glyphs asked for is in the font")
     tags = tags_of(source, asked, alone)
     face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
-    with progress(given["quiet"]) as observer:
+    with progress(quiet) as observer:
         steps = STEPS if asked.steps is None else asked.steps
         rows = check_font(source, names, asked.thresholds, axes=tags, steps=steps, executor=pool, observer=observer)
         for row in rows:
