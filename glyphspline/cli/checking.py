@@ -9,12 +9,10 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
-import typer
-
 from ..checks.baseline import Baseline
 from ..checks.finding import Finding, severity
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
-from ..errors import GlyphsplineError, OptionError, OutputError
+from ..errors import GlyphsplineError, OptionError
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
 from .messages import say, stop
@@ -25,8 +23,6 @@ if TYPE_CHECKING:
 
     from ..checks.axis_kinks import AxisKinks, KinkReport
     from ..readers import Source
-
-STDOUT = Path("-")
 
 POOL_FROM = 2000
 POOL_FROM_ALONG_AXES = 100
@@ -161,69 +157,9 @@ def asked_of(given: Mapping[str, Any]) -> Asked:
     )
 
 
-def run(given: Mapping[str, Any]) -> list[Face]:
-    """The command, from its arguments by name: check, write what is asked for, and say the rest.
-
-    Raises:
-        GlyphsplineError: an option or a file of it is of no use.
-    """
-    from ..batch import find_fonts
-    from . import findings
-
-    piped = [name for name in ("csv", "ghmarkdown") if given[name] == STDOUT]
-    if len(piped) + given["as_json"] > 1:
-        stop("only one of --json, --csv - and --ghmarkdown - goes to standard output")
-    require_figure(given["plot"])
-    asked = asked_of(given)
-    fonts = find_fonts(given["fonts"])
-    if not fonts:
-        stop("no fonts found")
-    alone = len(given["fonts"]) == 1 and fonts == [Path(given["fonts"][0])]
-    if given["plot"] is not None and not alone:
-        stop("--plot takes one font")
-    faces = list(check_fonts(fonts, asked, given, alone))
-    if asked.written is not None:
-        asked.written.write(given["write_baseline"])
-    level: Level = given["loglevel"] or "WARN"
-    found = findings.worst_first(faces)
-    shown = [pair for pair in found if level_number(pair[1].level) >= level_number(level)]
-    if given["csv"] is not None:
-        put(given["csv"], findings.as_csv(found))
-    if given["ghmarkdown"] is not None:
-        put(given["ghmarkdown"], findings.as_markdown(faces, shown, level))
-    if given["html"] is not None:
-        from ..report.findings_page import CheckedFont, findings_page
-
-        drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(given["html"], findings_page(drawn))
-    if given["as_json"]:
-        put(STDOUT, findings.as_json(faces, asked.thresholds))
-    elif shown and not piped and not given["quiet"]:
-        put(STDOUT, findings.table(shown, given["rows"], len(faces) > 1))
-    if not given["quiet"]:
-        for line in findings.sentences(faces, len(shown), given["rows"], level):
-            say(line)
-    return faces
-
-
 def reaches(face: Face, level: Level) -> bool:
     """Whether a new finding of a face is of a level or above."""
     return any(level_number(own) >= level_number(level) for own in face.levels)
-
-
-def put(path: Path, text: str) -> None:
-    """Write a file, or standard output.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    if path == STDOUT:
-        typer.echo(text, nl=not text.endswith("\n"))
-        return
-    try:
-        path.write_text(text, encoding="utf-8", newline="")
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
 
 
 def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], alone: bool) -> Iterator[Face]:

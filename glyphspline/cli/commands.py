@@ -260,11 +260,12 @@ def check(
     given = dict(locals())
     with errors(quiet):
         listen(quiet)
-        from . import checking
+        from .check_outputs import run as run_check
+        from .checking import reaches
 
-        faces = checking.run(given)
+        faces = run_check(given)
     unread = any(face.error is not None for face in faces)
-    bad = error_level is not None and any(checking.reaches(face, error_level) for face in faces)
+    bad = error_level is not None and any(reaches(face, error_level) for face in faces)
     raise typer.Exit(2 if unread else 1 if bad else 0)
 
 
