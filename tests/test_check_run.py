@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.batch import check_run
+from glyphspline.batch import check_run, schedule
 from glyphspline.batch.check_run import GlyphFindings, check_font
 from glyphspline.batch.schedule import workers
 from glyphspline.checks.axis_kinks import kinks
@@ -68,12 +68,12 @@ def test_glyphs_come_in_order_with_what_check_says_of_each() -> None:
     assert [glyph.error for glyph in glyphs] == [None] * len(glyphs)
 
 
-@pytest.mark.parametrize("path", [KOUZAN, FONTS / "kouzan-gyosho.otf", FONTS / "variable.ttf"])
-def test_workers_find_what_one_process_finds(path: Path, pool: Executor) -> None:
-    thresholds = Thresholds(kink=0.01, jump=0.1, relative_jump=0.01)
-    alone = found(path, thresholds=thresholds)
-    assert sum(len(glyph.findings) for glyph in alone) > 0
-    assert found(path, thresholds=thresholds, executor=pool) == alone
+@pytest.mark.parametrize("name", ["kouzan-gyosho.ttf", "kouzan-gyosho.otf", "v.ttf"])
+def test_workers_find_what_one_process_finds(name: str, variable: Path, pool: Executor) -> None:
+    path = variable if name == "v.ttf" else FONTS / name
+    alone = found(path)
+    assert sum(len(glyph.findings) for glyph in alone) > 1
+    assert found(path, executor=pool) == alone
 
 
 def test_chunks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,16 +83,21 @@ def test_chunks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
         assert found(KOUZAN) == alone
 
 
-def test_a_broken_glyph_costs_only_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_broken_glyph_costs_only_itself(tmp_path: Path) -> None:
+    from fontTools.ttLib import TTFont
+
+    tables = TTFont(KOUZAN)
+    start, end = tables["loca"].locations[5:7]
+    data = bytearray(tables.reader["glyf"])
+    data[start + 10 : end] = b"\xff" * (end - start - 10)
+    del tables
+    path = tmp_path / "broken.ttf"
+    path.write_bytes(KOUZAN.read_bytes().replace(TTFont(KOUZAN).reader["glyf"], bytes(data)))
     seen: list[tuple[int, int, int]] = []
-    glyphs = found(FONTS / "edge-cases.ttf", observer=lambda *counts: seen.append(counts))
-    font = gs.open_source(FONTS / "edge-cases.ttf")
-    outlines = font.outlines(font.glyph_names, errors="return")
-    broken = {k for k, outline in enumerate(outlines) if isinstance(outline, gs.GlyphsplineError)}
-    assert broken
-    assert {glyph.gid for glyph in glyphs if glyph.error is not None} == broken
-    assert all(not glyph.findings for glyph in glyphs if glyph.error)
-    assert seen[-1] == (len(glyphs), len(glyphs), len(broken))
+    whole, glyphs = found(KOUZAN, once=False), found(path, once=False, observer=lambda *counts: seen.append(counts))
+    assert [glyph.gid for glyph in glyphs if glyph.error] == [5]
+    assert [glyph for glyph in glyphs if glyph.gid != 5] == [glyph for glyph in whole if glyph.gid != 5]
+    assert seen[-1] == (len(glyphs), len(glyphs), 1)
 
 
 def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,7 +127,7 @@ def slow(job: Any, tasks: Any) -> Any:
 
 def test_a_glyph_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = found(KOUZAN)
-    real = check_run.spread
+    real = schedule.spread
     monkeypatch.setattr(check_run, "spread", lambda pool, _, job, chunks: real(pool, slow, job, chunks))
     with workers(2, 8.0, expected=2, checks=True) as pool:
         glyphs = found(KOUZAN, executor=pool)

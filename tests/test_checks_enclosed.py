@@ -53,7 +53,8 @@ def kinds(*contours: Contour) -> list[tuple[str, int, int | None]]:
 def test_contours_that_cross_are_told_once_with_the_other_where_the_first_crosses_first() -> None:
     (item,) = found(box(0, 0, 100, 100), box(50, 50, 100, 100))
     assert (item.kind, item.level, item.contour, item.other, item.value) == ("overlap", "INFO", 0, 1, 2)
-    assert (item.segment, item.parameter, item.point) == (1, pytest.approx(0.5), pytest.approx((100, 50)))
+    assert item.segment + item.parameter == pytest.approx(1.5)
+    assert item.point == pytest.approx((100, 50))
     assert item.sentence == "crosses contour 1"
 
 

@@ -94,13 +94,15 @@ def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least:
         own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
         own = own[np.argsort(own[:, 0], kind="stable")]
         one, other = (cubics[offsets[k] : offsets[k + 1]] for k in (c, d))
-        along = own[:, 3] > own[:, 1]
-        total = _length_of(one, own[:, ::2]) if c == d else _length_of(one, own[~along, ::2])
-        if c != d and total < least:
-            total = _length_of(one, own[along, ::2])
-            least_along = max(least, NEARLY_ALL * min(integrals(one)[0], integrals(other)[0]))
-            if total < least_along:
-                continue
+        if c == d:
+            total = _length_of(one, own[:, ::2])
+        else:
+            along = own[:, 3] > own[:, 1]
+            total = _length_of(one, own[~along, ::2]) if not along.all() else 0.0
+            spans = np.abs(own[along, 2:] - own[along, :2]).sum(axis=0) > (len(one) / 2, len(other) / 2)
+            if total < least and spans.any():
+                total = _length_of(one, own[along, ::2])
+                total *= total >= NEARLY_ALL * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
             rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
     return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)

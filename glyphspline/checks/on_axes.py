@@ -101,36 +101,43 @@ def _turns(
 ) -> tuple[list[_Turn], set[tuple[int, int, int]]]:
     """Turns of smooth joints that count, along axes and in masters off them; and which joints are smooth."""
     source, found, smooth = Glyphs(glyphs, location), list[_Turn](), set[tuple[int, int, int]]()
+    controls = [[joint_controls(contour) for contour in masters.contours] for masters in glyphs]
+    along_axes = kinks(source, corner_angle=thresholds.corner_angle)
     for axis in axes:
-        (along,) = kinks(source, axis=glyphs[0].axes[axis].tag, corner_angle=thresholds.corner_angle)
+        along = along_axes[axis]
         smooth.update(map(tuple, along.joints.tolist()))
         count = int((along.turns >= thresholds.kink).sum())
         for kink, (g, contour, joint) in zip(along[:count], along.joints[:count].tolist(), strict=True):
             at = glyphs[g].normalised(kink.location)
             found.append(_Turn(g, contour, joint, kink.turn, kink.made, at, kink.between))
     for g, masters in enumerate(glyphs):
-        base = masters.normalised(location)
+        base, peaks = masters.normalised(location), masters.peaks
         others = np.delete(np.arange(len(base)), axes)
-        peaks = masters.peaks
         off = np.flatnonzero(((peaks != base).sum(axis=1) > 1) & (peaks[:, others] == base[others]).all(axis=1))
         if not len(off):
             continue
-        for contour, of_contour in enumerate(masters.contours):
-            turns = np.abs(turns_of(joint_controls(of_contour)[off]))
+        for contour, of_contour in enumerate(controls[g]):
+            turns = np.abs(turns_of(of_contour[off]))
             for k, joint in np.argwhere(turns >= thresholds.kink).tolist():
                 if (g, contour, joint) in smooth:
                     found.append(_Turn(g, contour, joint, turns[k, joint], 0.0, peaks[off[k]], (np.nan, np.nan)))
-    return [turn for turn in found if turn.turn >= by_rounding(glyphs[turn.glyph], turn)], smooth
+    counted = [
+        turn
+        for turn in found
+        if turn.turn >= by_rounding(glyphs[turn.glyph], turn, controls[turn.glyph][turn.contour][:, turn.joint])
+    ]
+    return counted, smooth
 
 
-def by_rounding(masters: Masters, turn: _Turn) -> float:
+def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
     """Degrees that rounding to whole units may turn a joint by; 0 where the default master is not in whole units.
 
     Deltas are whole too. Those of points between others are not, but no farther off.
+
+    Args:
+        controls: (K, 2, 4, 2) of the joint; see :func:`.axis_kinks.joint_controls`.
     """
-    contour = masters.contours[turn.contour]
-    controls = joint_controls(contour)[:, turn.joint]  # (K, 2, 4, 2)
-    degrees = contour.degrees[[turn.joint - 1, turn.joint]]
+    degrees = masters.contours[turn.contour].degrees[[turn.joint - 1, turn.joint]]
     handles = 3 / degrees[:, None] * (controls[0, :, 1] - controls[0, :, 0])  # segments are raised to cubics
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
