@@ -56,14 +56,15 @@ def on_axes(
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
     rows = measured(instances, thresholds, em)
     every = np.concatenate(places)
-    users = np.column_stack([[axis.user(x) for x in every[:, a].tolist()] for a, axis in enumerate(axes)])
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
-    rows = rows._replace(glyphs=owners[rows.glyphs], locations=users[rows.glyphs])
+    rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
     turns, smooth = _turns(glyphs, location, chosen, thresholds)
     of_joints = np.column_stack([rows.glyphs, rows.contours, rows.segments])
     known = np.array([tuple(row) in smooth for row in of_joints.tolist()], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
-    return _worst(_with_turns(rows, glyphs, turns))
+    worst = _worst(_with_turns(rows, glyphs, turns))
+    users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
+    return worst._replace(locations=np.array(users).reshape(-1, len(axes)))
 
 
 def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[int], steps: int) -> FloatArray:
@@ -148,7 +149,7 @@ def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
 
 
 def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:
-    """Kinks before all other rows."""
+    """Kinks before all other rows, whose locations are normalised."""
     if not turns:
         return rows
     points = []
@@ -157,12 +158,11 @@ def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn
         contour = masters.contours[turn.contour]
         start = int(contour.degrees[: turn.joint].sum())
         points.append(masters.weights_at(turn.at) @ contour.points[:, start])
-    users = [list(glyphs[turn.glyph].user(turn.at).values()) for turn in turns]
     places = np.array([turn[:3] for turn in turns], dtype=np.int64)
     own = Measured(
         places[:, 0], places[:, 1], places[:, 2], np.full(len(turns), KINK),
         np.array([(0.0, turn.turn, turn.made, -1.0) for turn in turns]),
-        np.array(points), np.array(users), np.array([turn.between for turn in turns]),
+        np.array(points), np.array([turn.at for turn in turns]), np.array([turn.between for turn in turns]),
     )  # fmt: skip
     return Measured._make([np.concatenate(pair) for pair in zip(own, rows, strict=True)])
 
