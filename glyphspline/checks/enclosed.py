@@ -94,26 +94,29 @@ def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least:
         own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
         own = own[np.argsort(own[:, 0], kind="stable")]
         one, other = (cubics[offsets[k] : offsets[k + 1]] for k in (c, d))
-        along = own[:, 3] > own[:, 1]
-        total = _length_of(one, own[:, ::2]) if c == d else _length_of(one, own[~along, ::2])
-        if c != d and total < least:
-            total = _length_of(one, own[along, ::2])
-            least_along = max(least, NEARLY_ALL * min(integrals(one)[0], integrals(other)[0]))
-            if total < least_along:
-                continue
+        if c == d:
+            total = _length_of(one, own[:, ::2])
+        else:
+            along = own[:, 3] > own[:, 1]
+            total = _length_of(one, own[~along, ::2]) if not along.all() else 0.0
+            spans = np.abs(own[along, 2:] - own[along, :2]).sum(axis=0) > (len(one) / 2, len(other) / 2)
+            if total < least and spans.any():
+                total = _length_of(one, own[along, ::2])
+                total *= total >= NEARLY_ALL * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
             rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
     return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
 
 
 def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
-    """Length of the union of straight stretches (k, 2) of a chain (m, 4, 2), between places, by where they begin."""
+    """Length of the union of stretches (k, 2) of a chain (m, 4, 2) of cubics, each inside one, by where they begin."""
     begin, end = stretches.T
-    reached = np.maximum.accumulate(np.concatenate([[0.0], end]))[:-1]
-    fresh = np.clip(end - np.maximum(begin, reached), 0.0, None) / (end - begin)  # what no stretch before has
+    begin = np.maximum(begin, np.maximum.accumulate(np.concatenate([[0.0], end]))[:-1])  # where those before end
+    begin, end = np.stack([begin, end])[:, begin < end]
     segments = np.minimum(begin.astype(np.int64), len(chain) - 1)
-    chords = evaluate(chain[segments], end - segments) - evaluate(chain[segments], begin - segments)
-    return float(np.hypot(*chords.T) @ fresh)
+    places = begin[:, None] + (end - begin)[:, None] * np.linspace(0, 1, STEPS + 1) - segments[:, None]
+    points = evaluate(np.repeat(chain[segments], STEPS + 1, axis=0), places.ravel()).reshape(-1, STEPS + 1, 2)
+    return float(np.hypot(*np.diff(points, axis=1).reshape(-1, 2).T).sum())
 
 
 @compiled
@@ -229,10 +232,14 @@ def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
                 else:
                     low = t
             x, y, _, _, _, _ = jet(cubics, segment, low)
-            end_x, end_y = cubics[(joint - 1) % m, 0, 0], cubics[(joint - 1) % m, 0, 1]
-            if k < STEPS and back < STEPS and length(x - end_x, y - end_y) > 2 * apart:
-                return 0.0
-            return run + length(x - x0, y - y0)
+            run += length(x - x0, y - y0)
+            whole = k >= STEPS or back >= STEPS
+            for which in range(3):  # a spur ends at the end of a segment, and what is beyond comes from the tolerance
+                end = segment if which == 0 else (joint - 1 - back // STEPS + which - 1) % m
+                beyond = length(x - cubics[end, 0, 0], y - cubics[end, 0, 1])
+                if end != joint and beyond <= 2 * apart:
+                    return run - beyond
+            return run if whole else 0.0
         run += length(x - x0, y - y0)
         x0, y0 = x, y
     return run

@@ -43,7 +43,7 @@ class Measured(NamedTuple):
 
     def chosen(self, rows: IntArray) -> Measured:
         """Some of the rows."""
-        return self._make([column[rows] for column in self])
+        return Measured._make([column[rows] for column in self])
 
 
 def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float) -> Measured:

@@ -56,14 +56,15 @@ def on_axes(
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
     rows = measured(instances, thresholds, em)
     every = np.concatenate(places)
-    users = np.column_stack([[axis.user(x) for x in every[:, a].tolist()] for a, axis in enumerate(axes)])
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
-    rows = rows._replace(glyphs=owners[rows.glyphs], locations=users[rows.glyphs])
+    rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
     turns, smooth = _turns(glyphs, location, chosen, thresholds)
     of_joints = np.column_stack([rows.glyphs, rows.contours, rows.segments])
     known = np.array([tuple(row) in smooth for row in of_joints.tolist()], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
-    return _worst(_with_turns(rows, glyphs, turns))
+    worst = _worst(_with_turns(rows, glyphs, turns))
+    users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
+    return worst._replace(locations=np.array(users).reshape(-1, len(axes)))
 
 
 def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[int], steps: int) -> FloatArray:
@@ -101,36 +102,43 @@ def _turns(
 ) -> tuple[list[_Turn], set[tuple[int, int, int]]]:
     """Turns of smooth joints that count, along axes and in masters off them; and which joints are smooth."""
     source, found, smooth = Glyphs(glyphs, location), list[_Turn](), set[tuple[int, int, int]]()
+    controls = [[joint_controls(contour) for contour in masters.contours] for masters in glyphs]
+    along_axes = kinks(source, corner_angle=thresholds.corner_angle)
     for axis in axes:
-        (along,) = kinks(source, axis=glyphs[0].axes[axis].tag, corner_angle=thresholds.corner_angle)
+        along = along_axes[axis]
         smooth.update(map(tuple, along.joints.tolist()))
         count = int((along.turns >= thresholds.kink).sum())
         for kink, (g, contour, joint) in zip(along[:count], along.joints[:count].tolist(), strict=True):
             at = glyphs[g].normalised(kink.location)
             found.append(_Turn(g, contour, joint, kink.turn, kink.made, at, kink.between))
     for g, masters in enumerate(glyphs):
-        base = masters.normalised(location)
+        base, peaks = masters.normalised(location), masters.peaks
         others = np.delete(np.arange(len(base)), axes)
-        peaks = masters.peaks
         off = np.flatnonzero(((peaks != base).sum(axis=1) > 1) & (peaks[:, others] == base[others]).all(axis=1))
         if not len(off):
             continue
-        for contour, of_contour in enumerate(masters.contours):
-            turns = np.abs(turns_of(joint_controls(of_contour)[off]))
+        for contour, of_contour in enumerate(controls[g]):
+            turns = np.abs(turns_of(of_contour[off]))
             for k, joint in np.argwhere(turns >= thresholds.kink).tolist():
                 if (g, contour, joint) in smooth:
                     found.append(_Turn(g, contour, joint, turns[k, joint], 0.0, peaks[off[k]], (np.nan, np.nan)))
-    return [turn for turn in found if turn.turn >= by_rounding(glyphs[turn.glyph], turn)], smooth
+    counted = [
+        turn
+        for turn in found
+        if turn.turn >= by_rounding(glyphs[turn.glyph], turn, controls[turn.glyph][turn.contour][:, turn.joint])
+    ]
+    return counted, smooth
 
 
-def by_rounding(masters: Masters, turn: _Turn) -> float:
+def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
     """Degrees that rounding to whole units may turn a joint by; 0 where the default master is not in whole units.
 
     Deltas are whole too. Those of points between others are not, but no farther off.
+
+    Args:
+        controls: (K, 2, 4, 2) of the joint; see :func:`.axis_kinks.joint_controls`.
     """
-    contour = masters.contours[turn.contour]
-    controls = joint_controls(contour)[:, turn.joint]  # (K, 2, 4, 2)
-    degrees = contour.degrees[[turn.joint - 1, turn.joint]]
+    degrees = masters.contours[turn.contour].degrees[[turn.joint - 1, turn.joint]]
     handles = 3 / degrees[:, None] * (controls[0, :, 1] - controls[0, :, 0])  # segments are raised to cubics
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
@@ -141,7 +149,7 @@ def by_rounding(masters: Masters, turn: _Turn) -> float:
 
 
 def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:
-    """Kinks before all other rows."""
+    """Kinks before all other rows, whose locations are normalised."""
     if not turns:
         return rows
     points = []
@@ -150,12 +158,11 @@ def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn
         contour = masters.contours[turn.contour]
         start = int(contour.degrees[: turn.joint].sum())
         points.append(masters.weights_at(turn.at) @ contour.points[:, start])
-    users = [list(glyphs[turn.glyph].user(turn.at).values()) for turn in turns]
     places = np.array([turn[:3] for turn in turns], dtype=np.int64)
     own = Measured(
         places[:, 0], places[:, 1], places[:, 2], np.full(len(turns), KINK),
         np.array([(0.0, turn.turn, turn.made, -1.0) for turn in turns]),
-        np.array(points), np.array(users), np.array([turn.between for turn in turns]),
+        np.array(points), np.array([turn.at for turn in turns]), np.array([turn.between for turn in turns]),
     )  # fmt: skip
     return Measured._make([np.concatenate(pair) for pair in zip(own, rows, strict=True)])
 
