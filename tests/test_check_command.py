@@ -102,7 +102,7 @@ def test_exit_status(names: list[str], more: list[str], status: int, tmp_path: P
         (["--thresholds", "kink=nan"], "the threshold kink is above 0"),
         (["--loglevel", "FAIL"], "FAIL"),
         (["-e", "never"], "never"),
-        (["--json", "--csv", "-"], "only one of --json, --csv - and --ghmarkdown - goes to standard output"),
+        (["--json", "--csv", "-"], "only one of --json, --csv - and the like goes to standard output"),
         (["--csv", "-", "--ghmarkdown", "-"], "only one of"),
         (["--plot", "turns.gif"], "--plot is a file of png, pdf, svg, not turns.gif"),
         (["--plot", "turns.svg"], "not a variable font"),

@@ -25,9 +25,9 @@ def run(given: Mapping[str, Any]) -> list[Face]:
     """
     from ..batch import find_fonts
 
-    piped = [name for name in ("csv", "ghmarkdown") if given[name] == STDOUT]
+    piped = [name for name in ("csv", "ghmarkdown", "html") if given[name] == STDOUT]
     if len(piped) + given["as_json"] > 1:
-        stop("only one of --json, --csv - and --ghmarkdown - goes to standard output")
+        stop("only one of --json, --csv - and the like goes to standard output")
     require_figure(given["plot"])
     for name in ("csv", "ghmarkdown", "html", "plot", "write_baseline"):
         require_folder(given[name])
