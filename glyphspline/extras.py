@@ -13,6 +13,7 @@ EXTRAS = {
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),
     "cluster": ("--scheduler", "distributed"),
+    "fontspector": ("the plug-in of fontspector", "fontspectorapi"),
     "view": ("the viewer", "starlette", "uvicorn"),
 }
 """By extra: what needs it, and the modules that are imported. Nothing here imports what is in ``notebook``."""

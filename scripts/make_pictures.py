@@ -51,7 +51,7 @@ def main() -> None:
     with sync_playwright() as playwright:
         sandbox = [] if os.getuid() else ["--no-sandbox"]
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=sandbox)
-        for picture in (dragon, corners, variants, terminal, gallery, viewer):
+        for picture in (dragon, corners, variants, terminal, gallery, viewer, checks):
             context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=1.25)
             picture(context.new_page())
             context.close()
@@ -137,6 +137,17 @@ def viewer(page: Any) -> None:
         page.wait_for_load_state("networkidle")
         page.wait_for_timeout(1500)
         shot(page, "viewer")
+
+
+def checks(page: Any) -> None:
+    """The page of what is found in a font."""
+    with tempfile.TemporaryDirectory() as place:
+        findings = Path(place) / "findings.html"
+        glyphspline("check", str(FONTS / "kouzan-gyosho.otf"), "--html", str(findings), "--quiet")
+        page.goto(findings.as_uri())
+        page.wait_for_selector("body[data-ready]")
+        page.wait_for_timeout(1500)
+        shot(page, "checks")
 
 
 def shot(what: Any, name: str) -> None:

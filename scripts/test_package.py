@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 VERSIONS = tuple(f"3.{minor}" for minor in (11, 12, 13, 14))
-EXTRAS = ("overlaps", "parquet", "cluster", "view", "notebook")
+EXTRAS = ("overlaps", "parquet", "cluster", "fontspector", "view", "notebook")
 
 
 LOOK = """
@@ -35,7 +35,8 @@ if extras & {"view", "all"}:
     import glyphspline.viewer
     for name in ("viewer.html", "viewer.css", "viewer.js"):
         assert files("glyphspline.viewer").joinpath(name).read_bytes(), name
-for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "zoom.js"):
+findings = ("findings.html", "findings.css", "findings.js")
+for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "zoom.js", *findings):
     assert files("glyphspline.report").joinpath(name).read_bytes(), name
 assert files("glyphspline").joinpath("py.typed").is_file()
 """

@@ -50,4 +50,4 @@ def test_a_missing_extra_is_said_at_once(extra: str, tmp_path: Path) -> None:
 
 def test_the_names_are_those_of_the_project() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert set(EXTRAS) == set(COMMANDS) <= set(project["optional-dependencies"])
+    assert set(EXTRAS) == {*COMMANDS, "fontspector"} <= set(project["optional-dependencies"])

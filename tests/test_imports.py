@@ -41,6 +41,7 @@ PLAN = {
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
     "cli": WRITERS | {"report", "batch", "viewer"},
+    "fontspector": WRITERS | {"cli"},
     "__main__": {"cli"},
 }
 """What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""
@@ -133,7 +134,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.commands, glyphspline.batch.font_run, glyphspline.batch.schedule\n"
+        "import sys, glyphspline.cli.commands, glyphspline.batch.check_run, glyphspline.batch.font_run\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import glyphspline as gs
 from glyphspline.checks import axis_kinks as measuring
 from glyphspline.cli import app
 from glyphspline.outlines.joins import joins
+from glyphspline.writers.svg.path_data import path_data
 
 from .variable_fonts import WEIGHT, polygon, quadratic, variable_font
 
@@ -188,31 +190,48 @@ def test_check_lists_kinks(tmp_path: Path) -> None:
     result = runner.invoke(app, ["check", str(path), "--axis", "wght"])
     assert result.exit_code == 0, result.output
     turn, at = expected()
-    row = next(line for line in result.stdout.splitlines() if line.lstrip().startswith("k "))
-    cells = [cell.strip() for cell in row.split("|")]
-    assert cells[:7] == ["k", "0", "0", "0, 0", f"{turn:.2f}°", "0.00°", f"{turn:.2f}°"]
-    assert cells[8] == f"wght {at:.4g} (400 to 900)"
-    assert "wght: 1 smooth joint, turn up to" in result.stderr
+    (row,) = [line for line in result.stdout.splitlines() if line.lstrip().startswith("k ")]
+    cells = [cell.strip() for cell in row.split(" | ")]
+    assert cells[:5] == ["k", "WARN", "0", "0", "0, 0"]
+    assert cells[5] == f"kink: turns by {turn:.3g}° at a joint meant to be smooth"
+    assert cells[6] == f"wght {at:.4g} (400 to 900)"
 
 
 def test_check_as_json(tmp_path: Path) -> None:
     path = kinked(tmp_path / "v.ttf")
-    result = runner.invoke(app, ["check", str(path), "--json"])
-    facts = json.loads(result.stdout)
-    assert facts.keys() == {"font", "glyphs", "corner_angle", "axes", "findings", "failed"}
-    assert facts["axes"][0] == {
+    result = runner.invoke(app, ["check", str(path), "--json", "--kinds", "kink"])
+    (facts,) = json.loads(result.stdout)["fonts"]
+    assert facts["axes"] == [{
         "axis": "wght", "joints": 1, "masters": [400, 900], "largest_turn": pytest.approx(expected()[0]),
         "largest_turn_at_masters": 0, "largest_made": pytest.approx(expected()[0]), "turns_over_1": 1, "made_over_1": 1,
         "jumps_over_10_percent": 1,
-    }  # fmt: skip
+    }]  # fmt: skip
     (finding,) = facts["findings"]
-    assert finding.keys() == {
-        "kind", "glyph", "gid", "contour", "joint", "point", "axis", "turn", "location", "between", "at_masters",
-        "made", "jump", "jump_location",
-    }  # fmt: skip
-    assert finding["kind"] == "kink"
-    none = json.loads(runner.invoke(app, ["check", str(path), "--json", "--text", "b"]).stdout)
+    turn, at = expected()
+    assert (finding["kind"], finding["value"]) == ("kink", pytest.approx(turn))
+    assert finding["detail"] == pytest.approx(turn)  # made by interpolation
+    assert (finding["location"], finding["between"]) == ({"wght": pytest.approx(at)}, [400, 900])
+    (none,) = json.loads(runner.invoke(app, ["check", str(path), "--json", "--text", "b"]).stdout)["fonts"]
     assert (none["findings"], none["axes"][0]["largest_turn"]) == ([], None)
+
+
+def test_a_finding_between_masters_is_drawn_where_it_is(tmp_path: Path) -> None:
+    path = kinked(tmp_path / "v.ttf")
+    result = runner.invoke(app, ["check", str(path), "--kinds", "kink", "--html", str(tmp_path / "a.html")])
+    assert result.exit_code == 0, result.output
+    setup = re.search(r'id="setup">(.*?)</script>', (tmp_path / "a.html").read_text(), re.DOTALL)
+    assert setup
+    page = json.loads(setup[1])
+    (row,) = page["rows"]
+    turn, at = expected()
+    assert row[9] == f"wght {at:.4g} (400 to 900)"
+    font = gs.open_font(path, location={"wght": at})
+    assert page["outlines"] == [path_data(font.outline("k").contours, 2)]
+    # the path's own handles at the joint make the turn
+    first, *_, last = font.outline("k").contours[0].cubics()
+    leaving, arriving = first[1] - first[0], last[3] - last[2]
+    angle = np.arctan2(arriving[0] * leaving[1] - arriving[1] * leaving[0], arriving @ leaving)
+    assert abs(np.degrees(angle)) == pytest.approx(turn, abs=0.5)
 
 
 @pytest.mark.parametrize(("suffix", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")])

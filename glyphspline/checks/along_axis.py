@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray
-from .axis_kinks import LEAST, AxisKinks, Kink, kinks
+from .axis_kinks import LEAST, AxisKinks, Glyphs, Kink, kinks
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +69,7 @@ def along_axis(
     Raises:
         GlyphsplineError: there is no such axis.
     """
-    source = _OneGlyph(masters, location or {})
+    source = Glyphs([masters], location or {})
     (found,) = kinks(source, axis=tag, corner_angle=corner_angle)
     at = np.array([masters.normalised({**source.location, tag: float(value)}) for value in found.profile[:, 0]])
     weights = masters.weights_at(at)
@@ -81,19 +80,6 @@ def along_axis(
             lasts = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) > LEAST  # it may have a length elsewhere only
             energies[k] += integrals(cubics[lasts])[1]
     return AlongAxis(masters, source.location, found, energies * masters.metrics.units_per_em)
-
-
-class _OneGlyph:
-    """A glyph as a font of its own, which is what kinks are measured of."""
-
-    def __init__(self, masters: Masters, location: Mapping[str, float]) -> None:
-        self.path, self.axes = Path(masters.name), masters.axes
-        self.glyph_names: tuple[str, ...] = (masters.name,)
-        self.location, self._masters = location, masters
-
-    def masters(self, name: str) -> Masters:
-        """The glyph."""
-        return self._masters
 
 
 def places_along(along: AlongAxis, count: int) -> list[float]:

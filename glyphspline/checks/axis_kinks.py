@@ -56,6 +56,23 @@ class Source(Protocol):
         """A glyph in all its masters."""
 
 
+class Glyphs:
+    """Some glyphs as a font of their own.
+
+    Args:
+        masters: one glyph or more, of one font. location: axis tag to user-space value.
+    """
+
+    def __init__(self, masters: Sequence[Masters], location: Mapping[str, float]) -> None:
+        self.path, self.axes, self.location = Path(masters[0].name), masters[0].axes, location
+        self.glyph_names = tuple([item.name for item in masters])
+        self._masters = {item.name: item for item in masters}
+
+    def masters(self, name: str) -> Masters:
+        """A glyph."""
+        return self._masters[name]
+
+
 @dataclass(frozen=True)
 class Kink:
     """The largest turn of one joint along one axis, and its largest jump of curvature.
@@ -113,6 +130,11 @@ class AxisKinks(Sequence[Kink]):
     _rows: IntArray
     _points: FloatArray
     _masters: Sequence[FloatArray]
+
+    @property
+    def joints(self) -> IntArray:
+        """(n, 3) which joints: number of the glyph, of its contour, and of the segment that begins there."""
+        return self._rows
 
     @property
     def made(self) -> FloatArray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..outlines.outline import Outline
 from .finding import Finding
 from .kinds import KINDS, Thresholds
@@ -37,26 +35,27 @@ def check_many(outlines: Sequence[Outline], thresholds: Thresholds = THRESHOLDS)
 
     if not outlines:
         return []
-    limits = thresholds.limits(outlines[0].metrics.units_per_em)
-    return findings(outlines, measured([outline.arrays for outline in outlines], limits))
+    rows = measured([outline.arrays for outline in outlines], thresholds, outlines[0].metrics.units_per_em)
+    return findings([(outline.name, outline.gid) for outline in outlines], rows)
 
 
-def findings(outlines: Sequence[Outline], rows: Measured) -> list[list[Finding]]:
-    """What was measured of outlines, as values."""
-    found: list[list[Finding]] = [[] for _ in outlines]
+def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> list[list[Finding]]:
+    """What was measured of glyphs, names and glyph indices, as values; ``tags`` of the axes, if there are any."""
+    found: list[list[Finding]] = [[] for _ in glyphs]
     columns = (rows.glyphs, rows.contours, rows.segments, rows.kinds, rows.numbers, rows.points)
-    for g, contour, segment, what, (parameter, value, detail, other), (x, y) in zip(
-        *(column.tolist() for column in columns), strict=True
+    where = (rows.locations.tolist(), rows.between.tolist())
+    for g, contour, segment, what, (parameter, value, detail, other), (x, y), at, (low, high) in zip(
+        *(column.tolist() for column in columns), *where, strict=True
     ):
-        kind, outline = KINDS[what], outlines[g]
-        if kind.unit == "/em":
-            value *= outline.metrics.units_per_em
-        second, another = None if np.isnan(detail) else detail, None if other < 0 else int(other)
-        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=another)
+        kind, (name, gid) = KINDS[what], glyphs[g]
+        second, another = None if detail != detail else detail, None if other < 0 else int(other)
+        whom = "itself" if another is None else f"contour {another}"
+        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom)
         place = contour, segment, parameter, (x, y)
         own = Finding(
-            kind.name, kind.level, outline.name, outline.gid, *place, value, kind.unit, second, another, sentence
-        )
+            kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence,
+            dict(zip(tags, at, strict=True)) if at else {}, None if low != low else (low, high),
+        )  # fmt: skip
         found[g].append(own)
     return found
 

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .kinds import Level
+from .kinds import KINDS, LEVELS, Level
+
+SMALLER_IS_WORSE = frozenset({"short", "straight"})
+"""Kinds of which the smaller value is the worse."""
+
+_ORDER = {kind.name: k for k, kind in enumerate(KINDS)}
 
 
 @dataclass(frozen=True)
@@ -38,3 +44,29 @@ class Finding:
     sentence: str
     location: dict[str, float] = field(default_factory=dict)
     between: tuple[float, float] | None = None
+
+
+def badness(finding: Finding) -> float:
+    """A number that is larger for the worse of two findings of a kind."""
+    return -finding.value if finding.kind in SMALLER_IS_WORSE else finding.value
+
+
+def severity(finding: Finding) -> tuple[float, ...]:
+    """By which findings are sorted, the worst first: level, kind and value, and of equal ones their place."""
+    return (
+        -LEVELS.index(finding.level), _ORDER[finding.kind], -badness(finding), finding.gid, finding.contour,
+        finding.segment, finding.parameter,
+    )  # fmt: skip
+
+
+def place_on_axes(finding: Finding, home: Mapping[str, float]) -> str:
+    """Where a finding is on the axes, without those that are at ``home``: "wght 632 (400 to 900)"; else empty.
+
+    Args:
+        finding: of a font with axes, or not. home: user-space value of each axis where the font is open.
+    """
+    moved = ", ".join([f"{tag} {value:.4g}" for tag, value in finding.location.items() if value != home.get(tag)])
+    if finding.between is None or not moved:
+        return moved
+    low, high = finding.between
+    return f"{moved} ({'in a master' if low == high else f'{low:.4g} to {high:.4g}'})"

@@ -27,7 +27,7 @@ class Kind:
     Attributes:
         name: as in tables, JSON and baselines. level: how serious it is. unit: of the finding's value.
         sentence: what it says of a finding; ``{value}`` has its unit, ``{detail}`` is the second number, and
-            ``{other}`` the other contour.
+            ``{other}`` the other contour, "contour 3", or "itself".
     """
 
     name: str
@@ -46,15 +46,18 @@ KINDS = (
     Kind("extremum", "INFO", "units", "no point at an extremum, {value} beyond its ends"),
     Kind("short", "INFO", "units", "a segment of {value}"),
     Kind("handles", "INFO", "%", "a handle reaches {value} beyond where the two handles meet"),
-    Kind("overlap", "INFO", "", "crosses contour {other}"),
-    Kind("direction", "INFO", "", "runs in the wrong direction"),
-    Kind("doubled", "INFO", "units", "runs back along itself for {value}"),
-    Kind("crossing", "INFO", "", "crosses itself"),
+    Kind("overlap", "INFO", "places", "crosses {other}"),
+    Kind("direction", "INFO", "units²", "runs in the wrong direction"),
+    Kind("doubled", "INFO", "units", "lies on {other} for {value}"),
+    Kind("crossing", "INFO", "places", "crosses {other}"),
 )
 
 
 class Limits(NamedTuple):
-    """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`."""
+    """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`.
+
+    ``unit`` is a thousandth of an em.
+    """
 
     kink: float
     corner_angle: float
@@ -69,6 +72,7 @@ class Limits(NamedTuple):
     short: float
     handles: float
     doubled: float
+    unit: float
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,7 @@ class Thresholds:
         extremum: thousandths of an em by which a curve passes the ends of its segment.
         short: thousandths of an em below which a segment is very short.
         handles: share by which a handle reaches beyond the place where both meet.
-        doubled: thousandths of an em for which a contour runs back along itself.
+        doubled: thousandths of an em for which a contour lies on itself or on another one.
     """
 
     kink: float = 0.5
@@ -116,5 +120,5 @@ class Thresholds:
         return Limits(
             radians(self.kink), radians(self.corner_angle), self.jump / units_per_em, self.relative_jump, self.lump,
             radians(self.inflection), self.straight * unit, self.straight_length * unit, radians(self.slanted),
-            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit,
+            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit,
         )  # fmt: skip

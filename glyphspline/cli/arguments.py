@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .._version import __version__
+from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..types import Names
@@ -27,6 +28,8 @@ corner_option = partial(typer.Option, rich_help_panel="Corners")
 file_option = partial(typer.Option, rich_help_panel="What is written")
 look_option = partial(typer.Option, rich_help_panel="How drawings look")
 run_option = partial(typer.Option, rich_help_panel="The run")
+look_for_option = partial(typer.Option, rich_help_panel="What is looked for")
+say_option = partial(typer.Option, rich_help_panel="What is said")
 method_option = partial(typer.Option, rich_help_panel="The method, in the paper's terms")
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
@@ -76,7 +79,7 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
 
     if not context.resilient_parsing:
         try:
-            context.default_map = settings(path, context.command.params)
+            context.default_map = settings(path, context.command.params, context.command.name)
         except GlyphsplineError as error:
             typer.echo(f"glyphspline: {error}", err=True)
             raise typer.Exit(2) from None
@@ -252,14 +255,70 @@ WhereNone = Annotated[
     Fallback, method_option("--fallback", help="Where chords are too uneven for a guarantee (Lemma 2 has no interval).")
 ]
 
-AxisTag = Annotated[str | None, typer.Option("--axis", metavar="TAG", help="Only along this axis. Without it, all.")]
-Least = Annotated[
-    float, typer.Option("--least", parser=number, metavar="DEGREES", help="The smallest turn that is listed.")
+
+def more_thresholds(context: typer.Context, text: str | None) -> str | None:
+    """Thresholds of the command line after those of a file, which they replace one by one."""
+    before = (context.default_map or {}).get("thresholds")
+    return text if text == before else ",".join(filter(None, [before, text]))
+
+
+AxisTag = Annotated[
+    str | None, look_for_option("--axis", metavar="TAG", help="Of a variable font, only along this axis.")
 ]
-Rows = Annotated[int, typer.Option("--rows", parser=natural, metavar="N", help="Lines of the table.")]
+AxisSteps = Annotated[
+    int | None, look_for_option("--steps", parser=natural, metavar="N", help="Steps of each axis, besides the masters.")
+]
+KindNames = Annotated[
+    str | None, look_for_option("--kinds", metavar="KIND,…", help=f"Only of {', '.join(kind.name for kind in KINDS)}.")
+]
+Limits = Annotated[
+    str | None,
+    look_for_option(
+        "--thresholds", metavar="NAME=VALUE,…", callback=more_thresholds,
+        help="From which value on each kind counts, as kink=1,short=2: degrees, thousandths of an em, shares.",
+    ),
+]  # fmt: skip
+CheckAngle = Annotated[
+    float | None,
+    look_for_option(
+        "--corner-angle",
+        parser=number,
+        metavar="DEGREES",
+        help="From this turn on a joint is a corner. Without it, 12.",
+    ),
+]
+ShownLevel = Annotated[
+    Level | None,
+    say_option(
+        "--loglevel", "-l", case_sensitive=False,
+        help="The lowest level that is shown. Without it WARN in tables, INFO in JSON, CSV and HTML.",
+    ),
+]  # fmt: skip
+ErrorLevel = Annotated[
+    Level | None,
+    say_option("--error-level", "-e", case_sensitive=False, help="Exit status 1 for findings of this level or above."),
+]
+Known = Annotated[
+    Path | None,
+    say_option("--baseline", metavar="FILE", help="Leave out what this file knows, unless it is worse now."),
+]
+NewKnown = Annotated[
+    Path | None, say_option("--write-baseline", parser=place, metavar="FILE", help="Write all findings as known ones.")
+]
+CsvFile = Annotated[
+    Path | None, say_option("--csv", parser=place, metavar="FILE", help="As CSV; - is standard output.")
+]
+MarkdownFile = Annotated[
+    Path | None,
+    say_option("--ghmarkdown", parser=place, metavar="FILE", help="As Markdown for GitHub; - is standard output."),
+]
+HtmlFile = Annotated[
+    Path | None, say_option("--html", parser=place, metavar="FILE", help="As a page with a drawing of each place.")
+]
+Rows = Annotated[int, say_option("--rows", parser=natural, metavar="N", help="Lines of the table.")]
 Plot = Annotated[
     Path | None,
-    typer.Option("--plot", parser=place, metavar="FILE", help="Draw the largest turn against the axis: SVG, PNG, PDF."),
+    say_option("--plot", parser=place, metavar="FILE", help="Draw the largest turn against the axis: SVG, PNG, PDF."),
 ]
 AtlasFile = Annotated[Path, typer.Option("--out", "-o", parser=place, metavar="FILE", help="PDF to write.")]
 AlongAxis = Annotated[

@@ -1,26 +1,133 @@
-"""What ``check`` says of a font: a table, or JSON."""
+"""Fonts checked face by face: which findings are kept, counted, or known already."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
-from io import StringIO
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
-from ..checks.axis_kinks import AxisKinks, Kink, KinkReport
-from ..checks.axis_kinks import Source as VariableSource
-from ..errors import OptionError
-from ..types import counted
+from ..checks.baseline import Baseline
+from ..checks.finding import Finding, severity
+from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
+from ..errors import GlyphsplineError, OptionError
 from ..writers.figures.images import FigureKind
-from .closing import WIDE
-from .messages import printable
+from . import arguments as opt
+from .messages import say, stop
+from .progress import progress
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from ..checks.axis_kinks import AxisKinks, KinkReport
+    from ..readers import Source
+
+POOL_FROM = 2000
+POOL_FROM_ALONG_AXES = 100
+"""Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
+
+PATIENCE = 60.0
+"""Seconds that a worker may be silent."""
+
+ORDER = {kind.name: k for k, kind in enumerate(KINDS)}
 
 
-def kinks_over(report: KinkReport, least: float) -> list[Kink]:
-    """Kinks of all axes that turn by so many degrees: those that interpolation makes first, then by their turn."""
-    found = [kink for of_axis in report for kink in of_axis[: int((of_axis.turns >= least).sum())]]
-    return sorted(found, key=lambda kink: (-round(kink.made, 2), -kink.turn))
+@dataclass
+class Face:
+    """What was found in one face of a font.
+
+    Attributes:
+        font: its path as given, with the number of the face if there are several. family, style: of the font.
+        source: of it, where places are to be drawn. home: user-space value of each axis where the font is open.
+        findings: those that are kept, the worst first. counts: of all new ones, by kind. known: number of those that
+            the baseline has. levels: those of new findings.
+        glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
+        axes: kinks along each axis in numbers, if they are asked for. error: why the font could not be read.
+    """
+
+    font: str
+    family: str = ""
+    style: str = ""
+    source: Source | None = None
+    home: Mapping[str, float] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+    known: int = 0
+    levels: set[Level] = field(default_factory=set)
+    glyphs: int = 0
+    failed: list[tuple[str, str]] = field(default_factory=list)
+    axes: list[dict[str, Any]] = field(default_factory=list)
+    error: str | None = None
+
+    @property
+    def name(self) -> str:
+        """Family and style, by which a baseline knows the font."""
+        return f"{self.family} {self.style}".strip()
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is looked for, and what is kept of it.
+
+    Attributes:
+        kinds: names. kept: findings of this level or above are kept, others only counted.
+        axis: tag of the only one, or None. steps: of :func:`glyphspline.batch.check_run.check_font`; None: its own.
+        baseline: known findings, or None. written: where all findings are added, or None.
+        numbers: whether kinks along axes are wanted in numbers. plot: file of the diagram, or None.
+        drawn: whether sources are kept, for drawings.
+    """
+
+    thresholds: Thresholds
+    kinds: frozenset[str]
+    kept: Level
+    axis: str | None
+    steps: int | None
+    baseline: Baseline | None
+    written: Baseline | None
+    numbers: bool
+    plot: Path | None
+    drawn: bool
+
+
+def level_number(level: Level) -> int:
+    """Higher is more serious."""
+    return LEVELS.index(level)
+
+
+def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
+    """Thresholds as ``kink=1,short=2``; of one that is given twice the last counts.
+
+    Raises:
+        GlyphsplineError: one is not known, or is no number above 0.
+    """
+    names = [each.name for each in fields(Thresholds)]
+    found: dict[str, float] = {}
+    for item in filter(None, (text or "").replace(" ", "").split(",")):
+        name, _, value = item.partition("=")
+        if name.replace("-", "_") not in names:
+            raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
+        try:
+            found[name.replace("-", "_")] = float(value)
+        except ValueError:
+            raise OptionError(f"--thresholds is like kink=1,short=2, not {item!r}") from None
+    if corner_angle is not None:
+        found["corner_angle"] = corner_angle
+    return Thresholds(**found)
+
+
+def kinds_of(text: str | None) -> frozenset[str]:
+    """The kinds asked for; without any, all.
+
+    Raises:
+        OptionError: there is no such kind.
+    """
+    names = [name for name in (text or "").replace(" ", "").split(",") if name]
+    for name in names:
+        if name not in ORDER:
+            raise OptionError(f"--kinds has no {name!r}: there are {', '.join(ORDER)}")
+    return frozenset(names or ORDER)
 
 
 def require_figure(path: Path | None) -> None:
@@ -29,24 +136,140 @@ def require_figure(path: Path | None) -> None:
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
 
 
-def write_plot(path: Path, source: VariableSource, report: KinkReport) -> None:
+def asked_of(given: Mapping[str, Any]) -> Asked:
+    """What is looked for, from the command's arguments by name.
+
+    Raises:
+        GlyphsplineError: an option or the baseline is of no use.
+    """
+    every = any(given[name] for name in ("as_json", "csv", "html"))
+    return Asked(
+        thresholds=thresholds_of(given["thresholds"], given["corner_angle"]),
+        kinds=kinds_of(given["kinds"]),
+        kept=given["loglevel"] or ("INFO" if every else "WARN"),
+        axis=given["axis"],
+        steps=given["steps"],
+        baseline=None if given["baseline"] is None else Baseline.read(Path(given["baseline"])),
+        written=None if given["write_baseline"] is None else Baseline(),
+        numbers=given["as_json"],
+        plot=given["plot"],
+        drawn=given["html"] is not None,
+    )
+
+
+def reaches(face: Face, level: Level) -> bool:
+    """Whether a new finding of a face is of a level or above."""
+    return any(level_number(own) >= level_number(level) for own in face.levels)
+
+
+def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], alone: bool) -> Iterator[Face]:
+    """Check the faces of fonts, one after the other.
+
+    Of several, every glyph is checked unless some are asked for, and a font that cannot be read has an error instead
+    of findings. One font alone is its first face, and an error of it ends the command.
+    """
+    from ..batch import faces_of
+
+    face_index = given["face_index"]
+    if alone:
+        face_index = face_index or 0
+    location = opt.location_of(given["location"])
+    with ExitStack() as stack:
+        pool: Executor | None = None
+        for font in fonts:
+            try:
+                for source in faces_of(font, location, face_index):
+                    least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
+                    names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
+                    if pool is None and (given["jobs"] or (given["jobs"] is None and len(names) >= least)):
+                        from ..batch.schedule import workers
+
+                        pool = stack.enter_context(workers(given["jobs"], PATIENCE, checks=True))
+                    name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
+                    yield check_face(source, name, names, asked, pool, alone=alone, quiet=given["quiet"])
+            except GlyphsplineError as error:
+                if alone:
+                    raise
+                yield Face(str(font), error=str(error))
+
+
+def check_face(
+    source: Source, name: str, names: Sequence[str], asked: Asked, pool: Executor | None, *, alone: bool, quiet: bool
+) -> Face:
+    """Check glyphs of one face of the font called ``name``."""
+    from ..batch.check_run import STEPS, check_font
+    from ..report.findings_page import home_of
+
+    if alone and not names:
+        stop("none of the glyphs asked for is in the font")
+    tags = tags_of(source, asked, alone)
+    face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
+    with progress(quiet) as observer:
+        steps = STEPS if asked.steps is None else asked.steps
+        rows = check_font(source, names, asked.thresholds, axes=tags, steps=steps, executor=pool, observer=observer)
+        for row in rows:
+            face.glyphs += row.error is None
+            if row.error is not None:
+                face.failed.append((row.glyph, row.error))
+            keep(face, [item for item in row.findings if item.kind in asked.kinds], asked)
+    if alone and face.failed and not face.glyphs:
+        glyph, error = face.failed[0]
+        stop(f"{name}, glyph {glyph!r}: {error}")
+    face.findings.sort(key=severity)
+    if tags and (asked.numbers or asked.plot):
+        measure_axes(face, source, names, asked)
+    return face
+
+
+def tags_of(source: Source, asked: Asked, alone: bool) -> list[str]:
+    """The axes along which a font is checked.
+
+    Raises:
+        GlyphsplineError: the only font has no axes, or not the one asked for.
+    """
+    from ..checks.axis_kinks import tags_of
+
+    if asked.axis is None and not (alone and asked.plot):
+        return [axis.tag for axis in source.axes]
+    try:
+        return [tag for tag in tags_of(source, asked.axis) if asked.axis in (None, tag)]
+    except GlyphsplineError as error:
+        if alone:
+            raise
+        say(f"{error}; checked without it")
+        return []
+
+
+def keep(face: Face, findings: list[Finding], asked: Asked) -> None:
+    """Sort the findings of a glyph into what is known, counted and kept."""
+    if asked.written is not None:
+        asked.written.add(face.name, findings)
+    if asked.baseline is not None:
+        fresh = asked.baseline.new(face.name, findings)
+        face.known += len(findings) - len(fresh)
+        findings = fresh
+    face.counts.update([item.kind for item in findings])
+    face.levels.update([item.level for item in findings])
+    least = level_number(asked.kept)
+    face.findings += [item for item in findings if level_number(item.level) >= least]
+
+
+def measure_axes(face: Face, source: Source, names: Sequence[str], asked: Asked) -> None:
+    """Add kinks along the axes in numbers, and draw them."""
+    from ..checks.axis_kinks import kinks
+
+    report = kinks(source, names, asked.axis, corner_angle=asked.thresholds.corner_angle)
+    face.axes = [axis_facts(of_axis) for of_axis in report]
+    if asked.plot is not None:
+        write_plot(asked.plot, source, report)
+
+
+def write_plot(path: Path, source: Source, report: KinkReport) -> None:
     """Draw the report; see :func:`require_figure`."""
     from ..writers.figures.turns import turns_figure
 
     kind: Any = path.suffix[1:].lower()
     path.write_bytes(turns_figure(source, report, kind))
-
-
-def facts(font: str, report: KinkReport, found: Sequence[Kink]) -> dict[str, Any]:
-    """The report as JSON data; every finding says its kind."""
-    return {
-        "font": font,
-        "glyphs": report.glyphs,
-        "corner_angle": report.corner_angle,
-        "axes": [axis_facts(of_axis) for of_axis in report],
-        "findings": [{"kind": "kink", **asdict(kink)} for kink in found],
-        "failed": [{"glyph": glyph, "error": error} for glyph, error in report.failed],
-    }
 
 
 def axis_facts(found: AxisKinks) -> dict[str, Any]:
@@ -63,53 +286,3 @@ def axis_facts(found: AxisKinks) -> dict[str, Any]:
         "made_over_1": int((found.made > 1).sum()),
         "jumps_over_10_percent": int((found.jumps > 0.1).sum()),
     }
-
-
-def table(found: Sequence[Kink], shown: int) -> str:
-    """The largest kinks, one a line."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    lines = Table(box=box.ASCII2, show_edge=False)
-    for heading in ("glyph", "contour", "joint", "point", "turn", "in masters", "made", "jump", "location"):
-        lines.add_column(heading, justify="left" if heading in ("glyph", "location") else "right")
-    for kink in found[:shown]:
-        most = max(turn for _, turn in kink.at_masters)
-        lines.add_row(
-            Text(printable(kink.glyph)), str(kink.contour), str(kink.joint), "{:.0f}, {:.0f}".format(*kink.point),
-            f"{kink.turn:.2f}°", f"{most:.2f}°", f"{kink.made:.2f}°", f"{kink.jump:.0%}", place(kink),
-        )  # fmt: skip
-    text = StringIO()
-    Console(file=text, width=WIDE, color_system=None).print(lines)
-    return "\n".join([line.rstrip() for line in text.getvalue().splitlines()])
-
-
-def place(kink: Kink) -> str:
-    """Where a kink is on its axis, and between which masters: "wght 632 (400 to 900)"."""
-    low, high = kink.between
-    between = "in a master" if low == high else f"{low:.4g} to {high:.4g}"
-    return f"{kink.axis} {kink.location[kink.axis]:.4g} ({between})"
-
-
-def sentences(report: KinkReport, found: Sequence[Kink], shown: int, least: float) -> list[str]:
-    """What the table does not say: each axis in a line, and how many kinks are left out."""
-    lines = []
-    for of_axis in report:
-        numbers: Mapping[str, Any] = axis_facts(of_axis)
-        line = f"{numbers['axis']}: {counted(numbers['joints'], 'smooth joint')}"
-        if numbers["joints"]:
-            line += (
-                f", turn up to {numbers['largest_turn']:.2f}° ({numbers['largest_turn_at_masters']:.2f}° in masters), "
-                f"{numbers['turns_over_1']} over 1°; made by interpolation up to {numbers['largest_made']:.2f}°, "
-                f"{numbers['made_over_1']} over 1°; curvature jumps over 10 % at "
-                f"{numbers['jumps_over_10_percent'] / numbers['joints']:.0%}"
-            )
-        lines.append(line)
-    if len(found) > shown:
-        lines.append(f"and {len(found) - shown} more from {least:g}°")
-    lines += [f"not measured: {glyph}: {error}" for glyph, error in report.failed[:3]]
-    if len(report.failed) > 3:
-        lines.append(f"not measured: and {len(report.failed) - 3} more")
-    return lines

@@ -11,7 +11,6 @@ from typing import Any
 import typer
 
 from ..fitting.options import Options
-from ..outlines.sampling import CORNER_ANGLE
 from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption
@@ -227,51 +226,50 @@ def atlas(
 
 @app.command()
 def check(
-    font: opt.FontFile,
+    fonts: opt.FontFiles,
+    kinds: opt.KindNames = None,
+    thresholds: opt.Limits = None,
+    corner_angle: opt.CheckAngle = None,
     axis: opt.AxisTag = None,
+    steps: opt.AxisSteps = None,
     text: opt.Text = None,
     text_file: opt.TextFile = None,
     unicodes: opt.Unicodes = None,
     glyphs: opt.Glyphs = None,
     gids: opt.Gids = None,
     every: opt.Every = False,
-    face_index: opt.FaceIndex = 0,
+    face_index: opt.OneFace = None,
     location: opt.Location = None,
-    corner_angle: opt.CornerAngle = CORNER_ANGLE,
-    least: opt.Least = 0.5,
+    loglevel: opt.ShownLevel = None,
+    error_level: opt.ErrorLevel = None,
+    baseline: opt.Known = None,
+    write_baseline: opt.NewKnown = None,
     rows: opt.Rows = 20,
+    csv: opt.CsvFile = None,
+    ghmarkdown: opt.MarkdownFile = None,
+    html: opt.HtmlFile = None,
     plot: opt.Plot = None,
     as_json: opt.Json = False,
+    jobs: opt.Jobs = None,
+    config: opt.Config = None,
+    quiet: opt.Quiet = False,
 ) -> None:
-    """Find kinks of a variable font: smooth joints that turn along an axis. Nothing is converted.
+    """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
 
-    The joints whose turn interpolation makes most come first. All glyphs are checked unless some are asked for. Other
-    axes are at --location, or at their default.
+    The worst findings come first; kinks are WARN, the rest INFO. All glyphs are checked unless some are asked for,
+    those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
+    for it, and 2 if a font cannot be read.
     """
     given = dict(locals())
-    with errors():
-        from ..checks.axis_kinks import kinks
-        from ..readers import open_source
-        from . import checking
+    with errors(quiet):
+        listen(quiet)
+        from .check_outputs import run as run_check
+        from .checking import reaches
 
-        checking.require_figure(plot)
-        source = open_source(font, face_index, opt.location_of(location))
-        names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
-        if not names:
-            stop("none of the glyphs asked for is in the font")
-        report = kinks(source, names, axis, corner_angle=corner_angle)
-        if not report.glyphs:
-            stop(f"{font}, glyph {report.failed[0][0]!r}: {report.failed[0][1]}")
-        found = checking.kinks_over(report, least)
-        if plot is not None:
-            checking.write_plot(plot, source, report)
-    if as_json:
-        typer.echo(json.dumps(checking.facts(str(font), report, found), indent=1, ensure_ascii=False))
-        return
-    if found:
-        typer.echo(checking.table(found, rows))
-    for line in checking.sentences(report, found, rows, least):
-        say(line)
+        faces = run_check(given)
+    unread = any(face.error is not None for face in faces)
+    bad = error_level is not None and any(reaches(face, error_level) for face in faces)
+    raise typer.Exit(2 if unread else 1 if bad else 0)
 
 
 @app.command()

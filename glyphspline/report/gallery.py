@@ -8,22 +8,17 @@ from __future__ import annotations
 
 import os
 import re
-from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from hashlib import sha256
-from importlib.resources import files
 from pathlib import Path
-from string import Template
 from typing import Any
 
 from ..errors import GlyphsplineError
 from ..fitting.options import Options
 from ..fitting.quantities import QUANTITIES
-from ..writers.svg.colours import SIDES, class_colour
-from ..writers.svg.markup import text
 from .data import COLUMNS, FOLDER, as_json, row_of, script
 from .glyph_measures import MEASURES
+from .pages import page_of, palette
 
 TABLE = 5000
 """Glyphs in a file of measures."""
@@ -122,22 +117,15 @@ def _end_of(path: Path, size: int) -> bytes:
 def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
     setup = {"runs": list(runs), "measures": measures(), "palette": palette()}
-    script = "".join(package_text(name) for name in SCRIPTS)
-    page = Template(package_text("gallery.html")).substitute(
-        heading=text(heading), style=package_text("theme.css") + package_text("gallery.css"), layers=layer_switches(),
-        setup=as_json(setup), script=script, digest=b64encode(sha256(("\n" + script).encode()).digest()).decode(),
-    )  # fmt: skip
+    page = page_of(
+        "gallery.html", ("theme.css", "gallery.css"), SCRIPTS, setup, heading=heading, layers=layer_switches()
+    )
     _replace(out_dir / "index.html", page)
 
 
 def measures() -> list[list[str]]:
     """Name, label, unit and meaning of each measure."""
     return [[name, *QUANTITIES[name]] for name in MEASURES]
-
-
-def palette() -> list[str]:
-    """The colours of curvature, from the most concave ink to the most convex."""
-    return [class_colour(index) for index in range(-SIDES, SIDES + 1)]
 
 
 def layer_switches() -> str:
@@ -147,11 +135,6 @@ def layer_switches() -> str:
         for name, (label, key) in LAYERS.items()
     )
     return f'<fieldset class="layers"><legend class="unseen">Layers</legend>{switches}</fieldset>'
-
-
-def package_text(name: str) -> str:
-    """A text file of this package."""
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 def _heading(run: Mapping[str, Any]) -> str:

@@ -20,7 +20,8 @@ from .. import compiling
 from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS, Options
 from ..readers.facts import axis_facts
-from ..report.gallery import measures, palette
+from ..report.gallery import measures
+from ..report.pages import palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
 from .guard import Guard

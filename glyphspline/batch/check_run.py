@@ -1,0 +1,262 @@
+"""Fonts checked whole: findings glyph by glyph, in glyph index order, from workers.
+
+Between processes findings are columns of numbers; they become values one glyph at a time, when their glyph's turn has
+come.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from hashlib import blake2b
+from itertools import groupby
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..checks.check import THRESHOLDS, findings
+from ..checks.finding import Finding
+from ..checks.kinds import DIRECTION, Thresholds
+from ..errors import FontError, GlyphsplineError
+from ..outlines.masters import Masters
+from ..outlines.outline import FontMetrics, Outline
+from ..readers import Font, Source
+from ..types import BoolArray, FloatArray, IntArray
+from .job import Place
+from .pool import sign_of_life
+from .schedule import InProcess, pool_size, slices, spread
+
+if TYPE_CHECKING:
+    from ..checks.measured import Measured
+
+STEPS = 8
+"""Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
+
+BATCH, MASTERS_BATCH = 200, 8
+"""Glyphs measured at once: a few megabytes of outlines. A worker's time limit is for one batch."""
+
+DECIMALS = 2
+"""Decimals of coordinates up to which two contours have one shape."""
+
+Observer = Callable[[int, int, int], None]
+"""Called with the number of glyphs done, of all glyphs, and of those that failed."""
+
+
+class GlyphFindings(NamedTuple):
+    """What was found in a glyph.
+
+    Attributes:
+        findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
+    """
+
+    glyph: str
+    gid: int
+    findings: list[Finding]
+    error: str | None
+
+
+class CheckJob(NamedTuple):
+    """What a worker needs: the source, and what is looked for.
+
+    Attributes:
+        metrics: of a font file that is read as it is, in bulk; None of any other source.
+        axes: tags of the axes along which glyphs are looked at; () for the font where it is open.
+    """
+
+    place: Place
+    metrics: FontMetrics | None
+    thresholds: Thresholds
+    axes: tuple[str, ...]
+    steps: int
+
+
+class Task(NamedTuple):
+    """One glyph."""
+
+    gid: int
+    name: str
+
+
+class Checked(NamedTuple):
+    """What a worker found in some glyphs.
+
+    Attributes:
+        tasks: those that were measured. rows: of them. shapes: (n,) of the row's contour, wherever it stands.
+        errors: why others were not.
+    """
+
+    tasks: list[Task]
+    rows: Measured
+    shapes: IntArray
+    errors: dict[int, str]
+
+
+def check_font(
+    source: Source,
+    names: Sequence[str],
+    thresholds: Thresholds = THRESHOLDS,
+    *,
+    axes: Sequence[str] | None = None,
+    steps: int = STEPS,
+    executor: Executor | None = None,
+    observer: Observer | None = None,
+    once: bool = True,
+) -> Iterator[GlyphFindings]:
+    """Check glyphs of a font; yield them in glyph index order. Nothing is fitted.
+
+    The result does not depend on the number of workers. A glyph that cannot be read, or takes longer than the workers'
+    time limit, has an error, and costs no other glyph.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        names: of its glyphs. thresholds: from which values on it counts.
+        axes: tags of the axes along which glyphs of a variable font are checked; without it all, of () none: glyphs
+            are checked where the font is open.
+        steps: of each axis, at whose ends glyphs are checked besides the masters.
+        executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
+        observer: called after each chunk of glyphs.
+        once: a contour that stands in several glyphs, as components do, is told of in the first one only. What it does
+            to other contours, and its direction, is told in each.
+
+    Raises:
+        FontError: the source has no such glyph, or no such axis.
+    """
+    tags = tuple(axis.tag for axis in source.axes)
+    chosen = tags if axes is None else tuple(axes)
+    if unknown := [tag for tag in chosen if tag not in tags]:
+        raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
+    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    if unknown := [name for name in names if name not in index]:
+        raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
+    tasks = sorted({Task(index[name], name) for name in names})
+    place = (source.path.absolute(), source.face_index, tuple(source.location.items()))
+    in_bulk = type(source) is Font and not chosen
+    job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps)
+    return _found(job, tasks, tags if chosen else (), executor or InProcess(), observer, once)
+
+
+def _found(
+    job: CheckJob, tasks: list[Task], tags: Sequence[str], pool: Executor, observer: Observer | None, once: bool
+) -> Iterator[GlyphFindings]:
+    most = MASTERS_BATCH if job.axes else BATCH
+    chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
+    waiting: dict[Task, tuple[Sequence[Task], Checked]] = {}  # by a chunk's first glyph, until those before are done
+    told: dict[int, int] = {}
+    done = broken = following = 0
+    for chunk, result in spread(pool, check_tasks, job, chunks):
+        if isinstance(result, Exception):
+            result = _nothing({task.gid: result.message for task in chunk})
+        waiting[chunk[0]] = chunk, result
+        done, broken = done + len(chunk), broken + len(result.errors)
+        if observer:
+            observer(done, len(tasks), broken)
+        while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
+            following += len(ready[0])
+            yield from _values(*ready, tags, told if once else None)
+
+
+def _values(
+    tasks: Sequence[Task], checked: Checked, tags: Sequence[str], told: dict[int, int] | None
+) -> Iterator[GlyphFindings]:
+    """Findings of a chunk's glyphs, but for those of a shape that was told of in an earlier glyph."""
+    rows = checked.rows
+    if told is not None and len(rows.glyphs):
+        gids = np.array([task.gid for task in checked.tasks])[rows.glyphs].tolist()
+        for shape, gid in sorted(zip(checked.shapes.tolist(), gids, strict=True), key=lambda pair: pair[1]):
+            told.setdefault(shape, gid)
+        first = np.array([told[shape] for shape in checked.shapes.tolist()]) == gids
+        rows = rows.chosen(np.flatnonzero(first | ~of_shape(rows)))
+    found = findings([(task.name, task.gid) for task in checked.tasks], rows, tags)
+    of_gid = {task.gid: of_glyph for task, of_glyph in zip(checked.tasks, found, strict=True)}
+    for task in tasks:
+        yield GlyphFindings(task.name, task.gid, of_gid.get(task.gid, []), checked.errors.get(task.gid))
+
+
+def of_shape(rows: Measured) -> BoolArray:
+    """(n,) which findings are of a contour by itself, wherever it stands."""
+    return (rows.numbers[:, 3] < 0) & (rows.kinds != DIRECTION)
+
+
+def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
+    """Check glyphs, in a worker. A glyph that fails costs only itself."""
+    sign_of_life()
+    errors: dict[int, str] = {}
+    read = list[Outline | Masters]()
+    for task, glyph in zip(tasks, _read(job, tasks), strict=True):
+        if isinstance(glyph, GlyphsplineError):
+            errors[task.gid] = glyph.message
+        else:
+            read.append(glyph)
+    parts = []
+    for _, group in groupby(read, key=lambda glyph: glyph.metrics.units_per_em):  # each drawing has its own em
+        parts += _measured(job, list(group), errors)
+        sign_of_life()
+    if not parts:
+        return _nothing(errors)
+    from ..checks.measured import Measured
+
+    measured = [(Task(glyph.gid, glyph.name), glyph) for of_part, _ in parts for glyph in of_part]
+    starts = np.cumsum([0, *(len(of_part) for of_part, _ in parts)])
+    own = [rows._replace(glyphs=rows.glyphs + start) for (_, rows), start in zip(parts, starts, strict=False)]
+    rows = Measured._make([np.concatenate(columns) for columns in zip(*own, strict=True)])
+    return Checked([task for task, _ in measured], rows, _shapes([glyph for _, glyph in measured], rows), errors)
+
+
+def _read(job: CheckJob, tasks: Sequence[Task]) -> Sequence[Outline | Masters | GlyphsplineError]:
+    from .worker import bulk_reader, source_of
+
+    if job.axes:
+        found: list[Outline | Masters | GlyphsplineError] = []
+        source = source_of(*job.place)
+        for task in tasks:
+            try:
+                found.append(source.masters(task.name))
+            except GlyphsplineError as error:
+                found.append(error)
+        return found
+    if job.metrics is not None:
+        return bulk_reader(*job.place).outlines([(task.name, task.gid, ()) for task in tasks], job.metrics)
+    return source_of(*job.place).outlines([task.gid for task in tasks], errors="return")
+
+
+def _measured(
+    job: CheckJob, glyphs: Sequence[Outline | Masters], errors: dict[int, str]
+) -> list[tuple[Sequence[Outline | Masters], Measured]]:
+    """Measure glyphs together; after an unexpected error, one by one."""
+    from ..checks.measured import measured
+    from ..checks.on_axes import on_axes
+
+    try:
+        if job.axes:
+            masters = [glyph for glyph in glyphs if isinstance(glyph, Masters)]
+            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds)
+        else:
+            arrays = [glyph.arrays for glyph in glyphs if isinstance(glyph, Outline)]
+            rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em)
+        return [(glyphs, rows)]
+    except Exception as error:
+        if len(glyphs) > 1:
+            return [part for glyph in glyphs for part in _measured(job, [glyph], errors)]
+        message = error.message if isinstance(error, GlyphsplineError) else f"{type(error).__name__}: {error}"
+        errors[glyphs[0].gid] = message
+        return []
+
+
+def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
+    """(n,) a number for the shape of each row's contour, the same wherever it stands."""
+    found = np.zeros(len(rows.glyphs), dtype=np.int64)
+    known: dict[tuple[int, int], int] = {}
+    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), strict=True)):
+        if key not in known:
+            contour = glyphs[key[0]].contours[key[1]]
+            points: FloatArray = contour.points - contour.points[..., :1, :]
+            data = (np.round(points, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
+            known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
+        found[k] = known[key]
+    return found
+
+
+def _nothing(errors: dict[int, str]) -> Checked:
+    from ..checks.measured import nothing
+
+    return Checked([], nothing(), np.zeros(0, dtype=np.int64), errors)

@@ -1,0 +1,290 @@
+"""What the contours of a glyph enclose: overlaps, self-crossings, doubled strands, and wrong directions.
+
+Contours *cross* where one changes to the other side of the other; to touch is no crossing. Strands are *doubled* where
+they lie on each other. Of a contour that runs to a tip and straight back, a spur, they may be apart by what rounding to
+whole units makes of them; other strands are doubled if they are the same but for rounding errors.
+
+A contour runs in the *wrong direction* if it bounds no ink: both its sides are filled, by the nonzero rule, wherever
+one looks. That is a counter that runs like the contour around it. An outer contour, which has no ink around it, is
+wrong if it runs unlike most outer contours of its glyph. Fonts draw outer contours clockwise or counter-clockwise, and
+both are right.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.bezier import evaluate
+from ..curves.contacts import crossing_contacts
+from ..curves.crossings import meetings
+from ..curves.cubics import directions, jet, length, split
+from ..curves.integrals import area, integrals
+from ..outlines.contour_arrays import ContourArrays
+from ..types import BoolArray, FloatArray, IntArray
+from .joints import NO_HANDLE, ROUNDING
+from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, Limits
+from .table import COLUMNS, add
+
+NEARLY_ALL = 0.9
+"""Share of a contour that lies on another one in the same direction, from which it is a copy."""
+
+STEPS = 16
+"""Chords a segment on the two sides of a spur."""
+
+HALVINGS = 20
+"""Of a chord, for the place where the sides of a spur part."""
+
+LOOKED_AT = 0.41
+"""Parameter of the point of a segment whose two sides are looked at: contours may share ends and middles of theirs."""
+
+MOST_HALVINGS = 128
+"""Most halvings of a segment for a ray: those around the ray's beginning cannot be told from a point by then."""
+
+
+def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, limits: Limits) -> FloatArray:
+    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.table`.
+
+    Two contours that cross are told once, of the first, where it first crosses; the value is the number of places. The
+    value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
+    :func:`..curves.crossings.meetings` gives up, only spurs and directions are told.
+
+    Args:
+        cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
+        glyphs: (G + 1,) where the contours of each glyph begin.
+    """
+    offsets = contours.offsets
+    met, _ = meetings(cubics, offsets, glyphs)
+    touch = ~np.isnan(met[:, 4])
+    crossed, touching = met[~touch, :4], met[touch]
+    if len(touching):
+        crossed = np.concatenate([crossed, crossing_contacts(cubics, offsets, touching)])
+    crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
+    doubled = _doubled(cubics, offsets, touching, limits.doubled)
+    crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
+    pairs = doubled[:, [1, 5]].astype(np.int64)
+    lies[pairs[pairs[:, 1] >= 0]] = True
+    found = contour_findings(cubics, contours, glyphs, crosses, lies, limits)
+    spurs = found[found[:, 0] == DOUBLED, 1]
+    told = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs)
+    return np.concatenate([_crossed(crossed), doubled[~told], found])
+
+
+def _crossed(crossed: FloatArray) -> FloatArray:
+    """Overlaps and self-crossings, a row for each pair of contours: from (k, 4) crossings."""
+    crossed = crossed[np.lexsort(crossed.T[::-1])]
+    pairs, first, counts = np.unique(crossed[:, :2], axis=0, return_index=True, return_counts=True)
+    rows = np.full((len(pairs), COLUMNS), np.nan)
+    itself = pairs[:, 0] == pairs[:, 1]
+    rows[:, 0] = np.where(itself, CROSSING, OVERLAP)
+    rows[:, 1], rows[:, 2], rows[:, 3] = pairs[:, 0], crossed[first, 2], counts
+    rows[:, 5] = np.where(itself, -1, pairs[:, 1])
+    return rows
+
+
+def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least: float) -> FloatArray:
+    """Contours that lie on themselves or on others, from (k, 6) contacts.
+
+    Of two contours that run in one direction where they lie on each other, one is told only if nearly all of it does:
+    parts that overlap may share an edge.
+    """
+    stretches = touching[touching[:, 4] > touching[:, 2]]
+    rows = []
+    for c, d in np.unique(stretches[:, :2].astype(np.int64), axis=0).tolist():
+        own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
+        own = own[np.argsort(own[:, 0], kind="stable")]
+        one, other = (cubics[offsets[k] : offsets[k + 1]] for k in (c, d))
+        if c == d:
+            total = _length_of(one, own[:, ::2])
+        else:
+            along = own[:, 3] > own[:, 1]
+            total = _length_of(one, own[~along, ::2]) if not along.all() else 0.0
+            spans = np.abs(own[along, 2:] - own[along, :2]).sum(axis=0) > (len(one) / 2, len(other) / 2)
+            if total < least and spans.any():
+                total = _length_of(one, own[along, ::2])
+                total *= total >= NEARLY_ALL * min(integrals(one)[0], integrals(other)[0])
+        if total >= least:
+            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
+    return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+
+
+def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
+    """Length of the union of stretches (k, 2) of a chain (m, 4, 2) of cubics, each inside one, by where they begin."""
+    begin, end = stretches.T
+    begin = np.maximum(begin, np.maximum.accumulate(np.concatenate([[0.0], end]))[:-1])  # where those before end
+    begin, end = np.stack([begin, end])[:, begin < end]
+    segments = np.minimum(begin.astype(np.int64), len(chain) - 1)
+    places = begin[:, None] + (end - begin)[:, None] * np.linspace(0, 1, STEPS + 1) - segments[:, None]
+    points = evaluate(np.repeat(chain[segments], STEPS + 1, axis=0), places.ravel()).reshape(-1, STEPS + 1, 2)
+    return float(np.hypot(*np.diff(points, axis=1).reshape(-1, 2).T).sum())
+
+
+@compiled
+def contour_findings(
+    cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, crosses: BoolArray, lies: BoolArray, limits: Limits
+) -> FloatArray:
+    """(n, 6) spurs and wrong directions.
+
+    Args:
+        crosses, lies: (C,) whether a contour crosses another one, and whether it lies on one: its sides are unknown.
+    """
+    table, count = np.empty((16, COLUMNS)), 0
+    offsets = contours.offsets
+    unit = min(ROUNDING, limits.unit)
+    for c in range(len(offsets) - 1):
+        a, b = offsets[c], offsets[c + 1]
+        for j in range(a, b):
+            i = j - 1 if j > a else b - 1
+            if runs_back(cubics, i, j, contours.degrees):
+                run = spur_length(cubics[a:b], j - a, unit)
+                if run >= limits.doubled:
+                    table = add(table, count, DOUBLED, c, j - a, run, np.nan, -1)
+                    count += 1
+    boxes = np.empty((len(offsets) - 1, 4))
+    for c in range(len(boxes)):
+        box = boxes[c]
+        box[0] = box[1] = np.inf
+        box[2] = box[3] = -np.inf
+        for s in range(offsets[c], offsets[c + 1]):
+            for k in range(4):
+                for axis in range(2):
+                    box[axis] = min(box[axis], cubics[s, k, axis])
+                    box[2 + axis] = max(box[2 + axis], cubics[s, k, axis])
+    areas, outer = np.empty(len(boxes)), np.empty(len(boxes), dtype=np.bool_)
+    pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
+    for g in range(len(glyphs) - 1):
+        most = total = 0.0
+        for c in range(glyphs[g], glyphs[g + 1]):
+            areas[c], outer[c] = area(cubics[offsets[c] : offsets[c + 1]]), False
+            if abs(areas[c]) <= limits.unit * limits.unit:
+                continue
+            sign, hidden, around = (1 if areas[c] > 0 else -1), True, -1
+            for s in range(offsets[c], offsets[c + 1]):
+                x, y, _, _, _, _ = jet(cubics, s, LOOKED_AT)
+                outside, innermost = 0, -1
+                for d in range(glyphs[g], glyphs[g + 1]):
+                    box = boxes[d]
+                    if d == c or x < box[0] or y < box[1] or x > box[2] or y > box[3]:
+                        continue
+                    turns = winding(cubics, offsets[d], offsets[d + 1], x, y, pieces)
+                    outside += turns
+                    if turns * sign > 0 and (innermost < 0 or abs(areas[d]) < abs(areas[innermost])):
+                        innermost = d
+                if outside == 0 or outside + sign == 0:
+                    hidden = False
+                    outer[c] = outer[c] or outside == 0
+                    if outer[c] or not crosses[c]:
+                        break
+                elif around < 0:
+                    around = innermost
+            if hidden and not lies[c]:
+                table = add(table, count, DIRECTION, c, 0.0, abs(areas[c]), np.nan, around)
+                count += 1
+            if outer[c]:
+                most += sign
+                total += areas[c]
+        for c in range(glyphs[g], glyphs[g + 1]):
+            if outer[c] and areas[c] * (most if most != 0.0 else total) < 0.0:
+                table = add(table, count, DIRECTION, c, 0.0, abs(areas[c]), np.nan, -1)
+                count += 1
+    return table[:count]
+
+
+@compiled(internal=True)
+def runs_back(cubics: FloatArray, i: int, j: int, degrees: IntArray) -> bool:
+    """Whether the direction reverses from segment i to segment j, but for what rounding to whole units may make."""
+    _, _, ax, ay = directions(cubics, i, NO_HANDLE)
+    bx, by, _, _ = directions(cubics, j, NO_HANDLE)
+    if ax * bx + ay * by >= 0.0:
+        return False
+    before, after = 3 / degrees[i], 3 / degrees[j]  # the segments are raised to cubics
+    first, second = before * length(ax, ay), after * length(bx, by)
+    turn = np.arctan2(abs(ax * by - ay * bx), ax * bx + ay * by)
+    return turn >= np.pi - ROUNDING * (1 / first + 1 / second)
+
+
+@compiled(internal=True)
+def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
+    """For how long the two sides of a closed chain (m, 4, 2) lie on each other from a joint on, not farther apart.
+
+    0 if not even one of the two segments at the joint lies on the other side as a whole: a sharp tip is no spur.
+    """
+    m, run, back = len(cubics), 0.0, 0
+    most = m * STEPS // 2
+    x0, y0 = cubics[joint, 0, 0], cubics[joint, 0, 1]
+    for k in range(most):
+        segment = (joint + k // STEPS) % m
+        begin, end = k % STEPS / STEPS, (k % STEPS + 1) / STEPS
+        x, y, _, _, _, _ = jet(cubics, segment, end)
+        near = beside_chord(cubics, joint, back, x, y)
+        while back + 1 < most:
+            beyond = beside_chord(cubics, joint, back + 1, x, y)
+            if beyond > near:
+                break
+            near, back = beyond, back + 1
+        if near > apart:
+            low, high = begin, end
+            for _ in range(HALVINGS):
+                t = (low + high) / 2
+                x, y, _, _, _, _ = jet(cubics, segment, t)
+                if beside_chord(cubics, joint, back, x, y) > apart:
+                    high = t
+                else:
+                    low = t
+            x, y, _, _, _, _ = jet(cubics, segment, low)
+            run += length(x - x0, y - y0)
+            whole = k >= STEPS or back >= STEPS
+            for which in range(3):  # a spur ends at the end of a segment, and what is beyond comes from the tolerance
+                end = segment if which == 0 else (joint - 1 - back // STEPS + which - 1) % m
+                beyond = length(x - cubics[end, 0, 0], y - cubics[end, 0, 1])
+                if end != joint and beyond <= 2 * apart:
+                    return run - beyond
+            return run if whole else 0.0
+        run += length(x - x0, y - y0)
+        x0, y0 = x, y
+    return run
+
+
+@compiled(internal=True)
+def beside_chord(cubics: FloatArray, joint: int, k: int, x: float, y: float) -> float:
+    """Distance of a point from the chord of number k that leads from a joint of a closed chain backwards."""
+    m = len(cubics)
+    segment, begin = (joint - 1 - k // STEPS) % m, 1 - k % STEPS / STEPS
+    ax, ay, _, _, _, _ = jet(cubics, segment, begin)
+    bx, by, _, _, _, _ = jet(cubics, segment, begin - 1 / STEPS)
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    along = min(max(((x - ax) * dx + (y - ay) * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    return length(x - ax - along * dx, y - ay - along * dy)
+
+
+@compiled(internal=True)
+def winding(cubics: FloatArray, first: int, last: int, x: float, y: float, pieces: FloatArray) -> int:
+    """How often the contour of the segments from ``first`` up to ``last`` runs around a point, counter-clockwise.
+
+    Args:
+        pieces: (MOST_HALVINGS + 1, 4, 2), for the halves of a segment that the ray to the right of the point may meet.
+    """
+    found = 0
+    for s in range(first, last):
+        for k in range(8):
+            pieces[0, k // 2, k % 2] = cubics[s, k // 2, k % 2]
+        top, halvings = 0, 0
+        while top >= 0:
+            b = pieces[top]
+            left = right = above = 0
+            for k in range(4):
+                left += b[k, 0] < x
+                right += b[k, 0] > x
+                above += b[k, 1] > y
+            if left == 4 or above == 0 or above == 4:
+                top -= 1
+            elif right == 4 or halvings == MOST_HALVINGS:
+                found += int(b[3, 1] > y) - int(b[0, 1] > y)
+                top -= 1
+            else:
+                for k in range(8):
+                    pieces[top + 1, k // 2, k % 2] = pieces[top, k // 2, k % 2]
+                split(pieces[top + 1], 0.5, pieces[top])
+                top, halvings = top + 1, halvings + 1
+    return found

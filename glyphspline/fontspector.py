@@ -1,0 +1,117 @@
+"""A plug-in of fontspector, which gives what ``glyphspline check`` finds in its report.
+
+fontspector runs ``glyphspline-fontspector --metadata`` for the profile ``glyphspline`` and its check, and
+``glyphspline-fontspector --check glyphspline/outlines FONT`` for the findings in a font, as JSON. Thresholds, kinds and
+baseline are those of ``[tool.glyphspline.check]`` in the ``pyproject.toml`` of the working folder.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from .cache import settle
+from .checks.finding import Finding, severity
+from .errors import GlyphsplineError
+from .extras import need
+
+PROFILE = "glyphspline"
+CHECK = "glyphspline/outlines"
+
+LISTED = 10
+"""Findings of a kind that are named in a message, as in fontspector's own; its ``metadata`` has all."""
+
+RATIONALE = (
+    "Joints that are meant to be smooth but turn, jumps and swellings of curvature, nearly straight segments, missing "
+    "points at extrema, crossing and wrongly directed contours, in the outlines as the font has them; of a variable "
+    "font also between its masters. The code of a message is the kind of its findings."
+)
+
+
+def main() -> int:
+    """The command ``glyphspline-fontspector``; returns its exit status."""
+    try:
+        api = need("fontspector")
+        settle()
+    except GlyphsplineError as error:
+        sys.stderr.write(f"glyphspline-fontspector: {error}\n")
+        return 2
+    return int(api.plugin_main(register, plugin_name="glyphspline"))
+
+
+def register(plugin: Any) -> None:
+    """Register the check and the profile with fontspector's plug-in."""
+    api = need("fontspector")
+    title = "Are outlines free of kinks, curvature jumps and other faults?"
+    decorated = api.check(id=CHECK, title=title, rationale=RATIONALE, applies_to="TTF")(outlines)
+    plugin.register_simple_profile(PROFILE, [decorated], "Outlines")
+
+
+def outlines(font: Path) -> Iterator[Any]:
+    """The statuses of a font, a message for each kind of finding; PASS without any.
+
+    Raises:
+        GlyphsplineError: the font cannot be read; fontspector reports an ERROR.
+    """
+    api = need("fontspector")
+    found, failed = found_in(font)
+    for kind, same in groupby(sorted(found, key=severity), key=lambda finding: finding.kind):
+        findings = list(same)
+        yield findings[0].level, api.Message(kind, message_of(findings), [problem(item) for item in findings])
+    if failed:
+        lines = [f"* {glyph}: {error}" for glyph, error in failed]
+        yield "WARN", api.Message("not-checked", "\n".join(["Glyphs that cannot be checked:", "", *cut(lines)]))
+    if not (found or failed):
+        yield "PASS"
+
+
+def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
+    """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
+    from typer.main import get_command
+
+    from .cli.checking import asked_of, check_fonts
+    from .cli.commands import app
+
+    command: Any = get_command(app)
+    given = command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]).params
+    faces = list(check_fonts([font], replace(asked_of(given), kept="INFO"), given, alone=False))
+    for face in faces:
+        if face.error is not None:
+            raise GlyphsplineError(face.error)
+    return [item for face in faces for item in face.findings], [pair for face in faces for pair in face.failed]
+
+
+def message_of(findings: list[Finding]) -> str:
+    """The findings of a kind, the worst first, as a Markdown list."""
+    lines = [f"* {item.glyph}, {place_of(item)}: {item.sentence}" for item in findings]
+    return "\n".join(["Found in these places:", "", *cut(lines)])
+
+
+def place_of(finding: Finding) -> str:
+    """Where a finding is in its glyph."""
+    x, y = finding.point
+    return f"contour {finding.contour}, segment {finding.segment}, at ({x:.0f}, {y:.0f})"
+
+
+def cut(lines: list[str]) -> list[str]:
+    """The first lines of a list, and how many are left out."""
+    return lines if len(lines) <= LISTED else [*lines[:LISTED], f"* and {len(lines) - LISTED} more"]
+
+
+def problem(finding: Finding) -> dict[str, Any]:
+    """A finding as fontspector's metadata, for editors."""
+    location = {"userspace_location": finding.location} if finding.location else {}
+    actual = {
+        "contour": finding.contour, "segment": finding.segment, "parameter": finding.parameter,
+        "value": finding.value, "unit": finding.unit,
+    }  # fmt: skip
+    return {
+        "GlyphProblem": {
+            "glyph_name": finding.glyph, "glyph_id": finding.gid, "position": list(finding.point), "actual": actual,
+            "message": finding.sentence, **location,
+        }
+    }  # fmt: skip

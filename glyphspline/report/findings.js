@@ -1,0 +1,160 @@
+"use strict";
+/* The page of findings: cards with the place of each drawn large, a table of all, and what is chosen of both. */
+
+(() => {
+  const setup = JSON.parse(document.getElementById("setup").textContent);
+  GS.usePalette(setup.palette);
+  const at = (id) => document.getElementById(id);
+  const NEAR = 0.07, FAR = 0.6; // half the width of what is shown around a place, in em: at least, at most
+  const CLOSE = 6; // times the length of a very short segment, which is shown closer than others
+  const CARDS = 120, ROWS = 300; // at a time
+  const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump"]); // it is drawn over
+  const FULL = 0.9; // share of the teeth in view that are shorter than a full one
+
+  const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, outline]) => ({
+    font: setup.fonts[font], fontNumber: font, glyph, gid, kindNumber: kind, kind: setup.kinds[kind][0], level: setup.kinds[kind][1],
+    contour, segment, x, y, sentence, location, outline,
+  }));
+  const several = setup.fonts.length > 1, located = rows.some((row) => row.location);
+  const point = (row) => `${Math.round(row.x)}, ${Math.round(row.y)}`.replaceAll("-", "\u2212");
+
+  const shapes = new Map(); // contours of an outline, by its number
+  const contoursOf = (number) => {
+    if (!shapes.has(number)) shapes.set(number, GS.contours(setup.outlines[number]));
+    return shapes.get(number);
+  };
+
+  /** What a card shows: [centre x, y, half the width]. */
+  const view = (row, contours, whole) => {
+    const em = row.font.em, piece = ON_SEGMENT.has(row.kind) ? contours[row.contour]?.[row.segment] : null;
+    const around = whole ? contours.flat(2) : row.kind === "direction" ? (contours[row.contour] ?? []).flat() : piece ?? [];
+    if (!around.length) return [row.x, -row.y, NEAR * em];
+    const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
+    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const half = 0.6 * Math.max(right - left, bottom - top);
+    if (row.kind === "short" && !whole) return [(left + right) / 2, (top + bottom) / 2, Math.min(NEAR * em, CLOSE * Math.max(half, em / 1000))];
+    if (whole || row.kind === "direction") return [(left + right) / 2, (top + bottom) / 2, Math.max(half, NEAR * em)];
+    const size = Math.min(FAR * em, Math.max(NEAR * em, half)); // a long segment is shown near its place
+    return half <= FAR * em ? [(left + right) / 2, (top + bottom) / 2, size] : [row.x, -row.y, size];
+  };
+
+  /** The curvature, in 1/unit, of a full tooth: most teeth in view are shorter. */
+  const scaleOf = (contours, em, [x, y, half]) => {
+    const found = GS.frames(contours, em).flat().filter(({ point: [a, b] }) => Math.abs(a - x) < half && Math.abs(b - y) < half)
+      .map(({ curvature }) => Math.abs(curvature)).filter((value) => value * em > 0.01).sort((a, b) => a - b);
+    return found.length ? found[Math.min(found.length - 1, Math.floor(FULL * found.length))] : 0;
+  };
+
+  const join = (a, b) => `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
+  const bezier = (p) => `M${p[0].join(" ")}${p.length === 2 ? "L" : p.length === 3 ? "Q" : "C"}${p.slice(1).flat().join(" ")}`;
+
+  const draw = (card, row) => {
+    const contours = contoursOf(row.outline), whole = card.classList.contains("whole"), em = row.font.em;
+    const frame = view(row, contours, whole), [x, y, half] = frame;
+    const picture = card.querySelector("svg"), scale = scaleOf(contours, em, frame), pieces = contours.flat();
+    const handles = pieces.flatMap((p) => (p.length === 2 ? [] : p.length === 3 ? [[p[0], p[1]], [p[2], p[1]]] : [[p[0], p[1]], [p[3], p[2]]]));
+    const found = ON_SEGMENT.has(row.kind) ? contours[row.contour]?.[row.segment] : null;
+    picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
+    picture.replaceChildren(
+      GS.svg("path", { class: "source", d: setup.outlines[row.outline] }),
+      ...(scale > 0 ? [GS.comb(contours, em, scale, { name: "source-comb", gain: Math.min(6, half / (0.09 * em)) })] : []),
+      GS.svg("path", { class: "control", d: handles.map(([a, b]) => join(a, b)).join("") }),
+      GS.dots(handles.map(([, b]) => b), "handles"),
+      ...(found ? [GS.svg("path", { class: "found", d: bezier(found) })] : []),
+      ...(row.kind === "direction" ? [GS.svg("path", { class: "found", d: (contours[row.contour] ?? []).map(bezier).join("") })] : []),
+      GS.svg("path", { class: "tangents", d: tangents(row, contours, 0.8 * half) }),
+      GS.dots(pieces.map((p) => p[0]), "vertices"),
+      GS.dots([[row.x, -row.y]], "mark"),
+    );
+    card.querySelector(".comb-scale").textContent = scale > 0 ? `comb: a full tooth is ${GS.number(scale * em)}/em` : "no curvature in view";
+  };
+
+  /** The two tangents of a joint, each drawn on beyond it: the angle between them is the turn. */
+  const tangents = (row, contours, half) => {
+    const pieces = contours[row.contour], piece = pieces?.[row.segment];
+    if (row.kind !== "kink" || !piece) return "";
+    const away = (points) => points.map(([x, y]) => [x - points[0][0], y - points[0][1]]).find(([x, y]) => x || y);
+    return [piece, [...pieces.at(row.segment - 1)].reverse()].map((points) => [points[0], away(points)]).filter(([, to]) => to)
+      .map(([[x, y], [dx, dy]]) => [x, y, dx / Math.hypot(dx, dy) * half, dy / Math.hypot(dx, dy) * half])
+      .map(([x, y, dx, dy]) => join([x, y], [x - dx, y - dy])).join("");
+  };
+
+  const drawn = new WeakSet();
+  const watcher = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (!isIntersecting || drawn.has(target)) continue;
+      drawn.add(target);
+      draw(target, target.row);
+    }
+  }, { rootMargin: "400px" });
+
+  const kindOf = (row) => GS.element("span", { class: `kind ${row.level}` }, row.kind);
+
+  const cardOf = (row) => {
+    const picture = GS.svg("svg", { "aria-hidden": "true" });
+    const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, picture);
+    const lines = [`contour ${row.contour}, segment ${row.segment}, at ${point(row)}`, row.location, several ? row.font.name : ""];
+    const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
+      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row)), GS.element("div", {}, row.sentence),
+      ...lines.filter(Boolean).map((line) => GS.element("p", {}, line)), GS.element("p", { class: "comb-scale" })));
+    card.row = row;
+    button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card, row); });
+    watcher.observe(card);
+    return card;
+  };
+
+  const HEADS = ["glyph", "level", "kind", "contour", "segment", "point", "finding", ...(located ? ["location"] : []), ...(several ? ["font"] : [])];
+  const NUMERIC = new Set(["contour", "segment", "point"]);
+  at("head").append(...HEADS.map((name) => GS.element("th", { scope: "col" }, name)));
+  const lineOf = (row) => {
+    const cells = { glyph: row.glyph, level: row.level, kind: kindOf(row), contour: `${row.contour}`, segment: `${row.segment}`, point: point(row),
+      finding: row.sentence, location: row.location, font: row.font.name };
+    return GS.element("tr", {}, ...HEADS.map((name) => GS.element("td", NUMERIC.has(name) ? { class: "number" } : {}, cells[name])));
+  };
+
+  /** Fills a list with so many at a time; its button shows how many are left. */
+  const filled = (list, button, size, make, noun) => {
+    let items = [], shown = 0;
+    const more = () => {
+      list.append(...items.slice(shown, shown + size).map(make));
+      shown = Math.min(items.length, shown + size);
+      button.hidden = shown === items.length;
+      button.textContent = `Show ${Math.min(size, items.length - shown)} of ${items.length - shown} more ${noun}`;
+    };
+    button.addEventListener("click", more);
+    return (chosen) => {
+      items = chosen;
+      shown = 0;
+      list.replaceChildren();
+      more();
+    };
+  };
+  const fillCards = filled(at("cards"), at("more-cards"), CARDS, cardOf, "drawings");
+  const fillRows = filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
+
+  const boxes = [...document.querySelectorAll("[data-kind]")];
+  const update = () => {
+    const kinds = new Set(boxes.filter((box) => box.checked).map((box) => +box.dataset.kind)), words = at("words").value.trim().toLowerCase();
+    const chosen = rows.filter((row) => kinds.has(row.kindNumber) && (at("font").value === "" || row.fontNumber === +at("font").value)
+      && (!words || row.glyph.toLowerCase().includes(words)));
+    fillCards(chosen.filter((row) => row.outline >= 0));
+    fillRows(chosen);
+    at("none").hidden = chosen.length > 0;
+    at("count").textContent = chosen.length === rows.length ? `${rows.length} findings` : `${chosen.length} of ${rows.length} findings`;
+  };
+
+  setup.fonts.forEach((font, k) => at("font").append(new Option(font.name, String(k))));
+  at("font").closest("label").hidden = !several;
+  at("left").textContent = setup.left ? `${setup.left} more are left out here; CSV and JSON have all.` : "";
+  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
+  at("theme").addEventListener("click", () => {
+    const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
+    document.documentElement.dataset.theme = dark ? "light" : "dark";
+  });
+  const choose = () => { update(); scrollTo(0, 0); };
+  for (const item of [...boxes, at("font")]) item.addEventListener("change", choose);
+  let pause;
+  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(choose, 120); });
+  update();
+  document.body.dataset.ready = "yes";
+})();
