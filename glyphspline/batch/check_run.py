@@ -113,8 +113,8 @@ def check_font(
         steps: of each axis, at whose ends glyphs are checked besides the masters.
         executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
         observer: called after each chunk of glyphs.
-        once: a contour that stands in several glyphs, as components do, is told of in the first one only. What it does
-            to other contours, and its direction, is told in each.
+        once: a contour that stands in several glyphs, as components do, is told of in the first one only, and so are
+            two that touch or cross. Directions, which depend on all contours of a glyph, are told in each.
 
     Raises:
         FontError: the source has no such glyph, or no such axis.
@@ -159,7 +159,7 @@ def _values(
     """Findings of a chunk's glyphs, but for those of a shape that was told of in an earlier glyph."""
     rows = checked.rows
     if told is not None:
-        rows = rows.chosen(np.flatnonzero(told.fresh(checked.shapes, rows.glyphs) | ~of_shape(rows)))
+        rows = rows.chosen(np.flatnonzero(told.fresh(checked.shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
     found = findings([(task.name, task.gid) for task in checked.tasks], rows, tags)
     of_gid = {task.gid: of_glyph for task, of_glyph in zip(checked.tasks, found, strict=True)}
     for task in tasks:
@@ -182,11 +182,6 @@ class _Told:
         self._shapes = np.insert(self._shapes, at[new], unique[new])
         found: BoolArray = new[rows] & (first[rows] == glyphs)
         return found
-
-
-def of_shape(rows: Measured) -> BoolArray:
-    """(n,) which findings are of a contour by itself, wherever it stands."""
-    return (rows.numbers[:, 3] < 0) & (rows.kinds != DIRECTION)
 
 
 def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
@@ -253,14 +248,17 @@ def _measured(
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
-    """(n,) a number for the shape of each row's contour, the same wherever it stands."""
+    """(n,) a number for the shape of each row's contour, the same wherever it stands; and of the other one, if any."""
     found = np.zeros(len(rows.glyphs), dtype=np.int64)
-    known: dict[tuple[int, int], int] = {}
-    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), strict=True)):
+    known: dict[tuple[int, int, int], int] = {}
+    others = rows.numbers[:, 3].astype(np.int64).tolist()
+    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), others, strict=True)):
         if key not in known:
-            contour = glyphs[key[0]].contours[key[1]]
-            points: FloatArray = contour.points - contour.points[..., :1, :]
-            data = (np.round(points, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
+            contours = glyphs[key[0]].contours
+            begin: FloatArray = contours[key[1]].points[..., :1, :]
+            data = b""
+            for contour in [contours[number] for number in key[1:] if number >= 0]:
+                data += (np.round(contour.points - begin, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
             known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
         found[k] = known[key]
     return found
