@@ -2,7 +2,9 @@
 
 Contours *cross* where one changes to the other side of the other; to touch is no crossing. Strands are *doubled* where
 they lie on each other. Of a contour that runs to a tip and straight back, a spur, they may be apart by what rounding to
-whole units makes of them; other strands are doubled if they are the same but for rounding errors.
+whole units makes of them, and one of the two segments at the tip lies on the other side as a whole: a sharp tip is no
+spur. Other strands are doubled if they are the same but for rounding errors: a bridge to a counter, edges of two
+contours that abut, a copy of a contour. In a glyph of parts that overlap, edges may abut or be shared.
 
 A contour runs in the *wrong direction* if it bounds no ink: both its sides are filled, by the nonzero rule, wherever
 one looks. That is a counter that runs like the contour around it. An outer contour, which has no ink around it, is
