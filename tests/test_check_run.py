@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 
 import glyphspline as gs
 from glyphspline.batch import check_run, schedule
@@ -149,6 +150,20 @@ def test_what_components_have_is_told_of_the_first_glyph_only(tmp_path: Path) ->
         assert [item.glyph for item in of(found(path, axes=axes, once=False), "doubled")] == ["a", "b"]
     font = gs.open_source(path)
     assert [item.glyph for item in of(list(check_font(font, ["b"])), "doubled")] == ["b"]
+
+
+def test_parts_that_cross_are_told_again_where_they_stand_otherwise(tmp_path: Path) -> None:
+    def parts(dx: int, apart: int) -> Glyph:
+        glyph = quadratic([(dx, 0), (dx, 100), (dx + 100, 100), (dx + 100, 0)], [True] * 4)
+        shift = GlyphCoordinates([(x + apart, y + 50) for x, y in glyph.coordinates])
+        glyph.coordinates.extend(shift)
+        glyph.flags.extend(glyph.flags)
+        glyph.numberOfContours, glyph.endPtsOfContours = 2, [3, 7]
+        return glyph
+
+    path = variable_font(tmp_path / "v.ttf", {"a": parts(0, 50), "b": parts(70, 50), "c": parts(0, 60)}, {})
+    assert [item.glyph for item in of(found(path), "overlap")] == ["a", "c"]
+    assert [item.glyph for item in of(found(path, once=False), "overlap")] == ["a", "b", "c"]
 
 
 def test_a_kink_between_masters_is_told_once_where_it_is_worst(variable: Path) -> None:

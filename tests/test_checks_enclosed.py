@@ -210,6 +210,8 @@ def test_edges_that_abut_are_told_and_shared_edges_of_an_overlap_are_not() -> No
     assert (item.kind, item.value, item.other, item.sentence) == ("doubled", 50, 1, "lies on contour 1 for 50 units")
     assert kinds(box(0, 0, 100, 100), box(100, 20, 50, 4)) == []
     assert [kind for kind, _, _ in kinds(box(0, 0, 100, 30), box(30, 0, 40, 200))] == ["overlap"]
+    stem_over_both = box(90, -50, 20, 200)
+    assert {kind for kind, _, _ in kinds(box(0, 0, 100, 100), box(100, 20, 50, 50), stem_over_both)} == {"overlap"}
 
 
 def test_glyphs_do_not_see_each_other() -> None:

@@ -10,11 +10,12 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from hashlib import blake2b
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..checks.check import THRESHOLDS, findings
+from ..checks.columns import Measured, nothing
 from ..checks.finding import Finding
 from ..checks.kinds import DIRECTION, Thresholds
 from ..errors import FontError, GlyphsplineError
@@ -25,9 +26,6 @@ from ..types import BoolArray, FloatArray, IntArray
 from .job import Place
 from .pool import sign_of_life
 from .schedule import InProcess, pool_size, slices, spread
-
-if TYPE_CHECKING:
-    from ..checks.measured import Measured
 
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
@@ -115,8 +113,8 @@ def check_font(
         steps: of each axis, at whose ends glyphs are checked besides the masters.
         executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
         observer: called after each chunk of glyphs.
-        once: a contour that stands in several glyphs, as components do, is told of in the first one only. What it does
-            to other contours, and its direction, is told in each.
+        once: a contour that stands in several glyphs, as components do, is told of in the first one only, and so are
+            two that touch or cross. Directions, which depend on all contours of a glyph, are told in each.
 
     Raises:
         FontError: the source has no such glyph, or no such axis.
@@ -141,7 +139,7 @@ def _found(
     most = MASTERS_BATCH if job.axes else BATCH
     chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
     waiting: dict[Task, tuple[Sequence[Task], Checked]] = {}  # by a chunk's first glyph, until those before are done
-    told: dict[int, int] = {}
+    told = _Told() if once else None
     done = broken = following = 0
     for chunk, result in spread(pool, check_tasks, job, chunks):
         if isinstance(result, Exception):
@@ -152,29 +150,38 @@ def _found(
             observer(done, len(tasks), broken)
         while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
             following += len(ready[0])
-            yield from _values(*ready, tags, told if once else None)
+            yield from _values(*ready, tags, told)
 
 
 def _values(
-    tasks: Sequence[Task], checked: Checked, tags: Sequence[str], told: dict[int, int] | None
+    tasks: Sequence[Task], checked: Checked, tags: Sequence[str], told: _Told | None
 ) -> Iterator[GlyphFindings]:
     """Findings of a chunk's glyphs, but for those of a shape that was told of in an earlier glyph."""
     rows = checked.rows
-    if told is not None and len(rows.glyphs):
-        gids = np.array([task.gid for task in checked.tasks])[rows.glyphs].tolist()
-        for shape, gid in sorted(zip(checked.shapes.tolist(), gids, strict=True), key=lambda pair: pair[1]):
-            told.setdefault(shape, gid)
-        first = np.array([told[shape] for shape in checked.shapes.tolist()]) == gids
-        rows = rows.chosen(np.flatnonzero(first | ~of_shape(rows)))
+    if told is not None:
+        rows = rows.chosen(np.flatnonzero(told.fresh(checked.shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
     found = findings([(task.name, task.gid) for task in checked.tasks], rows, tags)
     of_gid = {task.gid: of_glyph for task, of_glyph in zip(checked.tasks, found, strict=True)}
     for task in tasks:
         yield GlyphFindings(task.name, task.gid, of_gid.get(task.gid, []), checked.errors.get(task.gid))
 
 
-def of_shape(rows: Measured) -> BoolArray:
-    """(n,) which findings are of a contour by itself, wherever it stands."""
-    return (rows.numbers[:, 3] < 0) & (rows.kinds != DIRECTION)
+class _Told:
+    """The shapes that have been told of, ascending: in an array, which for a large font is a tenth of a set."""
+
+    def __init__(self) -> None:
+        self._shapes = np.zeros(0, dtype=np.int64)
+
+    def fresh(self, shapes: IntArray, glyphs: IntArray) -> BoolArray:
+        """(n,) whether the shape of a row's contour stands in no glyph before the row's glyph; they are told then."""
+        unique, rows = np.unique(shapes, return_inverse=True)
+        first = np.full(len(unique), np.iinfo(np.int64).max)
+        np.minimum.at(first, rows, glyphs)
+        at = np.searchsorted(self._shapes, unique)
+        new = np.searchsorted(self._shapes, unique, side="right") == at
+        self._shapes = np.insert(self._shapes, at[new], unique[new])
+        found: BoolArray = new[rows] & (first[rows] == glyphs)
+        return found
 
 
 def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
@@ -193,8 +200,6 @@ def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
         sign_of_life()
     if not parts:
         return _nothing(errors)
-    from ..checks.measured import Measured
-
     measured = [(Task(glyph.gid, glyph.name), glyph) for of_part, _ in parts for glyph in of_part]
     starts = np.cumsum([0, *(len(of_part) for of_part, _ in parts)])
     own = [rows._replace(glyphs=rows.glyphs + start) for (_, rows), start in zip(parts, starts, strict=False)]
@@ -243,20 +248,21 @@ def _measured(
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
-    """(n,) a number for the shape of each row's contour, the same wherever it stands."""
+    """(n,) a number for the shape of each row's contour, the same wherever it stands; and of the other one, if any."""
     found = np.zeros(len(rows.glyphs), dtype=np.int64)
-    known: dict[tuple[int, int], int] = {}
-    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), strict=True)):
+    known: dict[tuple[int, int, int], int] = {}
+    others = rows.numbers[:, 3].astype(np.int64).tolist()
+    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), others, strict=True)):
         if key not in known:
-            contour = glyphs[key[0]].contours[key[1]]
-            points: FloatArray = contour.points - contour.points[..., :1, :]
-            data = (np.round(points, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
+            contours = glyphs[key[0]].contours
+            begin: FloatArray = contours[key[1]].points[..., :1, :]
+            data = b""
+            for contour in [contours[number] for number in key[1:] if number >= 0]:
+                data += (np.round(contour.points - begin, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
             known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
         found[k] = known[key]
     return found
 
 
 def _nothing(errors: dict[int, str]) -> Checked:
-    from ..checks.measured import nothing
-
     return Checked([], nothing(), np.zeros(0, dtype=np.int64), errors)

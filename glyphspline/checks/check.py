@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from ..outlines.outline import Outline
+from .columns import Measured
 from .finding import Finding
 from .kinds import KINDS, Thresholds
-
-if TYPE_CHECKING:
-    from .measured import Measured
 
 THRESHOLDS = Thresholds()
 

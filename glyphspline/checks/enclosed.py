@@ -2,7 +2,9 @@
 
 Contours *cross* where one changes to the other side of the other; to touch is no crossing. Strands are *doubled* where
 they lie on each other. Of a contour that runs to a tip and straight back, a spur, they may be apart by what rounding to
-whole units makes of them; other strands are doubled if they are the same but for rounding errors.
+whole units makes of them, and one of the two segments at the tip lies on the other side as a whole: a sharp tip is no
+spur. Other strands are doubled if they are the same but for rounding errors: a bridge to a counter, edges of two
+contours that abut, a copy of a contour. In a glyph of parts that overlap, edges may abut or be shared.
 
 A contour runs in the *wrong direction* if it bounds no ink: both its sides are filled, by the nonzero rule, wherever
 one looks. That is a counter that runs like the contour around it. An outer contour, which has no ink around it, is
@@ -60,8 +62,8 @@ def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntAr
     if len(touching):
         crossed = np.concatenate([crossed, crossing_contacts(cubics, offsets, touching)])
     crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
-    doubled = _doubled(cubics, offsets, touching, limits.doubled)
     crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
+    doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
     pairs = doubled[:, [1, 5]].astype(np.int64)
     lies[pairs[pairs[:, 1] >= 0]] = True
     found = contour_findings(cubics, contours, glyphs, crosses, lies, limits)
@@ -82,11 +84,16 @@ def _crossed(crossed: FloatArray) -> FloatArray:
     return rows
 
 
-def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least: float) -> FloatArray:
+def _doubled(
+    cubics: FloatArray, offsets: IntArray, touching: FloatArray, crosses: BoolArray, least: float
+) -> FloatArray:
     """Contours that lie on themselves or on others, from (k, 6) contacts.
 
     Of two contours that run in one direction where they lie on each other, one is told only if nearly all of it does:
-    parts that overlap may share an edge.
+    parts that overlap may share an edge. They may also abut where a third one covers both.
+
+    Args:
+        crosses: (C,) whether a contour crosses another one.
     """
     stretches = touching[touching[:, 4] > touching[:, 2]]
     rows = []
@@ -98,7 +105,8 @@ def _doubled(cubics: FloatArray, offsets: IntArray, touching: FloatArray, least:
             total = _length_of(one, own[:, ::2])
         else:
             along = own[:, 3] > own[:, 1]
-            total = _length_of(one, own[~along, ::2]) if not along.all() else 0.0
+            parts = along.all() or crosses[c] or crosses[d]
+            total = 0.0 if parts else _length_of(one, own[~along, ::2])
             spans = np.abs(own[along, 2:] - own[along, :2]).sum(axis=0) > (len(one) / 2, len(other) / 2)
             if total < least and spans.any():
                 total = _length_of(one, own[along, ::2])

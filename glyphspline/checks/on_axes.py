@@ -15,9 +15,10 @@ from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import Masters
 from ..types import FloatArray
 from .axis_kinks import Glyphs, joint_controls, kinks, turns_of
+from .columns import Measured
 from .joints import ROUNDING
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
-from .measured import Measured, measured
+from .measured import measured
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 """Kinds that are told once a contour, wherever on it."""
