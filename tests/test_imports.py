@@ -33,14 +33,15 @@ PLAN = {
     "interpolation": CURVES,
     "outlines": CURVES,
     "checks": CHECKS,
+    "comparing": CHECKS | {"comparing"},
     "fitting": FITTING,
     "readers": CURVES | {"outlines"},
     "writers": WRITERS,
-    "report": WRITERS,
-    "batch": WRITERS | {"report"},
+    "report": WRITERS | {"comparing"},
+    "batch": WRITERS | {"comparing", "report"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"report", "batch", "viewer"},
+    "cli": WRITERS | {"comparing", "report", "batch", "viewer"},
     "__main__": {"cli"},
 }
 """What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""

@@ -37,7 +37,7 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.cubics import COARSE, extent, jet, length, newton_step, section, split
 from ..types import BoolArray, FloatArray, IntArray
-from .certified_distance import ROUNDING
+from ..curves.paired import ROUNDING
 
 DEEPEST = 12
 """Maximum subdivision depth; pairs still above the limit there count as too far apart."""
