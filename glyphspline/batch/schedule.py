@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from ..fitting.options import Options
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
-from .warm import modules_for
+from .warm import module_names, modules_for
 
 LARGEST_CHUNK = 40
 """Maximum number of glyphs in a call: enough to make the exchange cheap, few enough for a smooth progress bar."""
@@ -47,6 +47,7 @@ def workers(
     formats: Sequence[str] = (),
     expected: int = 0,
     masters: bool = False,
+    also: Sequence[str] = (),
 ) -> Executor:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
@@ -54,10 +55,12 @@ def workers(
         seconds: time limit of a batch, after which its worker is killed.
         options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
+        also: names of modules of :mod:`.warm`, whose code is needed without options.
     """
     if jobs == 0:
         return InProcess()
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, modules_for(options, formats, masters), expected)
+    preload = [*modules_for(options, formats, masters), *module_names(also)]
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, preload, expected)
 
 
 def pool_size(pool: Executor) -> int:

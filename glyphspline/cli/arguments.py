@@ -256,6 +256,22 @@ AxisTag = Annotated[str | None, typer.Option("--axis", metavar="TAG", help="Only
 Least = Annotated[
     float, typer.Option("--least", parser=number, metavar="DEGREES", help="The smallest turn that is listed.")
 ]
+OldFont = Annotated[Path, typer.Argument(metavar="OLD", help=FONT_HELP, show_default=False)]
+NewFont = Annotated[
+    Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
+]
+Apart = Annotated[
+    float | None,
+    typer.Option(
+        "--tolerance",
+        parser=number,
+        metavar="UNITS",
+        help="How far outlines and advances may differ, in units of OLD. Without it, 1/1000 em.",
+    ),
+]
+Page = Annotated[
+    Path | None, typer.Option("--html", parser=place, metavar="FILE", help="Draw both over each other, on a page.")
+]
 Rows = Annotated[int, typer.Option("--rows", parser=natural, metavar="N", help="Lines of the table.")]
 Plot = Annotated[
     Path | None,

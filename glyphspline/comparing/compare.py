@@ -7,22 +7,17 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..checks.kinds import KINK, Thresholds
-from ..checks.table import CONTOUR as OF_CONTOUR
-from ..checks.table import PLACE, VALUE, WHAT
 from ..errors import is_positive, require
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
-from .difference import SIDES, Apart, Difference, Turn
+from .difference import PER_EM, SIDES, Apart, Difference, Turn
 
 PARTNER = 0.1
 """Share of the em up to which two contours may be partners, by :func:`.outline_distance.hull_distances`."""
 
 MOVED = 0.01
 """Share of the em by which a kink may move with its outline and still be the same."""
-
-PER_EM = 1e-3
-"""The tolerance without another, as a share of the old em."""
 
 
 def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Difference:
@@ -49,9 +44,7 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
     return compare_many([old], [new], tolerance)[0]
 
 
-def compare_many(
-    old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None
-) -> list[Difference]:
+def compare_many(old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None) -> list[Difference]:
     """As :func:`compare`, of many pairs at once; the result of a pair does not depend on the others."""
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
     from .outline_distance import equal_glyphs  # imported here, so that the package opens without a compiler
@@ -63,8 +56,8 @@ def compare_many(
     changed = np.flatnonzero(~equal).tolist()
     found = [_advances(a, b, scale) for a, b, scale in zip(old, new, scales, strict=True)]
     if changed:
-        parts: list[list[Outline]] = [[outlines[k] for k in changed] for outlines in (old, new)]
-        those = _changed(*parts, [its[k] for k in changed], [scales[k] for k in changed], tolerance)
+        one, other = ([outlines[k] for k in changed] for outlines in (old, new))
+        those = _changed(one, other, [its[k] for k in changed], [scales[k] for k in changed], tolerance)
         for k, difference in zip(changed, those, strict=True):
             found[k] = difference
     return found
@@ -136,6 +129,7 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
 def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:
     """The kinks of outlines, as :func:`glyphspline.check` finds them; points are multiplied by the scales."""
     from ..checks.joints import joint_findings
+    from ..checks.table import CONTOUR, PLACE, VALUE, WHAT
     from ..outlines.segments import all_cubics
 
     contours = joined([outline.arrays for outline in outlines])
@@ -144,16 +138,14 @@ def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) ->
     table = joint_findings(cubics, contours, Thresholds().limits(outlines[0].metrics.units_per_em))
     found: list[list[Turn]] = [[] for _ in outlines]
     for row in table[table[:, WHAT] == KINK]:
-        contour, segment = int(row[OF_CONTOUR]), int(row[PLACE])
+        contour, segment = int(row[CONTOUR]), int(row[PLACE])
         g = int(np.searchsorted(firsts, contour, side="right")) - 1
         x, y = (cubics[contours.offsets[contour] + segment, 0] * (scales[g] if scales else 1.0)).tolist()
         found[g].append(Turn(contour - int(firsts[g]), segment, (x, y), float(row[VALUE])))
     return found
 
 
-def unmatched(
-    old: Sequence[Turn], new: Sequence[Turn], reach: float
-) -> tuple[tuple[Turn, ...], tuple[Turn, ...]]:
+def unmatched(old: Sequence[Turn], new: Sequence[Turn], reach: float) -> tuple[tuple[Turn, ...], tuple[Turn, ...]]:
     """The kinks of each list that have no partner in the other within a distance; the nearest pairs come first."""
     pairs = []
     for i, one in enumerate(old):

@@ -11,6 +11,9 @@ SIDES: tuple[Side, Side] = ("old", "new")
 
 Point = tuple[float, float]
 
+PER_EM = 1e-3
+"""The tolerance without another, as a share of the old em."""
+
 
 @dataclass(frozen=True)
 class Apart:

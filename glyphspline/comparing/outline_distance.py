@@ -61,20 +61,24 @@ def equal_glyphs(
     p = q = 0
     for g in range(count):
         a, b, c, d = old_glyphs[g], old_glyphs[g + 1], new_glyphs[g], new_glyphs[g + 1]
-        i, j, k, n = old_offsets[a], old_offsets[b], new_offsets[c], new_offsets[d]
+        i, j, m, n = old_offsets[a], old_offsets[b], new_offsets[c], new_offsets[d]
         mine = its = 0
         for s in range(i, j):
             mine += old_degrees[s]
-        for s in range(k, n):
+        for s in range(m, n):
             its += new_degrees[s]
-        same = b - a == d - c and j - i == n - k and mine == its
+        same = b - a == d - c and j - i == n - m and mine == its
         if same:
             for s in range(b - a + 1):
-                same = same and old_offsets[a + s] - i == new_offsets[c + s] - k
+                same = same and old_offsets[a + s] - i == new_offsets[c + s] - m
             for s in range(j - i):
-                same = same and old_degrees[i + s] == new_degrees[k + s]
+                same = same and old_degrees[i + s] == new_degrees[m + s]
             for s in range(mine):
-                same = same and old_points[p + s, 0] == new_points[q + s, 0] and old_points[p + s, 1] == new_points[q + s, 1]
+                same = (
+                    same
+                    and old_points[p + s, 0] == new_points[q + s, 0]
+                    and old_points[p + s, 1] == new_points[q + s, 1]
+                )
         equal[g] = same
         p, q = p + mine, q + its
     return equal
@@ -178,7 +182,9 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
 
 
 @compiled(internal=True)
-def note(row: FloatArray, d: float, x: float, y: float, side: int, contour: int, other: Chains, s: int, z: float) -> None:
+def note(
+    row: FloatArray, d: float, x: float, y: float, side: int, contour: int, other: Chains, s: int, z: float
+) -> None:
     """Keep a point that is farther from the other outline than those before."""
     row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, contour
     row[NEAR_X], row[NEAR_Y] = point(other.cubics[s], z)
