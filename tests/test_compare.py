@@ -16,7 +16,7 @@ import glyphspline as gs
 from glyphspline.batch import compare_fonts, entries_of, pairs_of
 from glyphspline.cli import app
 from glyphspline.comparing.compare import compare_many
-from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.bezier import evaluate, split
 from glyphspline.types import FloatArray
 
 from .polygons import square_contour
@@ -75,7 +75,9 @@ def test_an_outline_moved_is_as_far_as_it_was_moved(dragon: gs.Outline, vector: 
     assert found.worst is not None
     assert found.seen <= found.bound
     assert hypot(*np.subtract(found.worst.point, found.worst.nearest)) == pytest.approx(found.seen)
-    assert (found.contours_gone, found.contours_new, found.kinks_gone, found.kinks_new) == ((), (), (), ())
+    assert (found.contours_gone, found.contours_new) == ((), ())
+    if hypot(*vector) < 0.01 * dragon.metrics.units_per_em:
+        assert (found.kinks_gone, found.kinks_new) == ((), ())
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -90,7 +92,7 @@ def test_one_point_moved(dragon: gs.Outline, seed: int) -> None:
     assert agrees(gs.compare(dragon, changed), sampled(dragon, changed), 0.02)
 
 
-@pytest.mark.parametrize("character", "善永書")
+@pytest.mark.parametrize("character", "善永好")
 def test_different_drawings_of_one_character(character: str) -> None:
     one, other = (font.outline(font.select(text=character)[0]) for font in map(gs.open_font, (GYOSHO, KAISHO)))
     found, back = gs.compare(one, other), gs.compare(other, one)
@@ -110,16 +112,26 @@ def test_known_distances() -> None:
     assert agrees(gs.compare(of(bar), of([(0.0, 0.0), (300.0, 0.0), (300.0, 40.0), (0.0, 40.0)])), 39.0)
 
 
-def test_start_direction_order_and_kinds_of_segments_do_not_matter(dragon: gs.Outline) -> None:
+def test_start_direction_and_order_do_not_matter(dragon: gs.Outline) -> None:
     turned = []
     for k, contour in enumerate(reversed(dragon.contours)):
-        cubics = np.roll(contour.cubics(), k + 1, axis=0)
-        turned.append(gs.Contour(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3)).reversed())
+        segments = list(contour.segments())
+        turned.append(gs.Contour.from_segments(segments[k + 1 :] + segments[: k + 1]).reversed())
     found = gs.compare(dragon, replace(dragon, contours=turned))
     assert not found.identical
     assert found.bound < 1e-6
     assert not (found.contours_gone or found.contours_new or found.kinks_gone or found.kinks_new)
     assert not found.is_beyond(0.001)
+
+
+def test_where_segments_are_cut_does_not_matter(dragon: gs.Outline) -> None:
+    cut = []
+    for contour in dragon.contours:
+        cubics = np.stack(split(contour.cubics(), 0.3), axis=1).reshape(-1, 4, 2)
+        cut.append(gs.Contour(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3)))
+    found = gs.compare(dragon, replace(dragon, contours=cut))
+    assert found.bound < 0.01 * dragon.metrics.units_per_em / 1000
+    assert not (found.contours_gone or found.contours_new)
 
 
 def test_equal_arrays_are_identical(dragon: gs.Outline) -> None:
@@ -219,18 +231,15 @@ def test_a_broken_glyph_costs_only_itself() -> None:
 
 def test_glyphs_are_paired_by_name_then_by_code_point(tmp_path: Path) -> None:
     font = TTFont(GYOSHO)
-    order = list(font.getGlyphOrder())
-    font.setGlyphOrder([{"uni9F8D": "dragon", "A": "B", "B": "A"}.get(name, name) for name in order])
-    cmap = font["cmap"].buildReversed()
-    codes = {code: name for name in order for code in cmap.get(name, ())}
+    names = {"uni9F8D": "dragon", "A": "B", "B": "A"}
+    font.ensureDecompiled()
+    font["glyf"].glyphs = {names.get(name, name): font["glyf"][name] for name in font.getGlyphOrder()}
+    font["hmtx"].metrics = {names.get(name, name): own for name, own in font["hmtx"].metrics.items()}
     for table in font["cmap"].tables:
-        table.cmap = {code: codes[code] for code in table.cmap}
-    renamed = {"uni9F8D": "dragon", "A": "B", "B": "A"}
-    for table in font["cmap"].tables:
-        table.cmap = {code: renamed.get(name, name) for code, name in table.cmap.items()}
-    font["glyf"].setGlyphOrder(font.getGlyphOrder())
-    font["glyf"].glyphs = {renamed.get(name, name): glyph for name, glyph in font["glyf"].glyphs.items()}
-    font["hmtx"].metrics = {renamed.get(name, name): own for name, own in font["hmtx"].metrics.items()}
+        table.cmap = {code: names.get(name, name) for code, name in table.cmap.items()}
+    order = [names.get(name, name) for name in font.getGlyphOrder()]
+    font.setGlyphOrder(order)
+    font["glyf"].setGlyphOrder(order)
     path = tmp_path / "renamed.ttf"
     font.save(path)
     pairs = pairs_of(gs.open_source(GYOSHO), gs.open_source(path))
@@ -242,12 +251,12 @@ def test_glyphs_are_paired_by_name_then_by_code_point(tmp_path: Path) -> None:
 
 def test_a_font_and_the_drawings_written_of_it(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    arguments = ["--text", "龍好O", "--format", "svg", "--tolerance", "2", "--out", str(out), "--jobs", "0"]
+    arguments = ["--text", "龍好O", "--corners", "sharp", "--format", "svg", "--tolerance", "2", "--out", str(out), "--jobs", "0"]
     assert runner.invoke(app, ["convert", str(GYOSHO), *arguments]).exit_code == 0
     bounds = {
-        entry["glyph"]: (max(c["deviation"] for c in entry["contours"]), max(c["deviation_bound"] for c in entry["contours"]))
+        entry["glyph"]: tuple(max(c[name] for c in entry["contours"]) for name in ("deviation", "deviation_bound"))
         for entry in entries_of(out)
-    }  # fmt: skip
+    }
     result = runner.invoke(
         app, ["diff", str(GYOSHO), str(out / "svg"), "--text", "龍好O", "--tolerance", "2", "--json", "--jobs", "0"]
     )

@@ -166,9 +166,9 @@ def nearest_of_outline(
             guess, d = reached(chains.cubics[other], 0.0 if step > 0 else 1.0, x, y)
             if d < best:
                 segment, at, best = other, guess, d
-    if best <= slack:
-        return segment, at, best
     for g in range(len(chains.groups)):
+        if best <= slack:
+            break
         if from_box(chains.groups[g], x, y) >= best - max(slack, CLOSER * best):
             continue
         for k in range(GROUP * g, min(GROUP * (g + 1), len(chains.cubics))):
@@ -176,4 +176,5 @@ def nearest_of_outline(
                 guess, d = nearest_on(chains, k, x, y, best, slack, places)
                 if d < best:
                     segment, at, best = k, guess, d
+    at, best = reached(chains.cubics[segment], at, x, y)  # where the guess was poor, Newton's steps were too few
     return segment, at, best
