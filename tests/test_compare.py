@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
@@ -17,9 +16,11 @@ from glyphspline.batch import compare_fonts, entries_of, pairs_of
 from glyphspline.cli import app
 from glyphspline.comparing.compare import compare_many
 from glyphspline.curves.bezier import evaluate, split
-from glyphspline.types import FloatArray
+from glyphspline.readers.svg_drawings import SvgDrawings, open_svg
 
+from .drawings import result
 from .polygons import square_contour
+from .test_broken_fonts import with_components
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
 GYOSHO, KAISHO = FONTS / "kouzan-gyosho.ttf", FONTS / "kouzan-kaisho.ttf"
@@ -38,7 +39,7 @@ def of(*polygons: list[tuple[float, float]], name: str = "A", advance: float = 6
 
 
 def moved(outline: gs.Outline, x: float, y: float) -> gs.Outline:
-    return replace(outline, contours=[gs.Contour(c.points + [x, y], c.degrees) for c in outline.contours])
+    return replace(outline, contours=[gs.Contour(c.points + np.array([x, y]), c.degrees) for c in outline.contours])
 
 
 def farthest(one: gs.Outline, other: gs.Outline, steps: int = 24) -> float:
@@ -106,7 +107,8 @@ def test_known_distances() -> None:
     inner = [(10.0, 10.0), (90.0, 10.0), (90.0, 90.0), (10.0, 90.0)]
     assert agrees(gs.compare(of(outer), of(inner)), hypot(10, 10))
     # the middle of the mouth's back is as far from both lips, and nearest to neither end of its segment
-    mouth = [(0.0, 0.0), (100.0, 0.0), (100.0, 40.0), (50.0, 40.0), (50.0, 60.0), (100.0, 60.0), (100.0, 100.0), (0.0, 100.0)]  # fmt: skip
+    lips = [(100.0, 40.0), (50.0, 40.0), (50.0, 60.0), (100.0, 60.0)]
+    mouth = [*outer[:2], *lips, *outer[2:]]
     assert agrees(gs.compare(of(outer), of(mouth)), 50.0)
     bar = [(0.0, 0.0), (300.0, 0.0), (300.0, 1.0), (0.0, 1.0)]
     assert agrees(gs.compare(of(bar), of([(0.0, 0.0), (300.0, 0.0), (300.0, 40.0), (0.0, 40.0)])), 39.0)
@@ -120,7 +122,7 @@ def test_start_direction_and_order_do_not_matter(dragon: gs.Outline) -> None:
     found = gs.compare(dragon, replace(dragon, contours=turned))
     assert not found.identical
     assert found.bound < 1e-6
-    assert not (found.contours_gone or found.contours_new or found.kinks_gone or found.kinks_new)
+    assert (found.contours_gone, found.contours_new, found.kinks_gone, found.kinks_new) == ((), (), (), ())
     assert not found.is_beyond(0.001)
 
 
@@ -131,7 +133,7 @@ def test_where_segments_are_cut_does_not_matter(dragon: gs.Outline) -> None:
         cut.append(gs.Contour(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3)))
     found = gs.compare(dragon, replace(dragon, contours=cut))
     assert found.bound < 0.01 * dragon.metrics.units_per_em / 1000
-    assert not (found.contours_gone or found.contours_new)
+    assert (found.contours_gone, found.contours_new) == ((), ())
 
 
 def test_equal_arrays_are_identical(dragon: gs.Outline) -> None:
@@ -218,50 +220,62 @@ def test_two_fonts_and_any_number_of_workers() -> None:
     assert gids == sorted(gids)
 
 
-def test_a_broken_glyph_costs_only_itself() -> None:
-    path = FONTS / "edge-cases.ttf"
-    font = gs.open_source(path)
-    broken = [o.glyph for o in font.outlines(font.glyph_names, errors="return") if isinstance(o, gs.GlyphsplineError)]
-    assert broken
-    found = compare_fonts(font, gs.open_source(path), jobs=0)
-    assert [each.glyph for each in found.unread] == broken
-    assert found.identical == len(font.glyph_names) - len(broken)
+def test_a_broken_glyph_costs_only_itself(tmp_path: Path) -> None:
+    font = with_components(tmp_path, {"tiny": ["tiny"]})
+    found = compare_fonts(gs.open_source(FONTS / "edge-cases.ttf"), font, jobs=0)
+    assert [each.glyph for each in found.unread] == ["tiny"]
+    assert found.unread[0].error.startswith("new: ")
+    assert found.identical == len(font.glyph_names) - 1
     assert found.is_beyond
 
 
+def drawings(folder: Path, glyphs: dict[str, int]) -> SvgDrawings:
+    """A folder of drawings: squares, by name with their code points."""
+    folder.mkdir()
+    for gid, (name, code) in enumerate(glyphs.items()):
+        drawn = result(square_contour(10.0 * (code - 60)), name=name, gid=gid, unicodes=(code,))
+        (folder / f"{name}.svg").write_text(gs.to_svg(drawn), encoding="utf-8")
+    return open_svg(folder)
+
+
 def test_glyphs_are_paired_by_name_then_by_code_point(tmp_path: Path) -> None:
-    font = TTFont(GYOSHO)
-    names = {"uni9F8D": "dragon", "A": "B", "B": "A"}
-    font.ensureDecompiled()
-    font["glyf"].glyphs = {names.get(name, name): font["glyf"][name] for name in font.getGlyphOrder()}
-    font["hmtx"].metrics = {names.get(name, name): own for name, own in font["hmtx"].metrics.items()}
-    for table in font["cmap"].tables:
-        table.cmap = {code: names.get(name, name) for code, name in table.cmap.items()}
-    order = [names.get(name, name) for name in font.getGlyphOrder()]
-    font.setGlyphOrder(order)
-    font["glyf"].setGlyphOrder(order)
-    path = tmp_path / "renamed.ttf"
-    font.save(path)
-    pairs = pairs_of(gs.open_source(GYOSHO), gs.open_source(path))
-    assert set(pairs.renamed) == {("uni9F8D", "dragon"), ("A", "B"), ("B", "A")}
-    assert (pairs.only_old, pairs.only_new) == ((), ())
-    found = compare_fonts(gs.open_source(GYOSHO), gs.open_source(path), pairs, jobs=0)
-    assert found.differences == []
+    old = drawings(tmp_path / "old", {"A": 65, "B": 66, "C": 67, "D": 68})
+    new = drawings(tmp_path / "new", {"alpha": 65, "B": 67, "C": 66, "E": 69})
+    pairs = pairs_of(old, new)
+    assert set(pairs.renamed) == {("A", "alpha"), ("B", "C"), ("C", "B")}
+    assert (pairs.only_old, pairs.only_new) == (("D",), ("E",))
+    found = compare_fonts(old, new, pairs, jobs=0)
+    assert (found.identical, found.differences) == (3, [])
+    assert found.is_beyond
+    assert not compare_fonts(old, new, pairs_of(old, new, ["A"], []), jobs=0).is_beyond
 
 
 def test_a_font_and_the_drawings_written_of_it(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    arguments = ["--text", "龍好O", "--corners", "sharp", "--format", "svg", "--tolerance", "2", "--out", str(out), "--jobs", "0"]
+    arguments = [
+        "--text",
+        "龍好O",
+        "--corners",
+        "sharp",
+        "--format",
+        "svg",
+        "--tolerance",
+        "2",
+        "--out",
+        str(out),
+        "--jobs",
+        "0",
+    ]
     assert runner.invoke(app, ["convert", str(GYOSHO), *arguments]).exit_code == 0
     bounds = {
         entry["glyph"]: tuple(max(c[name] for c in entry["contours"]) for name in ("deviation", "deviation_bound"))
         for entry in entries_of(out)
     }
-    result = runner.invoke(
+    said = runner.invoke(
         app, ["diff", str(GYOSHO), str(out / "svg"), "--text", "龍好O", "--tolerance", "2", "--json", "--jobs", "0"]
     )
-    assert result.exit_code == 0, result.output
-    glyphs = {each["glyph"]: each for each in json.loads(result.stdout)["glyphs"]}
+    assert said.exit_code == 0, said.output
+    glyphs = {each["glyph"]: each for each in json.loads(said.stdout)["glyphs"]}
     assert glyphs.keys() == bounds.keys()
     for name, (deviation, bound) in bounds.items():
         # The manifest's bound pairs every point in order, ours takes the nearest ones: it is never the larger one.
@@ -276,10 +290,10 @@ def test_a_font_and_the_drawings_written_of_it(tmp_path: Path) -> None:
 def test_the_table_the_page_and_the_exit_status(tmp_path: Path) -> None:
     page = tmp_path / "diff.html"
     call = ["diff", str(GYOSHO), str(KAISHO), "--jobs", "0", "--rows", "2", "--html", str(page)]
-    result = runner.invoke(app, call)
-    assert result.exit_code == 1, result.output
-    assert len(result.stdout.splitlines()) == 4
-    assert "distance" in result.stdout
+    said = runner.invoke(app, call)
+    assert said.exit_code == 1, said.output
+    assert len(said.stdout.splitlines()) == 4
+    assert "distance" in said.stdout
     text = page.read_text(encoding="utf-8")
     assert text.endswith("</html>\n")
     assert text.count("<article") == len(compare_fonts(*map(gs.open_source, (GYOSHO, KAISHO)), jobs=0).differences)
@@ -294,9 +308,9 @@ def test_the_table_the_page_and_the_exit_status(tmp_path: Path) -> None:
     [["--tolerance", "0"], ["--text", "\U0001f600"], ["--face-index", "3"], ["--location", "wght=700"]],
 )
 def test_calls_that_cannot_be(arguments: list[str]) -> None:
-    result = runner.invoke(app, ["diff", str(GYOSHO), str(KAISHO), "--jobs", "0", *arguments])
-    assert result.exit_code == 2, result.output
-    assert result.stderr.startswith("glyphspline: ")
+    said = runner.invoke(app, ["diff", str(GYOSHO), str(KAISHO), "--jobs", "0", *arguments])
+    assert said.exit_code == 2, said.output
+    assert said.stderr.startswith("glyphspline: ")
 
 
 def test_a_location_is_for_what_has_axes(tmp_path: Path) -> None:
@@ -307,8 +321,8 @@ def test_a_location_is_for_what_has_axes(tmp_path: Path) -> None:
 
 
 def test_the_json_has_its_names() -> None:
-    result = runner.invoke(app, ["diff", str(GYOSHO), str(KAISHO), "--text", "善", "--jobs", "0", "--json"])
-    data = json.loads(result.stdout)
+    said = runner.invoke(app, ["diff", str(GYOSHO), str(KAISHO), "--text", "善", "--jobs", "0", "--json"])
+    data = json.loads(said.stdout)
     assert list(data) == [
         "format", "old", "new", "tolerance", "scale", "beyond_tolerance", "compared", "identical", "beyond",
         "only_old", "only_new", "renamed", "glyphs", "failed",

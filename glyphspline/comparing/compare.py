@@ -99,6 +99,7 @@ def _changed(
     kinks, other_kinks = turns(old), turns(new, scales)
     for g, (em, row) in enumerate(zip(ems.tolist(), rows.tolist(), strict=True)):
         bound, seen, x, y, side, contour, near_x, near_y = row
+        bound += old[g].snapped + scales[g] * new[g].snapped
         worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
         a, b, c, d = firsts[g], firsts[g + 1], others[g], others[g + 1]
         costs = hull_distances(cubics, every.offsets[a : b + 1], other_cubics, other.offsets[c : d + 1])
