@@ -117,7 +117,7 @@ def sentences(found: FontDifference, shown: int) -> Iterator[str]:
         yield f"and {total - shown} more"
     yield (
         f"{counted(found.identical + total, 'glyph')} compared: {found.identical} identical, {total - beyond} within "
-        f"{found.tolerance:g} units, {beyond} beyond"
+        f"the tolerance of {found.tolerance:g}, {beyond} beyond"
     )
     if found.scale != 1:
         yield f"the new one's units are multiplied by {found.scale:g}: lengths are in the old one's"
