@@ -296,7 +296,9 @@ def test_the_table_the_page_and_the_exit_status(tmp_path: Path) -> None:
     assert "distance" in said.stdout
     text = page.read_text(encoding="utf-8")
     assert text.endswith("</html>\n")
-    assert text.count("<article") == len(compare_fonts(*map(gs.open_source, (GYOSHO, KAISHO)), jobs=0).differences)
+    assert text.count("<article") == len(
+        compare_fonts(gs.open_source(GYOSHO), gs.open_source(KAISHO), jobs=0).differences
+    )
     assert "http" not in text.replace("http-equiv", "")
     same = runner.invoke(app, ["diff", str(GYOSHO), str(GYOSHO), "--jobs", "0"])
     assert (same.exit_code, same.stdout) == (0, "")
