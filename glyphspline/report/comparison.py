@@ -17,7 +17,7 @@ PRECISION = 2
 """Decimals of the drawings."""
 
 CLOSE_UP = 12.0
-"""Half the side of the close-up around the worst place, in distances of the outlines there."""
+"""Side of the close-up around the worst place, in distances of the outlines there; half the glyph's at most."""
 
 LEAST = 0.004
 """Half the side of the smallest close-up, in em."""
@@ -57,7 +57,8 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
     whole = drawing("Both outlines", (left - edge, bottom - edge, right + edge, top + edge), paths, marks(each, em))
     close = ""
     if each.worst is not None and not each.identical:
-        half = max(CLOSE_UP / 2 * each.seen, LEAST * em)
+        size = max(right - left, top - bottom)
+        half = max(min(CLOSE_UP / 2 * each.seen, size / 4), 0.75 * each.seen, LEAST * em)
         x, y = ((a + b) / 2 for a, b in zip(each.worst.point, each.worst.nearest, strict=True))
         around = (x - half, y - half, x + half, y + half)
         close = drawing("Close-up of the worst place", around, paths, marks(each, em, half), "close")
