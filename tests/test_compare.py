@@ -32,6 +32,11 @@ def dragon() -> gs.Outline:
     return gs.open_font(FONTS / "kouzan-gyosho.otf").outline("uni9F8D")
 
 
+@pytest.fixture(scope="module")
+def letter() -> gs.Outline:
+    return gs.open_font(FONTS / "kouzan-gyosho.otf").outline("g")
+
+
 def of(*polygons: list[tuple[float, float]], name: str = "A", advance: float = 600.0) -> gs.Outline:
     """An outline of straight lines."""
     contours = [gs.Contour(np.array(points, dtype=float), np.ones(len(points), dtype=np.int64)) for points in polygons]
@@ -82,18 +87,18 @@ def test_an_outline_moved_is_as_far_as_it_was_moved(dragon: gs.Outline, vector: 
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_one_point_moved(dragon: gs.Outline, seed: int) -> None:
+def test_one_point_moved(letter: gs.Outline, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    contours = list(dragon.contours)
+    contours = list(letter.contours)
     c = int(rng.integers(len(contours)))
     points = contours[c].points.copy()
     points[rng.integers(len(points))] += rng.normal(size=2) * 10.0 ** rng.uniform(-1, 2)
     contours[c] = gs.Contour(points, contours[c].degrees)
-    changed = replace(dragon, contours=contours)
-    assert agrees(gs.compare(dragon, changed), sampled(dragon, changed), 0.02)
+    changed = replace(letter, contours=contours)
+    assert agrees(gs.compare(letter, changed), sampled(letter, changed), 0.02)
 
 
-@pytest.mark.parametrize("character", "善永好")
+@pytest.mark.parametrize("character", "永a")
 def test_different_drawings_of_one_character(character: str) -> None:
     one, other = (font.outline(font.select(text=character)[0]) for font in map(gs.open_font, (GYOSHO, KAISHO)))
     found, back = gs.compare(one, other), gs.compare(other, one)
@@ -143,14 +148,14 @@ def test_equal_arrays_are_identical(dragon: gs.Outline) -> None:
     assert (found.bound, found.seen, found.worst) == (0.0, 0.0, None)
 
 
-def test_a_contour_that_went(dragon: gs.Outline) -> None:
-    k = 2
-    less = replace(dragon, contours=[contour for j, contour in enumerate(dragon.contours) if j != k])
-    found = gs.compare(dragon, less)
+def test_a_contour_that_went(letter: gs.Outline) -> None:
+    k = len(letter.contours) - 1
+    less = replace(letter, contours=[contour for j, contour in enumerate(letter.contours) if j != k])
+    found = gs.compare(letter, less)
     assert (found.contours_gone, found.contours_new) == ((k,), ())
     assert found.is_beyond(1e6)
-    assert agrees(found, sampled(dragon, less), 0.02)
-    back = gs.compare(less, dragon)
+    assert agrees(found, sampled(letter, less), 0.02)
+    back = gs.compare(less, letter)
     assert (back.contours_gone, back.contours_new) == ((), (k,))
 
 
