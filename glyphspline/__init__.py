@@ -11,6 +11,8 @@ from .checks.axis_kinks import AxisKinks, Kink, KinkReport, kinks
 from .checks.check import check
 from .checks.finding import Finding
 from .checks.kinds import Thresholds
+from .comparing.compare import compare
+from .comparing.difference import Apart, Difference, Turn
 from .curves.bspline import Spline
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
@@ -61,10 +63,12 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "Apart",
     "AxisKinks",
     "Contour",
     "ContourResult",
     "DesignAxis",
+    "Difference",
     "Finding",
     "Font",
     "FontError",
@@ -86,8 +90,10 @@ __all__ = [
     "PolygonError",
     "Spline",
     "Thresholds",
+    "Turn",
     "__version__",
     "check",
+    "compare",
     "convert",
     "convert_many",
     "convert_masters",

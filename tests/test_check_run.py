@@ -46,7 +46,7 @@ def variable(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Executor]:
-    with workers(2, 60.0, expected=2, checks=True) as made:
+    with workers(2, 60.0, expected=2, also=("checks",)) as made:
         yield made
 
 
@@ -130,7 +130,7 @@ def test_a_glyph_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch
     whole = found(KOUZAN)
     real = schedule.spread
     monkeypatch.setattr(check_run, "spread", lambda pool, _, job, chunks: real(pool, slow, job, chunks))
-    with workers(2, 8.0, expected=2, checks=True) as pool:
+    with workers(2, 8.0, expected=2, also=("checks",)) as pool:
         glyphs = found(KOUZAN, executor=pool)
     assert [glyph.gid for glyph in glyphs if glyph.error] == [3]
     assert glyphs[3].error == "took longer than 8 s"

@@ -9,6 +9,9 @@ if TYPE_CHECKING:
     from ..errors import OutputError as OutputError
     from .atlas_run import make_atlas as make_atlas
     from .atlas_run import make_axis_atlas as make_axis_atlas
+    from .font_difference import FontDifference as FontDifference
+    from .font_difference import compare_fonts as compare_fonts
+    from .font_difference import pairs_of as pairs_of
     from .font_run import convert_font as convert_font
     from .font_search import faces_of as faces_of
     from .font_search import find_fonts as find_fonts
@@ -22,10 +25,12 @@ if TYPE_CHECKING:
     from .summary import Summary as Summary
 
 _HOMES = {
+    "FontDifference": ".font_difference",
     "Limits": ".spec",
     "OutputError": "..errors",
     "RunSpec": ".spec",
     "Summary": ".summary",
+    "compare_fonts": ".font_difference",
     "convert_font": ".font_run",
     "convert_font_masters": ".masters_run",
     "entries_of": ".manifest",
@@ -35,6 +40,7 @@ _HOMES = {
     "locked": ".lock",
     "make_atlas": ".atlas_run",
     "make_axis_atlas": ".atlas_run",
+    "pairs_of": ".font_difference",
     "write_gallery": ".galleries",
 }
 """Modules of the names, imported on first use: workers start before the font libraries are imported."""

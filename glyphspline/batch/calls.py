@@ -9,6 +9,7 @@ from .job import Done, Job, Place, Task
 
 if TYPE_CHECKING:
     from ..curves.curvature import Comb
+    from .compare_job import Comparison, Found, Pair
 
 
 def work(job: Job, tasks: Sequence[Task]) -> list[Done]:
@@ -31,3 +32,10 @@ def look(place: Place, gids: Sequence[int]) -> dict[str, Any]:
     from .worker import source_of
 
     return glyph_facts(source_of(*place), gids[0], gids[-1] + 1)
+
+
+def tell_apart(comparison: Comparison, pairs: Sequence[Pair]) -> Found:
+    """:func:`.compare_glyphs.tell_apart`, in a worker."""
+    from .compare_glyphs import tell_apart
+
+    return tell_apart(comparison, pairs)

@@ -47,7 +47,7 @@ def workers(
     formats: Sequence[str] = (),
     expected: int = 0,
     masters: bool = False,
-    checks: bool = False,
+    also: Sequence[str] = (),
 ) -> Executor:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
@@ -55,12 +55,12 @@ def workers(
         seconds: time limit of a batch, after which its worker is killed.
         options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
-        checks: whether outlines are checked, and nothing is converted.
+        also: names of modules of :mod:`.warm`, whose code is needed without options.
     """
     if jobs == 0:
         return InProcess()
-    modules = module_names(["checks"]) if checks else modules_for(options, formats, masters)
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, modules, expected)
+    preload = [*modules_for(options, formats, masters), *module_names(also)]
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, preload, expected)
 
 
 def pool_size(pool: Executor) -> int:

@@ -316,6 +316,22 @@ HtmlFile = Annotated[
     Path | None, say_option("--html", parser=place, metavar="FILE", help="As a page with a drawing of each place.")
 ]
 Rows = Annotated[int, say_option("--rows", parser=natural, metavar="N", help="Lines of the table.")]
+OldFont = Annotated[Path, typer.Argument(metavar="OLD", help=FONT_HELP, show_default=False)]
+NewFont = Annotated[
+    Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
+]
+Apart = Annotated[
+    float | None,
+    typer.Option(
+        "--tolerance",
+        parser=number,
+        metavar="UNITS",
+        help="How far outlines and advances may differ, in units of OLD. Without it, 1/1000 em.",
+    ),
+]
+Page = Annotated[
+    Path | None, typer.Option("--html", parser=place, metavar="FILE", help="Draw both over each other, on a page.")
+]
 Plot = Annotated[
     Path | None,
     say_option("--plot", parser=place, metavar="FILE", help="Draw the largest turn against the axis: SVG, PNG, PDF."),

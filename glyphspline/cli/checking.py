@@ -184,7 +184,7 @@ def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], a
                     if pool is None and (given["jobs"] or (given["jobs"] is None and len(names) >= least)):
                         from ..batch.schedule import workers
 
-                        pool = stack.enter_context(workers(given["jobs"], PATIENCE, checks=True))
+                        pool = stack.enter_context(workers(given["jobs"], PATIENCE, also=("checks",)))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
                     yield check_face(source, name, names, asked, pool, alone=alone, quiet=given["quiet"])
             except GlyphsplineError as error:

@@ -273,6 +273,54 @@ def check(
 
 
 @app.command()
+def diff(
+    old: opt.OldFont,
+    new: opt.NewFont,
+    tolerance: opt.Apart = None,
+    text: opt.Text = None,
+    text_file: opt.TextFile = None,
+    unicodes: opt.Unicodes = None,
+    glyphs: opt.Glyphs = None,
+    gids: opt.Gids = None,
+    every: opt.Every = False,
+    face_index: opt.FaceIndex = 0,
+    location: opt.Location = None,
+    rows: opt.Rows = 20,
+    html: opt.Page = None,
+    as_json: opt.Json = False,
+    jobs: opt.Jobs = None,
+    quiet: opt.Quiet = False,
+) -> None:
+    """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
+
+    Exit status 1 if anything differs by more than the tolerance: an outline or an advance, contours or glyphs that only
+    one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
+    for.
+    """
+    given = dict(locals())
+    with errors(quiet):
+        from ..batch import compare_fonts
+        from . import comparing_fonts as comparing
+
+        listen(quiet)
+        sources = comparing.open_both(old, new, face_index, location)
+        pairs = comparing.chosen_pairs(*sources, given)
+        with progress(quiet) as observer:
+            found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=jobs, observer=observer)
+        if html is not None:
+            comparing.write_page(html, *sources, found)
+    worst = found.worst_first()
+    if as_json:
+        typer.echo(json.dumps(found.facts(), indent=1, ensure_ascii=False))
+    elif worst and rows:
+        typer.echo(comparing.table(worst, rows, found.tolerance))
+    if not quiet:
+        for line in comparing.sentences(found, 0 if as_json else rows):
+            say(line)
+    raise typer.Exit(1 if found.is_beyond else 0)
+
+
+@app.command()
 def view(
     font: opt.FontFile,
     face_index: opt.FaceIndex = 0,

@@ -1,19 +1,14 @@
 """A certified bound of the two-sided distance between a written result and its source outline.
 
 Both contours are cut into the same number of *sections*, one after the other, so that section j of the result is
-paired with section j of the source and each is a piece of one cubic. Let A and B be a pair's polynomials, both over
-[0, 1]. Their difference at equal parameters is a cubic with Bézier points A_k - B_k, and lies in the convex hull of
-these. So every point of A has a point of B within ``max |A_k - B_k|``, and vice versa. The largest of these numbers
-bounds the two-sided (Hausdorff) distance of the contours and their Fréchet distance. This holds for *every* subdivision
-that runs once round both: hints and Newton's method only make the bound sharp, and sections are halved until it is.
+paired with section j of the source and each is a piece of one cubic. The Bézier points of a pair bound their distance
+(:mod:`..curves.paired`), and the largest of these numbers bounds the two-sided (Hausdorff) distance of the contours and
+their Fréchet distance. This holds for *every* subdivision that runs once round both: hints and Newton's method only
+make the bound sharp, and sections are halved until it is.
 
 :func:`certified_distance` pairs any two stretches, from coarse guesses. :func:`measure_spans` pairs the spans of a
 closed curve whose vertices are on the outline: from better guesses and only as sharply as asked, because every round of
 a smooth fit measures all spans.
-
-Floating point: a Bézier point of a section is a convex combination of convex combinations, three for the section and
-three for each halving, of points of size at most L. ``ROUNDING`` times L, more than ``DEEPEST`` such triples can cost,
-is added to every bound.
 """
 
 from __future__ import annotations
@@ -24,10 +19,8 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import extent, jet, length, nearest, nearest_place, section, split
+from ..curves.paired import ROUNDING, points_apart
 from ..types import FloatArray, IntArray
-
-ROUNDING = 1e-13
-"""Share of the largest coordinate added to the bound for floating point."""
 
 SHARPNESS = 0.02
 """The certified bound may exceed the distances seen by this share of the tolerance."""
@@ -166,9 +159,7 @@ def pair_cubic(
             A, B = work[0, top], work[1, top]
             low, high, depth = marks[top, 0], marks[top, 1], marks[top, 2]
             first, end = length(A[0, 0] - B[0, 0], A[0, 1] - B[0, 1]), length(A[3, 0] - B[3, 0], A[3, 1] - B[3, 1])
-            most = max(first, end)
-            for k in range(1, 3):
-                most = max(most, length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1]))
+            most = max(first, end, points_apart(A, B, 1, 3))
             if first > gap:
                 gap, where = first, low
             if end > gap:

@@ -36,8 +36,8 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import COARSE, extent, jet, length, newton_step, section, split
+from ..curves.paired import ROUNDING
 from ..types import BoolArray, FloatArray
-from .certified_distance import ROUNDING
 
 DEEPEST = 12
 """Maximum subdivision depth; pairs still above the limit there count as too far apart."""

@@ -1,0 +1,211 @@
+"""Two fonts compared glyph by glyph: which glyph is which, the workers, and what they find."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from ..comparing.difference import PER_EM, Difference
+from ..errors import is_positive, require
+from ..readers import Font, Source
+from .calls import tell_apart
+from .compare_job import Comparison, Head, Pair, Side, Unread
+from .schedule import chunks_of, spread, workers
+from .spec import Limits
+
+FORMAT = 1
+"""Version of the JSON data; it grows when a name changes its meaning."""
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Which glyph is which.
+
+    Attributes:
+        pairs: by the old font's glyph indices. only_old, only_new: names of glyphs that the other does not have.
+    """
+
+    pairs: tuple[Pair, ...]
+    only_old: tuple[str, ...]
+    only_new: tuple[str, ...]
+
+    @property
+    def renamed(self) -> tuple[tuple[str, str], ...]:
+        """Old and new name of each pair whose names differ: these have a code point in common."""
+        return tuple((old[0], new[0]) for old, new in self.pairs if old[0] != new[0])
+
+
+@dataclass
+class FontDifference:
+    """What differs between two fonts.
+
+    Attributes:
+        tolerance: in units of the old em. scale: of the new font's units, to those of the old em.
+        glyphs: which are which. identical: number of pairs without any difference.
+        differences: of the others, by glyph index. unread: glyphs that could not be compared.
+        fonts: the two sources, as JSON data.
+    """
+
+    tolerance: float
+    scale: float
+    glyphs: Pairs
+    identical: int = 0
+    differences: list[Difference] = field(default_factory=list)
+    unread: list[Unread] = field(default_factory=list)
+    fonts: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def beyond(self) -> list[Difference]:
+        """The differences beyond the tolerance."""
+        return [each for each in self.differences if each.is_beyond(self.tolerance)]
+
+    @property
+    def is_beyond(self) -> bool:
+        """Whether anything is: a glyph that only one font has, or that could not be compared, always is."""
+        glyphs = self.glyphs
+        return bool(glyphs.only_old or glyphs.only_new or self.unread) or bool(self.beyond)
+
+    def worst_first(self) -> list[Difference]:
+        """The differences: those beyond the tolerance first, then by distance, change of the advance, and index."""
+        return sorted(
+            self.differences,
+            key=lambda own: (
+                not own.is_beyond(self.tolerance), -own.bound, -abs(own.new_advance - own.advance), own.gid,
+            ),
+        )  # fmt: skip
+
+    def facts(self) -> dict[str, Any]:
+        """As JSON data: counts first; differences by glyph index. It does not depend on the number of workers."""
+        return {
+            "format": FORMAT,
+            **self.fonts,
+            "tolerance": self.tolerance,
+            "scale": self.scale,
+            "beyond_tolerance": self.is_beyond,
+            "compared": self.identical + len(self.differences),
+            "identical": self.identical,
+            "beyond": len(self.beyond),
+            "only_old": list(self.glyphs.only_old),
+            "only_new": list(self.glyphs.only_new),
+            "renamed": [list(names) for names in self.glyphs.renamed],
+            "glyphs": [
+                {"beyond_tolerance": each.is_beyond(self.tolerance), **each.facts()} for each in self.differences
+            ],
+            "failed": [unread._asdict() for unread in self.unread],
+        }
+
+
+def pairs_of(
+    old: Source, new: Source, chosen_old: Collection[str] | None = None, chosen_new: Collection[str] | None = None
+) -> Pairs:
+    """Which glyph of one source is which of the other: of the same name, or else of a common code point.
+
+    Glyphs of one name that both have code points, and none in common, are not the same: names like ``glyph00012`` are
+    indices.
+
+    Args:
+        chosen_old, chosen_new: only pairs of which one is chosen, and glyphs of one source that are; None: all.
+    """
+    mine, its = heads_of(old), heads_of(new)
+    partners: dict[str, str] = {}
+    for name, (_, _, codes) in mine.items():
+        other = its.get(name)
+        if other is not None and not (codes and other[2] and not set(codes) & set(other[2])):
+            partners[name] = name
+    taken = set(partners.values())
+    for name, (_, _, codes) in mine.items():
+        if name not in partners:
+            found = next((new.cmap[c] for c in codes if c in new.cmap and new.cmap[c] not in taken), None)
+            if found is not None:
+                partners[name] = found
+                taken.add(found)
+    wanted_old = set(mine if chosen_old is None else chosen_old)
+    wanted_new = set(its if chosen_new is None else chosen_new)
+    return Pairs(
+        tuple(Pair(mine[a], its[b]) for a, b in partners.items() if a in wanted_old or b in wanted_new),
+        tuple(name for name in mine if name not in partners and name in wanted_old),
+        tuple(name for name in its if name not in taken and name in wanted_new),
+    )
+
+
+def heads_of(source: Source) -> dict[str, Head]:
+    """The glyphs of a source by their names, in glyph index order."""
+    codes: dict[str, list[int]] = {name: [] for name in source.glyph_names}
+    for code in sorted(source.cmap):
+        codes[source.cmap[code]].append(code)
+    return {name: (name, gid, tuple(codes[name])) for gid, name in enumerate(source.glyph_names)}
+
+
+def compare_fonts(
+    old: Source,
+    new: Source,
+    glyphs: Pairs | None = None,
+    *,
+    tolerance: float | None = None,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    observer: Callable[[int, int, int], None] | None = None,
+) -> FontDifference:
+    """Compare two sources glyph by glyph; see :func:`glyphspline.compare`.
+
+    The result does not depend on the number of workers. A broken glyph does not affect the others.
+
+    Args:
+        old, new: the opened sources; workers open them again by their paths.
+        glyphs: which are which; without it, all.
+        tolerance: in units of the old em; without it, 1/1000 em.
+        jobs: worker processes; None takes all cores, 0 does everything in this process.
+        executor: used instead; it is not closed.
+        observer: called with the number of glyphs done, of all, and of those that could not be compared.
+
+    Raises:
+        OptionError: the tolerance is not positive.
+    """
+    em = old.metrics.units_per_em
+    require(tolerance is None or is_positive(tolerance), "--tolerance is a positive number", tolerance)
+    glyphs = pairs_of(old, new) if glyphs is None else glyphs
+    found = FontDifference(
+        em * PER_EM if tolerance is None else tolerance, em / new.metrics.units_per_em, glyphs,
+        fonts={"old": about(old), "new": about(new)},
+    )  # fmt: skip
+    comparison = Comparison(side_of(old), side_of(new), found.tolerance)
+    done, total = 0, len(glyphs.pairs)
+    opened = executor or workers(jobs if total else 0, Limits().seconds, expected=total, also=("comparing",))
+    with nullcontext(opened) if executor else opened as pool:
+        for chunk, result in spread(pool, tell_apart, comparison, chunks_of(glyphs.pairs, pool)):
+            if isinstance(result, tuple):
+                identical, differences, unread = result
+                found.identical += identical
+                found.differences += differences
+                found.unread += unread
+            else:
+                found.unread += [Unread(*pair.old[:2], result.message) for pair in chunk]
+            done += len(chunk)
+            if observer:
+                observer(done, total, len(found.unread))
+    found.differences.sort(key=lambda own: own.gid)
+    found.unread.sort(key=lambda own: own.gid)
+    return found
+
+
+def side_of(source: Source) -> Side:
+    """A source as workers open it."""
+    return Side(
+        source.path.absolute(), source.face_index, tuple(source.location.items()), source.metrics, type(source) is Font
+    )
+
+
+def about(source: Source) -> dict[str, Any]:
+    """A source as JSON data."""
+    return {
+        "file": source.path.name,
+        "family": source.family,
+        "style": source.style,
+        "face_index": source.face_index,
+        "location": dict(source.location),
+        "metrics": asdict(source.metrics),
+        "glyphs": len(source.glyph_names),
+    }

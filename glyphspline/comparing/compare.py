@@ -1,0 +1,161 @@
+"""Two outlines of a glyph compared: distance, advance, contours and kinks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..checks.kinds import KINK, Thresholds
+from ..errors import is_positive, require
+from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.outline import Outline
+from ..types import FloatArray, IntArray
+from .difference import PER_EM, SIDES, Apart, Difference, Turn
+
+PARTNER = 0.1
+"""Share of the em up to which two contours may be partners, by :func:`.outline_distance.hull_distances`."""
+
+MOVED = 0.01
+"""Share of the em by which a kink may move with its outline and still be the same."""
+
+
+def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Difference:
+    """What differs between two outlines of one glyph.
+
+    Outlines are compared as they are drawn, not their ink: overlaps that are removed are a difference. Start points,
+    directions, the order of contours and the kinds of segments are none. An outline of another em is scaled to the old
+    one's.
+
+    Args:
+        old, new: the outlines; see :meth:`glyphspline.Font.outline`.
+        tolerance: in units of the old em: how far a kink may be and still be the same. Without it, 1/1000 em. Where the
+            outlines are farther apart than that, kinks may be, up to 1/100 em.
+
+    Raises:
+        OptionError: the tolerance is not positive.
+
+    Example:
+        >>> import glyphspline as gs
+        >>> old, new = (gs.open_font(f"fonts_test/kouzan-gyosho.{kind}") for kind in ("ttf", "otf"))
+        >>> gs.compare(old.outline("uni9F8D"), new.outline("uni9F8D")).contours_gone
+        ()
+    """
+    return compare_many([old], [new], tolerance)[0]
+
+
+def compare_many(old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None) -> list[Difference]:
+    """As :func:`compare`, of many pairs at once; the result of a pair does not depend on the others."""
+    require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
+    from .outline_distance import equal_glyphs  # imported here, so that the package opens without a compiler
+
+    scales = [a.metrics.units_per_em / b.metrics.units_per_em for a, b in zip(old, new, strict=True)]
+    mine = [outline.arrays for outline in old]
+    its = [scaled(outline.arrays, scale) for outline, scale in zip(new, scales, strict=True)]
+    equal = equal_glyphs(*_flat(mine), *_flat(its))
+    changed = np.flatnonzero(~equal).tolist()
+    found = [_advances(a, b, scale) for a, b, scale in zip(old, new, scales, strict=True)]
+    if changed:
+        one, other = ([outlines[k] for k in changed] for outlines in (old, new))
+        those = _changed(one, other, [its[k] for k in changed], [scales[k] for k in changed], tolerance)
+        for k, difference in zip(changed, those, strict=True):
+            found[k] = difference
+    return found
+
+
+def scaled(contours: ContourArrays, scale: float) -> ContourArrays:
+    """Contours whose points are multiplied by a number."""
+    return contours if scale == 1 else contours._replace(points=contours.points * scale)
+
+
+def _flat(outlines: Sequence[ContourArrays]) -> tuple[FloatArray, IntArray, IntArray, IntArray]:
+    """Points, degrees and offsets end to end, and where the contours of each outline begin."""
+    every = joined(outlines)
+    return every.points, every.degrees, every.offsets, offsets_of([len(own.offsets) - 1 for own in outlines])
+
+
+def _advances(old: Outline, new: Outline, scale: float) -> Difference:
+    """The difference of two outlines with the same contours."""
+    codes = old.unicodes if old.unicodes == new.unicodes else tuple(sorted({*old.unicodes, *new.unicodes}))
+    return Difference(
+        old.name, old.gid, new.name, new.gid, codes, True, 0.0, 0.0, None, old.advance, new.advance * scale, scale
+    )
+
+
+def _changed(
+    old: Sequence[Outline], new: Sequence[Outline], moved: Sequence[ContourArrays], scales: Sequence[float],
+    tolerance: float | None,
+) -> Iterator[Difference]:  # fmt: skip
+    """The differences of outlines whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
+    from ..outlines.segments import all_cubics
+    from .outline_distance import hull_distances, outline_distances
+
+    every, other = joined([outline.arrays for outline in old]), joined(moved)
+    firsts = offsets_of([len(outline.contours) for outline in old])
+    others = offsets_of([len(outline.contours) for outline in new])
+    cubics, other_cubics = all_cubics(every), all_cubics(other)
+    ems = np.array([outline.metrics.units_per_em for outline in old])
+    rows = outline_distances(cubics, every.offsets, firsts, other_cubics, other.offsets, others, ems / 1000)
+    kinks, other_kinks = turns(old), turns(new, scales)
+    for g, (em, row) in enumerate(zip(ems.tolist(), rows.tolist(), strict=True)):
+        bound, seen, x, y, side, contour, near_x, near_y = row
+        bound += old[g].snapped + scales[g] * new[g].snapped
+        worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
+        a, b, c, d = firsts[g], firsts[g + 1], others[g], others[g + 1]
+        costs = hull_distances(cubics, every.offsets[a : b + 1], other_cubics, other.offsets[c : d + 1])
+        gone, came = without_partner(costs, PARTNER * em)
+        reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, MOVED * em))
+        turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
+        plain = _advances(old[g], new[g], scales[g])
+        yield Difference(
+            plain.glyph, plain.gid, plain.new_glyph, plain.new_gid, plain.unicodes, False, bound, seen, worst,
+            plain.advance, plain.new_advance, plain.scale, gone, came, turns_gone, turns_new,
+        )  # fmt: skip
+
+
+def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The rows and the columns of a matrix of distances that have no partner up to ``most``, at the least sum."""
+    from scipy.optimize import linear_sum_assignment
+
+    rows, columns = linear_sum_assignment(costs)
+    near = costs[rows, columns] <= most
+    left: list[tuple[int, ...]] = []
+    for size, paired in zip(costs.shape, (rows[near], columns[near]), strict=True):
+        alone = np.ones(size, dtype=np.bool_)
+        alone[paired] = False
+        left.append(tuple(np.flatnonzero(alone).tolist()))
+    return left[0], left[1]
+
+
+def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:
+    """The kinks of outlines, as :func:`glyphspline.check` finds them; points are multiplied by the scales."""
+    from ..checks.joints import joint_findings
+    from ..checks.table import CONTOUR, PLACE, VALUE, WHAT
+    from ..outlines.segments import all_cubics
+
+    contours = joined([outline.arrays for outline in outlines])
+    firsts = offsets_of([len(outline.contours) for outline in outlines])
+    cubics = all_cubics(contours)
+    table = joint_findings(cubics, contours, Thresholds().limits(outlines[0].metrics.units_per_em))
+    found: list[list[Turn]] = [[] for _ in outlines]
+    for row in table[table[:, WHAT] == KINK]:
+        contour, segment = int(row[CONTOUR]), int(row[PLACE])
+        g = int(np.searchsorted(firsts, contour, side="right")) - 1
+        x, y = (cubics[contours.offsets[contour] + segment, 0] * (scales[g] if scales else 1.0)).tolist()
+        found[g].append(Turn(contour - int(firsts[g]), segment, (x, y), float(row[VALUE])))
+    return found
+
+
+def unmatched(old: Sequence[Turn], new: Sequence[Turn], reach: float) -> tuple[tuple[Turn, ...], tuple[Turn, ...]]:
+    """The kinks of each list that have no partner in the other within a distance; the nearest pairs come first."""
+    pairs = []
+    for i, one in enumerate(old):
+        for j, other in enumerate(new):
+            apart = float(np.hypot(one.point[0] - other.point[0], one.point[1] - other.point[1]))
+            if apart <= reach:
+                pairs.append((apart, i, j))
+    gone, came = dict(enumerate(old)), dict(enumerate(new))
+    for _, i, j in sorted(pairs):
+        if i in gone and j in came:
+            del gone[i], came[j]
+    return tuple(gone.values()), tuple(came.values())

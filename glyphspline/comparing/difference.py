@@ -1,0 +1,98 @@
+"""What differs between two outlines of one glyph, as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any, Literal
+
+Side = Literal["old", "new"]
+SIDES: tuple[Side, Side] = ("old", "new")
+
+Point = tuple[float, float]
+
+PER_EM = 1e-3
+"""The tolerance without another, as a share of the old em."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Where two outlines are farthest from each other.
+
+    Attributes:
+        outline: which of them the point is on. contour: number of the contour. point: the point.
+        nearest: the nearest point of the other outline.
+    """
+
+    outline: Side
+    contour: int
+    point: Point
+    nearest: Point
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A kink of one of two outlines.
+
+    Attributes:
+        contour, segment: numbers of the contour, and of its segment that begins there. point: the place.
+        degrees: by how much the tangent turns.
+    """
+
+    contour: int
+    segment: int
+    point: Point
+    degrees: float
+
+
+@dataclass(frozen=True)
+class Difference:
+    """What differs between two outlines of one glyph. Lengths and points are in units of the old one's em.
+
+    Attributes:
+        glyph, gid: name and index in the old font. new_glyph, new_gid: in the new one.
+        unicodes: code points of either, ascending.
+        identical: the contours are the same numbers in the same order. All that follows is 0 or empty then, but for the
+            advances.
+        bound: certified: no point of either outline is farther from the other. Infinite if one of them is empty.
+        seen: the largest distance of a point from the other outline that was found; ``bound`` exceeds it by no more
+            than 1 %, or 0.01 thousandths of the em.
+        worst: where that is; None if the outlines are identical, or one is empty.
+        advance, new_advance: advances. scale: by which the new one was multiplied, to have the same em.
+        contours_gone: numbers of old contours without a partner in the new outline. contours_new: and the other way.
+        kinks_gone: kinks of the old outline that the new one does not have. kinks_new: and the other way.
+    """
+
+    glyph: str
+    gid: int
+    new_glyph: str
+    new_gid: int
+    unicodes: tuple[int, ...]
+    identical: bool
+    bound: float
+    seen: float
+    worst: Apart | None
+    advance: float
+    new_advance: float
+    scale: float
+    contours_gone: tuple[int, ...] = ()
+    contours_new: tuple[int, ...] = ()
+    kinks_gone: tuple[Turn, ...] = ()
+    kinks_new: tuple[Turn, ...] = ()
+
+    @property
+    def is_none(self) -> bool:
+        """Whether outlines and advances are the same."""
+        return self.identical and self.advance == self.new_advance
+
+    def is_beyond(self, tolerance: float) -> bool:
+        """Whether the outlines are farther apart, the advance changes by more, or contours came or went."""
+        moved = abs(self.new_advance - self.advance)
+        return self.bound > tolerance or moved > tolerance or bool(self.contours_gone or self.contours_new)
+
+    def facts(self) -> dict[str, Any]:
+        """As JSON data; an infinite distance is null."""
+        from dataclasses import asdict
+
+        found = asdict(self) | {"unicodes": [f"U+{code:04X}" for code in self.unicodes]}
+        return found | {name: None for name in ("bound", "seen") if found[name] == inf}

@@ -1,0 +1,141 @@
+"""Two fonts over each other: one page, self-contained, a card a glyph."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isinf
+from string import Template
+
+from ..comparing.difference import Difference, Turn
+from ..outlines.outline import Contour, Contours, Outline
+from ..types import rounded_up
+from ..writers.svg.markup import number, text, union, view_box_value
+from ..writers.svg.path_data import Box, curves_data
+from .pages import package_text
+
+PRECISION = 2
+"""Decimals of the drawings."""
+
+CLOSE_UP = 12.0
+"""Side of the close-up around the worst place, in distances of the outlines there; half the glyph's at most."""
+
+LEAST = 0.004
+"""Half the side of the smallest close-up, in em."""
+
+EDGE = 0.06
+"""Free space around a glyph, in its sizes."""
+
+Drawn = tuple[Difference, Outline | None, Outline | None]
+"""A difference with both outlines; None for one that could not be read."""
+
+
+def comparison_page(heading: str, facts: Sequence[str], drawn: Sequence[Drawn], tolerance: float) -> str:
+    """The page.
+
+    Args:
+        heading: its title. facts: sentences below it. drawn: glyphs in order. tolerance: in units of the old em.
+    """
+    return Template(package_text("comparison.html")).substitute(
+        heading=text(heading), style=package_text("theme.css") + package_text("comparison.css"),
+        facts="".join([f"<p>{text(line)}</p>" for line in facts]),
+        cards="\n".join([card(*each, tolerance) for each in drawn]),
+    )  # fmt: skip
+
+
+def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: float) -> str:
+    """One glyph: both outlines over each other, a close-up of the worst place, and what differs."""
+    paths: list[str] = []
+    box: Box | None = None
+    for kind, outline, scale in (("source", old, 1.0), ("result", new, each.scale)):
+        contours = [] if outline is None else [Contour(c.points * scale, c.degrees) for c in outline.contours]
+        data = curves_data(Contours(contours).arrays, PRECISION)[0]
+        paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{bytes(data.text).decode()}"/>')
+        box = data.box if box is None else union(box, data.box)
+    em = 1000.0 if old is None else old.metrics.units_per_em
+    left, bottom, right, top = box or (0.0, 0.0, em, em)
+    edge = EDGE * max(right - left, top - bottom)
+    whole = drawing("Both outlines", (left - edge, bottom - edge, right + edge, top + edge), paths, marks(each, em))
+    close = ""
+    if each.worst is not None and not each.identical:
+        size = max(right - left, top - bottom)
+        half = max(min(CLOSE_UP / 2 * each.seen, size / 4), 0.75 * each.seen, LEAST * em)
+        x, y = ((a + b) / 2 for a, b in zip(each.worst.point, each.worst.nearest, strict=True))
+        around = (x - half, y - half, x + half, y + half)
+        close = drawing("Close-up of the worst place", around, paths, marks(each, em, half), "close")
+    beyond = ' class="card beyond"' if each.is_beyond(tolerance) else ' class="card"'
+    words = "".join([f"<dt>{name}</dt><dd>{text(value)}</dd>" for name, value in lines(each)])
+    name = each.glyph if each.glyph == each.new_glyph else f"{each.glyph} = {each.new_glyph}"
+    codes = " ".join([f"U+{code:04X}" for code in each.unicodes])
+    return (
+        f"<article{beyond}><h2>{text(name)} <small>{codes}</small></h2>"
+        f'<div class="pair">{whole}{close}</div><dl>{words}</dl></article>'
+    )
+
+
+def marks(each: Difference, em: float, half: float | None = None) -> str:
+    """The worst place: a ring in the drawing of the glyph, a line from point to point in a close-up; and kinks."""
+    found = []
+    for kind, turns in (("gone", each.kinks_gone), ("came", each.kinks_new)):
+        found += [ring(turn.point, 0.012 * em if half is None else half / 14, f"kink {kind}") for turn in turns]
+    if each.worst is not None:
+        (ax, ay), (bx, by) = each.worst.point, each.worst.nearest
+        found.append(
+            ring(each.worst.point, 0.025 * em, "worst")
+            if half is None
+            else f'<path class="worst" d="M{digits(ax)} {digits(-ay)}L{digits(bx)} {digits(-by)}"/>'
+        )
+    return "".join(found)
+
+
+def ring(point: tuple[float, float], radius: float, kind: str) -> str:
+    """A circle around a place."""
+    x, y = point
+    return f'<circle class="{kind}" cx="{digits(x)}" cy="{digits(-y)}" r="{digits(radius)}"/>'
+
+
+def digits(value: float) -> str:
+    """A coordinate of a mark."""
+    return number(value, 4)
+
+
+def drawing(title: str, box: Box, paths: Sequence[str], more: str, kind: str = "whole") -> str:
+    """A drawing of a region."""
+    shown = (
+        view_box_value(box, 3)
+        if kind == "whole"
+        else " ".join([digits(value) for value in (box[0], -box[3], box[2] - box[0], box[3] - box[1])])
+    )
+    return (
+        f'<svg class="drawing {kind}" viewBox="{shown}" role="img"><title>{title}</title>{"".join(paths)}{more}</svg>'
+    )
+
+
+def lines(each: Difference) -> list[tuple[str, str]]:
+    """What differs, in words."""
+    found = [("Distance", "one is empty" if isinf(each.bound) else f"≤ {rounded_up(each.bound, 4):g} units")]
+    if each.worst is not None:
+        found.append(("Worst", f"{each.worst.outline}, contour {each.worst.contour}, {where(each.worst.point)}"))
+    if each.advance != each.new_advance:
+        found.append(("Advance", f"{each.advance:g} → {each.new_advance:g}"))
+    for name, gone, came in (
+        ("Contours", numbers(each.contours_gone), numbers(each.contours_new)),
+        ("Kinks", kinks(each.kinks_gone), kinks(each.kinks_new)),
+    ):
+        found += [(f"{name} gone", gone)] * bool(gone) + [(f"{name} new", came)] * bool(came)
+    return found
+
+
+def numbers(contours: Sequence[int]) -> str:
+    """Numbers of contours."""
+    return ", ".join(map(str, contours))
+
+
+def kinks(turns: Sequence[Turn]) -> str:
+    """Kinks in words, the first three."""
+    shown = [f"{turn.degrees:.3g}° at {where(turn.point)}" for turn in turns[:3]]
+    return "; ".join(shown) + (f"; and {len(turns) - 3} more" if len(turns) > 3 else "")
+
+
+def where(point: tuple[float, float]) -> str:
+    """A place for people."""
+    return "({:.5g}, {:.5g})".format(*point)
