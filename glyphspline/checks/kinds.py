@@ -65,6 +65,8 @@ class Limits(NamedTuple):
     straight: float
     straight_length: float
     slanted: float
+    slanted_offset: float
+    slanted_length: float
     extremum: float
     short: float
     handles: float
@@ -82,7 +84,8 @@ class Thresholds:
         inflection: degrees by which a segment bends back.
         straight: thousandths of an em that a curve may leave its chord and still be called straight, if the chord is as
             long as straight_length, in thousandths too.
-        slanted: degrees off the horizontal or vertical up to which a line is nearly so.
+        slanted: degrees off the horizontal or vertical up to which a line is nearly so, from slanted_offset on, in
+            thousandths of an em between its ends; of one whole unit only if the line is as long as slanted_length.
         extremum: thousandths of an em by which a curve passes the ends of its segment.
         short: thousandths of an em below which a segment is very short.
         handles: share by which a handle reaches beyond the place where both meet.
@@ -98,6 +101,8 @@ class Thresholds:
     straight: float = 0.5
     straight_length: float = 20.0
     slanted: float = 0.5
+    slanted_offset: float = 0.25
+    slanted_length: float = 100.0
     extremum: float = 1.0
     short: float = 3.0
     handles: float = 0.01
@@ -116,5 +121,5 @@ class Thresholds:
         return Limits(
             radians(self.kink), radians(self.corner_angle), self.jump / units_per_em, self.relative_jump, self.lump,
             radians(self.inflection), self.straight * unit, self.straight_length * unit, radians(self.slanted),
-            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit,
+            self.slanted_offset * unit, self.slanted_length * unit, self.extremum * unit, self.short * unit, self.handles, self.doubled * unit,
         )  # fmt: skip

@@ -11,8 +11,10 @@ from ..curves.bezier import evaluate
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
+from .bends import bend_findings
 from .joints import joint_findings
 from .kinds import Limits
+from .segments import segment_findings
 from .table import CONTOUR, OTHER, PLACE, VALUE, WHAT
 
 
@@ -39,7 +41,8 @@ def measured(outlines: Sequence[ContourArrays], limits: Limits) -> Measured:
     contours = joined(outlines)
     glyphs = offsets_of([outline.num_contours for outline in outlines])
     cubics = all_cubics(contours)
-    table = np.concatenate([joint_findings(cubics, contours, limits)])
+    passes = (joint_findings, segment_findings, bend_findings)
+    table = np.concatenate([each(cubics, contours, limits) for each in passes])
     table = table[np.lexsort((-table[:, VALUE], table[:, WHAT]))]
     numbers = table[:, PLACE:].copy()
     contour = table[:, CONTOUR].astype(np.int64)
