@@ -77,7 +77,8 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
                 behind = i if np.isnan(value) else i + 1
                 number = swings(values, n, before, behind, sign, share, least, found)
                 table, count = lumps_of(
-                    own, values, where, n, found, number, before, behind - 1, sign, whole, least, c, table, count
+                    own, values, where, n, found, number, before, behind - 1, sign, whole, least, limits.lump_height, c,
+                    table, count,
                 )
             if ends:
                 first, sign = i, 0.0
@@ -91,7 +92,7 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
 @compiled(internal=True)
 def lumps_of(
     cubics: FloatArray, values: FloatArray, where: FloatArray, n: int, found: IntArray, number: int,
-    before: int, behind: int, sign: float, whole: bool, least: float, contour: int,
+    before: int, behind: int, sign: float, whole: bool, least: float, height: float, contour: int,
     table: FloatArray, count: int,
 ) -> tuple[FloatArray, int]:  # fmt: skip
     """The table with the lumps of one bend.
@@ -116,7 +117,8 @@ def lumps_of(
             square = (x1 - x0) ** 2 + (y1 - y0) ** 2
             peaks[size], shares[size] = where[i], own / max(beside, least) - 1
             heights[size] = (own - beside) * square / WAVE
-            size += 1
+            if heights[size] >= height:
+                size += 1
     needed = max(1, int(np.ceil((turned(cubics, where[before % n], where[behind % n], sign, whole) - SLACK) / QUARTER)))
     while size > 1:
         worst, close = -1, False
