@@ -347,7 +347,7 @@ def planted(
 ) -> tuple[list[Segments], Fault] | None:
     """The outline's contours with one fault, of the first of these kinds that can be planted; None if none can."""
     em = outline.metrics.units_per_em
-    contours = [rounded(list(contour.segments())) for contour in outline.contours]
+    contours = [list(contour.segments()) for contour in outline.contours]
     for kind in kinds:
         places = [(c, j) for c, segments in enumerate(contours) for j in range(len(segments))]
         for index in rng.permutation(len(places))[:200]:
@@ -366,13 +366,13 @@ def planted(
 
 
 def moved_start(segments: Segments, rng: np.random.Generator) -> Segments:
-    """The contour from another start."""
-    k = int(rng.integers(len(segments)))
+    """The contour from another start, of those in whole units: a point between two control points is not stored."""
+    k = int(rng.choice([j for j, segment in enumerate(segments) if (segment[0] % 1 == 0).all()] or [0]))
     return [*segments[k:], *segments[:k]]
 
 
 def write(path: Path, glyphs: Sequence[list[Segments]], em: int, cubic: bool) -> None:
-    """Write a font."""
+    """Write a font, in whole units."""
     names = [".notdef", *[f"g{k}" for k in range(len(glyphs))]]
     builder = FontBuilder(em, isTTF=not cubic)
     builder.setupGlyphOrder(names)
@@ -386,7 +386,7 @@ def write(path: Path, glyphs: Sequence[list[Segments]], em: int, cubic: bool) ->
                 points = [tuple(point) for point in segment[1:].tolist()]
                 {2: pen.lineTo, 3: pen.qCurveTo, 4: pen.curveTo}[len(segment)](*points)
             pen.closePath()
-        drawn[name] = pen.getCharString(optimize=False) if cubic else pen.glyph(dropImpliedOnCurves=False)
+        drawn[name] = pen.getCharString(optimize=False) if cubic else pen.glyph(dropImpliedOnCurves=True)
     if cubic:
         builder.setupCFF("Planted", {"FullName": "Planted"}, drawn, {})
     else:
@@ -470,8 +470,8 @@ def main() -> int:
         other = 2048 if em < 1500 else 1000
         with tempfile.TemporaryDirectory() as folder:
             path, second = Path(folder) / "planted.font", Path(folder) / "other.font"
-            write(path, [[rounded(contour) for contour in glyph] for glyph in glyphs], int(em), cubic)
-            scaled = [[rounded([part * (other / em) for part in contour]) for contour in glyph] for glyph in glyphs]
+            write(path, glyphs, int(em), cubic)
+            scaled = [[[part * (other / em) for part in contour] for contour in glyph] for glyph in glyphs]
             write(second, scaled, other, cubic)
             after, elsewhere = check_many(read(path, len(glyphs))), check_many(read(second, len(glyphs)))
         for fault, old, new, far, outline in zip(faults, before, after, elsewhere, outlines, strict=True):

@@ -44,7 +44,8 @@ KNOT = Contour(
 SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 EVERYTHING = (
-    "interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "stacked", "rest"
+    "interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "stacked", "rest",
+    "checks",
 )  # fmt: skip
 """All modules of this package. Together they compile every function there is. The first ones share little, so that
 processes that begin at the same time seldom compile the same function."""

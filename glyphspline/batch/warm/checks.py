@@ -1,0 +1,6 @@
+"""What ``check`` needs."""
+
+from ...checks.check import check
+from . import SHAPES
+
+check(SHAPES)
