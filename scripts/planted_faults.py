@@ -19,6 +19,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Sequence
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -42,8 +43,8 @@ FACES = (
 NEAR = 0.03
 """Of the em: distance from its place within which a fault is found."""
 
-ROUNDING = 0.71
-"""Units by which rounding moves a point at most."""
+ROUNDING = 3 / np.sqrt(12)
+"""Three standard deviations of the rounding of a coordinate to whole units."""
 
 Segments = list[FloatArray]
 
@@ -92,7 +93,8 @@ def joint(segments: Segments, j: int) -> float:
 
 def may_turn(a: FloatArray, b: FloatArray) -> float:
     """Degrees that rounding may make of a smooth joint, or the threshold of kinks."""
-    return max(0.5, float(np.degrees(ROUNDING * (1 / max(size(a), 1e-9) + 1 / max(size(b), 1e-9)))))
+    first, second = 1 / max(size(a), 1e-9), 1 / max(size(b), 1e-9)
+    return max(0.5, float(np.degrees(ROUNDING * np.sqrt(first**2 + second**2 + (first + second) ** 2))))
 
 
 def curvature(segment: FloatArray, t: FloatArray) -> FloatArray:
@@ -176,7 +178,7 @@ def turns(segment: FloatArray) -> tuple[float, float]:
     """Degrees that a segment turns to the left and to the right."""
     t = np.linspace(0, 1, 65)
     along = evaluate(np.broadcast_to(derivative_points(segment[None], 1)[0], (65, len(segment) - 1, 2)), t)
-    each = np.array([angle(a, b) for a, b in zip(along, along[1:], strict=False)])
+    each = np.array([angle(a, b) for a, b in pairwise(along)])
     return float(each[each > 0].sum()), float(-each[each < 0].sum())
 
 
@@ -203,9 +205,10 @@ def straight(s: Segments, j: int, unit: float) -> Planted | None:
         return None
     if min(abs(joint(s, j)), abs(joint(s, (j + 1) % len(s)))) < 20:
         return None
-    a, b = s[j]
+    a, b = s[j][0], s[j][1]
     degree = max(len(segment) for segment in s) - 1
-    new = np.round(np.linspace(a, b, max(degree, 2) + 1))
+    steps = np.linspace(0.0, 1.0, max(degree, 2) + 1)
+    new = np.round(a + steps[:, None] * (b - a))
     along = (b - a) / chord(s[j])
     off = np.abs((new - a) @ np.array([-along[1], along[0]])).max()
     return Planted([*s[:j], new, *s[j + 1 :]], (a + b) / 2, 0.0) if off * 0.75 < 0.33 * unit else None
@@ -247,7 +250,9 @@ def extremum(s: Segments, j: int, unit: float) -> Planted | None:
     meet = p + reach * u
     if reach <= 0 or (q - meet) @ v <= 0:
         return None
-    middle = np.array([p, meet, q]) if len(before) == 3 else np.array([p, p + 0.6 * (meet - p), q + 0.6 * (meet - q), q])
+    middle = (
+        np.array([p, meet, q]) if len(before) == 3 else np.array([p, p + 0.6 * (meet - p), q + 0.6 * (meet - q), q])
+    )
     middle = np.round(middle)
     path = evaluate(np.broadcast_to(middle, (65, *middle.shape)), np.linspace(0, 1, 65))[:, k]
     beyond = max(path.max() - max(path[0], path[-1]), min(path[0], path[-1]) - path.min())
@@ -256,7 +261,9 @@ def extremum(s: Segments, j: int, unit: float) -> Planted | None:
     new = s.copy()
     new[j - 1], new[j] = first[0], last[1]
     at = j if j else len(new)
-    return Planted(rounded([*new[:at], middle, *new[at:]]), evaluate(middle[None], np.array([0.5]))[0], chord(middle) / 2)
+    return Planted(
+        rounded([*new[:at], middle, *new[at:]]), evaluate(middle[None], np.array([0.5]))[0], chord(middle) / 2
+    )
 
 
 def short(s: Segments, j: int, unit: float) -> Planted | None:
@@ -264,7 +271,11 @@ def short(s: Segments, j: int, unit: float) -> Planted | None:
     if chord(s[j]) < 30 * unit:
         return None
     parts = rounded(cut(s[j], 1 - 2 * unit / chord(s[j])))
-    if not 0 < chord(parts[1]) <= 2.4 * unit or chord(parts[0]) < 20 * unit or size(np.ptp(parts[1], axis=0)) > 2.4 * unit:
+    if (
+        not 0 < chord(parts[1]) <= 2.4 * unit
+        or chord(parts[0]) < 20 * unit
+        or size(np.ptp(parts[1], axis=0)) > 2.4 * unit
+    ):
         return None
     return Planted([*s[:j], *parts, *s[j + 1 :]], parts[1][0], 0.0)
 
@@ -303,7 +314,7 @@ def detour(s: Segments, j: int, unit: float, points: Sequence[tuple[float, float
         return None
     left = rotated((b - a) / chord(s[j]), 90) * unit
     way = np.round(np.array([a, *[a + x * (b - a) + y * left for x, y in points], b]))
-    lines = [np.array(pair) for pair in zip(way, way[1:], strict=False)]
+    lines = [np.array(pair) for pair in pairwise(way)]
     return Planted([*s[:j], *lines, *s[j + 1 :]], (a + b) / 2, 30 * unit)
 
 
@@ -444,7 +455,7 @@ def main() -> int:
     untouched = spoiled = spoiled_again = total = 0
     for number, file in enumerate(FACES):
         font = gs.open_font(located(file))
-        outlines = []
+        outlines: list[gs.Outline] = []
         wanted = (given.glyphs - total) // (len(FACES) - number)
         for k in rng.permutation(len(font.glyph_names)):
             outline = font.outline(font.glyph_names[k])
@@ -495,7 +506,9 @@ def main() -> int:
     faulty = sum(count.values())
     share = sum(found.values()) / max(faulty, 1)
     print(f"| all | {faulty} | {sum(found.values())} ({share:.2%}) | {sum(false.values())} | {sum(again.values())} |")
-    print(f"\n{total} glyphs; of {untouched} untouched ones {spoiled} have a false finding, {spoiled_again} in another em.")
+    print(
+        f"\n{total} glyphs; of {untouched} untouched ones {spoiled} have false findings, {spoiled_again} in another em."
+    )
     return int(share < 0.99 or spoiled > untouched / 50)
 
 

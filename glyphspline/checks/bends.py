@@ -77,8 +77,21 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
                 behind = i if np.isnan(value) else i + 1
                 number = swings(values, n, before, behind, sign, share, least, found)
                 table, count = lumps_of(
-                    own, values, where, n, found, number, before, behind - 1, sign, whole, least, limits.lump_height, c,
-                    table, count,
+                    own,
+                    values,
+                    where,
+                    n,
+                    found,
+                    number,
+                    before,
+                    behind - 1,
+                    sign,
+                    whole,
+                    least,
+                    limits.lump_height,
+                    c,
+                    table,
+                    count,
                 )
             if ends:
                 first, sign = i, 0.0

@@ -1,4 +1,4 @@
-"""Single segments: curves that bend back, are straight, pass their ends or have handles too long; lines a little off."""
+"""Single segments: curves that bend back, are straight, pass their ends or have long handles; lines a little off."""
 
 from __future__ import annotations
 
@@ -89,10 +89,10 @@ def control_polygon(cubic: FloatArray) -> float:
 @compiled(internal=True)
 def all_whole(cubic: FloatArray) -> bool:
     """Whether all control points are in whole units."""
+    whole = True
     for k in range(4):
-        if not is_whole(cubic[k, 0], cubic[k, 1]):
-            return False
-    return True
+        whole = whole and is_whole(cubic[k, 0], cubic[k, 1])
+    return whole
 
 
 @compiled(internal=True)
@@ -200,9 +200,7 @@ def reaches_beyond(cubic: FloatArray, limits: Limits) -> float:
 
 
 @compiled(internal=True)
-def bends_back(
-    cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, limits: Limits
-) -> tuple[float, float]:
+def bends_back(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, limits: Limits) -> tuple[float, float]:
     """By how many radians a cubic bends back that else bends one way, and where that begins or ends; else 0.
 
     An S that turns both ways is meant. So is a turn back at an end if the neighbour, smoothly joined, bends that way
@@ -247,7 +245,7 @@ def bends_back(
     i = neighbour(cubics, a, b, j, -1 if at_start else 1)
     own_x, own_y = handle(cubics, degrees, j, not at_start)
     other_x, other_y = handle(cubics, degrees, i, at_start)
-    if degrees[i] > 1 and abs(turn_of(other_x, other_y, own_x, own_y)) < limits.corner_angle:
-        if sign * end_curvature(cubics[i], at_start) > 0:
-            return 0.0, 0.0
+    smooth = abs(turn_of(other_x, other_y, own_x, own_y)) < limits.corner_angle
+    if smooth and degrees[i] > 1 and sign * end_curvature(cubics[i], at_start) > 0:
+        return 0.0, 0.0
     return back, low if at_start or np.isnan(high) else high
