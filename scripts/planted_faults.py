@@ -162,7 +162,9 @@ def lump(s: Segments, j: int, unit: float) -> Planted | None:
         parts[left][2] = (parts[left][3] + parts[left][2]) / 2
         parts[right][1] = (parts[right][0] + parts[right][1]) / 2
     parts = rounded(parts)
-    values = np.abs(np.concatenate([curvature(part, np.linspace(0, 1, 33)) for part in parts]))
+    values = np.sign(old[0]) * np.concatenate([curvature(part, np.linspace(0, 1, 33)) for part in parts])
+    if values.min() <= 0:  # two bends, not a lump
+        return None
     valleys = values[:33].min(), values[33:66].min(), values[66:].min()
     peaks = values[[32, 33]].min(), values[[65, 66]].min()
     beside = [max(valleys[k], valleys[k + 1]) for k in range(2)]

@@ -83,7 +83,7 @@ SOUND: dict[str, Contour] = {
     "a unit beyond, of whole units": arch([0, 101, 45, 100, 100, 100]),
     "an S": arch([60, 0, 40, 100, 100, 100]),
     "a bent curve": arch([20, 3, 80, 3.1, 100, 0.5]),
-    "short but bent": closed([5, 8, 10, 13, 15, 13], [15, -300], [0, -200], [0, 0]),
+    "short but bent": closed([-2, 8, 5, 13, 15, 13], [90, -300], [-80, -200], [0, 0]),
     "a line at 0.6 degrees": closed([300, 3.2], [300, 250], [0, 250], [0, 0]),
     "a line on the axis": closed([300, 0], [300, 250], [0, 250], [0, 0]),
     "an extremum lower than the limit": arch([20, 5, 80, 5, 100, 3.4]),

@@ -14,7 +14,7 @@ from ..types import FloatArray, IntArray
 from .bends import bend_findings
 from .joints import joint_findings
 from .kinds import Limits
-from .segments import segment_findings
+from .single_segments import segment_findings
 from .table import CONTOUR, OTHER, PLACE, VALUE, WHAT
 
 
