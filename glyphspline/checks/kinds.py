@@ -1,7 +1,7 @@
 """What is looked for in an outline: each kind of finding with its level, its unit, and the limits from which it counts.
 
-The numbers are made in compiled code, :mod:`.joints`, :mod:`.single_segments`, :mod:`.bends` and :mod:`.enclosed`; what they
-mean is said here.
+The numbers are made in compiled code, :mod:`.joints`, :mod:`.single_segments`, :mod:`.bends` and :mod:`.enclosed`; what
+they mean is said here.
 """
 
 from __future__ import annotations
