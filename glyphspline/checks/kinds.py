@@ -1,7 +1,7 @@
 """What is looked for in an outline: each kind of finding with its level, its unit, and the limits from which it counts.
 
-The numbers are made in compiled code, :mod:`.joints`, :mod:`.segments`, :mod:`.bends` and :mod:`.enclosed`; what they
-mean is said here.
+The numbers are made in compiled code, :mod:`.joints`, :mod:`.single_segments`, :mod:`.bends` and :mod:`.enclosed`; what
+they mean is said here.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Kind:
 KINDS = (
     Kind("kink", "WARN", "°", "turns by {value} at a joint meant to be smooth"),
     Kind("jump", "INFO", "/em", "curvature jumps by {value} ({detail:.0%}) at a smooth joint"),
-    Kind("lump", "INFO", "%", "curvature swells by {value} where one bend needs no other extremum"),
+    Kind("lump", "INFO", "%", "curvature swells by {value} where the bend needs no more maxima"),
     Kind("inflection", "INFO", "°", "bends back by {value} inside a segment that else bends one way"),
     Kind("straight", "INFO", "units", "a curve within {value} of a straight line"),
     Kind("slanted", "INFO", "°", "a line {value} off the horizontal or vertical"),
@@ -64,10 +64,13 @@ class Limits(NamedTuple):
     jump: float
     relative_jump: float
     lump: float
+    lump_height: float
     inflection: float
     straight: float
     straight_length: float
     slanted: float
+    slanted_offset: float
+    slanted_length: float
     extremum: float
     short: float
     handles: float
@@ -82,11 +85,13 @@ class Thresholds:
     Attributes:
         kink: degrees of turn at a joint; from ``corner_angle`` degrees on it is a corner, and meant.
         jump: of curvature at a smooth joint, in 1/em; relative_jump: and as a share of the larger curvature.
-        lump: share by which a curvature exceeds the extrema beside it.
+        lump: share by which a curvature exceeds the extrema beside it, if that moves the curve by lump_height,
+            in thousandths of an em.
         inflection: degrees by which a segment bends back.
         straight: thousandths of an em that a curve may leave its chord and still be called straight, if the chord is as
             long as straight_length, in thousandths too.
-        slanted: degrees off the horizontal or vertical up to which a line is nearly so.
+        slanted: degrees off the horizontal or vertical up to which a line is nearly so, from slanted_offset on, in
+            thousandths of an em between its ends; of one whole unit only if the line is as long as slanted_length.
         extremum: thousandths of an em by which a curve passes the ends of its segment.
         short: thousandths of an em below which a segment is very short.
         handles: share by which a handle reaches beyond the place where both meet.
@@ -98,10 +103,13 @@ class Thresholds:
     jump: float = 1.0
     relative_jump: float = 0.25
     lump: float = 0.25
+    lump_height: float = 0.3
     inflection: float = 1.0
     straight: float = 0.5
     straight_length: float = 20.0
     slanted: float = 0.5
+    slanted_offset: float = 0.25
+    slanted_length: float = 100.0
     extremum: float = 1.0
     short: float = 3.0
     handles: float = 0.01
@@ -119,6 +127,7 @@ class Thresholds:
         unit = units_per_em / 1000
         return Limits(
             radians(self.kink), radians(self.corner_angle), self.jump / units_per_em, self.relative_jump, self.lump,
-            radians(self.inflection), self.straight * unit, self.straight_length * unit, radians(self.slanted),
-            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit,
+            self.lump_height * unit, radians(self.inflection), self.straight * unit, self.straight_length * unit,
+            radians(self.slanted), self.slanted_offset * unit, self.slanted_length * unit, self.extremum * unit,
+            self.short * unit, self.handles, self.doubled * unit, unit,
         )  # fmt: skip

@@ -9,10 +9,12 @@ import numpy as np
 from ..curves.bezier import evaluate
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.segments import all_cubics
+from .bends import bend_findings
 from .columns import Measured
 from .enclosed import enclosed_findings
 from .joints import joint_findings
 from .kinds import KINDS, Thresholds
+from .single_segments import segment_findings
 from .table import CONTOUR, OTHER, PLACE, VALUE, WHAT
 
 PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
@@ -25,9 +27,9 @@ def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_pe
     contours = joined(outlines)
     glyphs = offsets_of([outline.num_contours for outline in outlines])
     cubics = all_cubics(contours)
-    table = np.concatenate(
-        [joint_findings(cubics, contours, limits), enclosed_findings(cubics, contours, glyphs, limits)]
-    )
+    passes = (joint_findings, segment_findings, bend_findings)
+    tables = [each(cubics, contours, limits) for each in passes]
+    table = np.concatenate([*tables, enclosed_findings(cubics, contours, glyphs, limits)])
     table[np.isin(table[:, WHAT], PER_EM), VALUE] *= units_per_em
     table = table[np.lexsort((-table[:, VALUE], table[:, WHAT]))]
     numbers = table[:, PLACE:].copy()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .comb import frame, size_of
 from .cubics import directions
 from .integrals import NODES, WEIGHTS
@@ -61,49 +61,77 @@ def curvature_extrema(cubics: FloatArray, length: float, corner: float) -> int:
     Args:
         cubics: (m, 4, 2). length: of the contour. corner: cosine of the turn from which a joint is a corner.
     """
-    values, n = _curvatures(cubics, length, corner)
+    values, _, n = curvatures(cubics, length, corner)
     if n == 0:
         return 0
-    start, cut = 0, False
+    start = first_of(values, n)
+    found = np.empty(n + 1, dtype=np.int64)
+    if not np.isnan(values[start]):
+        return swings(values, n, start, start + n + 1, 1.0, SHARE, TURN / length, found)
+    count, first = 0, start + 1
+    for i in range(start + 1, start + n + 1):
+        if np.isnan(values[i % n]):
+            count += max(swings(values, n, first, i, 1.0, SHARE, TURN / length, found) - 1, 0)
+            first = i + 1
+    return count
+
+
+@compiled(internal=True)
+def first_of(values: FloatArray, n: int) -> int:
+    """Index of the first corner among n curvatures, or else of the largest of all.
+
+    From there once around, and there again: whatever is significantly below some value is so below a larger one, so
+    nothing is gained by waiting, or by another start.
+    """
+    start = 0
     for i in range(n):
         if np.isnan(values[i]):
-            start, cut = i, True
-            break
+            return i
         if values[i] > values[start]:
             start = i
-    # From a corner, or else from the largest curvature of all, once around and there again. Whatever is significantly
-    # below some value is so below a larger one: nothing is gained by waiting, or by another start.
-    count = swings = direction = 0
+    return start
+
+
+@compiled(internal=True)
+def swings(
+    values: FloatArray, n: int, first: int, last: int, sign: float, share: float, least: float, found: IntArray
+) -> int:
+    """How many times a sequence alternately rises and falls significantly.
+
+    Args:
+        values: n of them, taken around and times ``sign``, from place ``first`` up to ``last``, exclusive.
+        share: of the larger of two absolute values by which they differ at least. least: difference at least.
+        found: the place that each swing leaves, a largest or smallest value, is written here, and the one behind the
+            last swing; one more than there are swings.
+    """
+    count = direction = 0
     low, high = np.inf, -np.inf
-    for i in range(start, start + n + 1):
-        value = values[i % n]
-        if np.isnan(value):
-            count += max(swings - 1, 0)
-            swings = direction = 0
-            low, high = np.inf, -np.inf
-            continue
-        low, high = min(low, value), max(high, value)
-        if direction <= 0 and _apart(low, value, length):
-            swings, direction, high = swings + 1, 1, value
-        elif direction >= 0 and _apart(value, high, length):
-            swings, direction, low = swings + 1, -1, value
-    return count if cut else swings
+    lowest = highest = first
+    for i in range(first, last):
+        value = sign * values[i % n]
+        if value < low:
+            low, lowest = value, i
+        if value > high:
+            high, highest = value, i
+        if direction <= 0 and value - low >= max(share * max(abs(low), abs(value)), least):
+            found[count] = lowest
+            count, direction, high, highest = count + 1, 1, value, i
+        elif direction >= 0 and high - value >= max(share * max(abs(high), abs(value)), least):
+            found[count] = highest
+            count, direction, low, lowest = count + 1, -1, value, i
+    found[count] = highest if direction > 0 else lowest
+    return count
 
 
 @compiled(internal=True)
-def _apart(low: float, high: float, length: float) -> bool:
-    """Whether two curvatures differ significantly."""
-    return high - low >= max(SHARE * max(abs(low), abs(high)), TURN / length)
-
-
-@compiled(internal=True)
-def _curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatArray, int]:
+def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatArray, FloatArray, int]:
     """Signed curvature in order along a contour, at both ends and all extrema of each piece, NaN at each corner.
 
-    The array has room to spare; the second value is the number of curvatures in it.
+    The second array has where that is: j + t for local parameter t of piece j. Both have room to spare; the last value
+    is the number of curvatures.
     """
     m, n = len(cubics), 0
-    values, places = np.empty(4 * m + MOST + 1), np.empty(MOST)
+    values, where, places = np.empty(4 * m + MOST + 1), np.empty(4 * m + MOST + 1), np.empty(MOST)
     least = NO_EXTENT * length
     ax = ay = 0.0
     for j in range(m - 1, -1, -1):  # where the last piece of any extent arrives
@@ -115,24 +143,25 @@ def _curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[Float
         if not size > least:
             continue
         if n + MOST + 1 > len(values):
-            longer = np.empty(2 * len(values))
+            longer, also = np.empty((2, 2 * len(values)))
             for i in range(n):  # the assignment of slices compiles for six seconds
-                longer[i] = values[i]
-            values = longer
+                longer[i], also[i] = values[i], where[i]
+            values, where = longer, also
         bx, by, x, y = directions(cubics, j, least)
         if ax * bx + ay * by <= corner * np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by)):
-            values[n] = np.nan
+            values[n], where[n] = np.nan, j
             n += 1
         ax, ay = x, y
         bent, (x0, x1, x2), (s0, s1, s2, s3, s4), slope = _polynomials(cubics, j, size)
         for i in range(_places(slope, places) if bent else 1):
             t = places[i]
+            where[n] = j + t
             square = s0 + t * (s1 + t * (s2 + t * (s3 + t * s4)))
             values[n] = (x0 + t * (x1 + t * x2)) / (square * np.sqrt(square) * size) if bent else 0.0
             if bent and not square > SLOW:
                 _, _, _, _, values[n] = frame(cubics, j, t, size)
             n += 1
-    return values, n
+    return values, where, n
 
 
 @compiled(internal=True)

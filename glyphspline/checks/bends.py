@@ -1,0 +1,185 @@
+"""Bends, from inflection to inflection: lumps, where curvature swells once more than the bend needs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.comb import control_length
+from ..curves.cubics import jet, length
+from ..curves.fairness import TURN, curvatures, first_of, swings
+from ..outlines.contour_arrays import ContourArrays
+from ..types import FloatArray, IntArray
+from .joints import NO_HANDLE
+from .kinds import LUMP, Limits
+from .table import COLUMNS, add
+
+QUARTER = np.pi / 2
+"""A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""
+
+SLACK = np.radians(10.0)
+"""Turn beyond whole quarters that needs no further maximum."""
+
+APART = np.radians(45.0)
+"""Turn between two maxima that both belong to the bend's shape: half a quarter."""
+
+WAVE = 8 * np.pi**2
+"""A wave of curvature moves the curve to each side by its height times the square of its length, divided by this."""
+
+STEPS = 8
+"""Chords of a segment along which its turn is summed."""
+
+
+@compiled
+def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
+    """(n, 6) lumps of contours; see :mod:`.table`. The second number is how far a lump moves the curve, in units.
+
+    A bend goes from an inflection, a corner or a line to the next. The maxima of its absolute curvature are those of
+    :func:`..curves.fairness.swings`, with the limit's share. Contours with quadratics are passed over: each quadratic
+    has a peak of its own.
+
+    Args:
+        cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
+    """
+    table, count = np.empty((16, COLUMNS)), 0
+    share, corner = limits.lump / (1 + limits.lump), np.cos(limits.corner_angle)
+    for c in range(len(contours.offsets) - 1):
+        a, b = contours.offsets[c], contours.offsets[c + 1]
+        bent = plain = True
+        for j in range(a, b):
+            plain = plain and contours.degrees[j] != 2
+            bent = bent or contours.degrees[j] == 3
+        if not (plain and bent):
+            continue
+        own = cubics[a:b]
+        extent = control_length(own)
+        values, where, n = curvatures(own, extent, corner)
+        if n == 0:
+            continue
+        for i in range(n):
+            if contours.degrees[a + min(int(where[i]), b - a - 1)] == 1 and where[i] % 1 == 0 and values[i] == 0.0:
+                values[i] = np.nan
+        least = TURN / extent
+        found = np.empty(n + 2, dtype=np.int64)
+        start = first_of(values, n)
+        whole = not np.isnan(values[start])
+        if whole:  # from an inflection, if there is one
+            for i in range(start, start + n):
+                if values[i % n] * values[start] < 0 and abs(values[i % n]) >= least:
+                    start, whole = i, False
+                    break
+        first, sign = start, 0.0
+        for i in range(start, start + n + 1):
+            value = values[i % n]
+            ends = np.isnan(value) or value * sign <= -least or i == start + n
+            if ends and sign != 0.0:
+                before = first - 1 if not np.isnan(values[(first - 1) % n]) and not whole else first
+                behind = i if np.isnan(value) else i + 1
+                number = swings(values, n, before, behind, sign, share, least, found)
+                table, count = lumps_of(
+                    own,
+                    values,
+                    where,
+                    n,
+                    found,
+                    number,
+                    before,
+                    behind - 1,
+                    sign,
+                    whole,
+                    least,
+                    limits.lump_height,
+                    c,
+                    table,
+                    count,
+                )
+            if ends:
+                first, sign = i, 0.0
+            if np.isnan(value):
+                first = i + 1
+            elif sign == 0.0 and abs(value) >= least:
+                sign = 1.0 if value > 0 else -1.0
+    return table[:count]
+
+
+@compiled(internal=True)
+def lumps_of(
+    cubics: FloatArray, values: FloatArray, where: FloatArray, n: int, found: IntArray, number: int,
+    before: int, behind: int, sign: float, whole: bool, least: float, height: float, contour: int,
+    table: FloatArray, count: int,
+) -> tuple[FloatArray, int]:  # fmt: skip
+    """The table with the lumps of one bend.
+
+    Of two maxima too close together the lesser is a lump; then the least of all, until there are no more than the bend
+    needs. The lesser one is that which exceeds the minima beside it by the smaller share.
+
+    Args:
+        values, where: n curvatures and their places. found: the significant extrema, as many as ``number`` swings.
+        before, behind: where the bend begins and ends. sign: of its curvature. whole: it is the whole contour.
+    """
+    first = 0 if whole else 1
+    if number - first < 3:
+        return table, count
+    peaks, shares, heights = np.empty(number), np.empty(number), np.empty(number)
+    size = 0
+    for k in range(first, number):
+        i, j, h = found[k] % n, found[k - 1 if k else number - 1] % n, found[(k + 1) % number if whole else k + 1] % n
+        own, beside = sign * values[i], max(sign * values[j], sign * values[h])
+        if own > beside:
+            (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = point_at(cubics, where[j]), point_at(cubics, where[h])
+            square = (x1 - x0) ** 2 + (y1 - y0) ** 2
+            peaks[size], shares[size] = where[i], own / max(beside, least) - 1
+            heights[size] = (own - beside) * square / WAVE
+            if heights[size] >= height:
+                size += 1
+    needed = max(1, int(np.ceil((turned(cubics, where[before % n], where[behind % n], sign, whole) - SLACK) / QUARTER)))
+    while size > 1:
+        worst, close = -1, False
+        for k in range(size if whole else size - 1):
+            h = (k + 1) % size
+            if turned(cubics, peaks[k], peaks[h], sign, False) < APART:
+                lesser = k if shares[k] < shares[h] else h
+                if worst < 0 or shares[lesser] < shares[worst]:
+                    worst, close = lesser, True
+        if not close and size > needed:
+            worst = 0
+            for k in range(size):
+                worst = k if shares[k] < shares[worst] else worst
+        if worst < 0:
+            break
+        table = add(table, count, LUMP, contour, peaks[worst] % len(cubics), shares[worst], heights[worst], -1)
+        count += 1
+        size -= 1
+        for k in range(worst, size):
+            peaks[k], shares[k], heights[k] = peaks[k + 1], shares[k + 1], heights[k + 1]
+    return table, count
+
+
+@compiled(internal=True)
+def point_at(cubics: FloatArray, place: float) -> tuple[float, float, float, float, float, float]:
+    """Position, first and second derivative at a place of a chain; the end of the last piece is one too."""
+    j = min(int(place), len(cubics) - 1)
+    return jet(cubics, j, place - j)
+
+
+@compiled(internal=True)
+def turned(cubics: FloatArray, first: float, last: float, sign: float, whole: bool) -> float:
+    """By how many radians a closed chain turns to one side, 1 or -1, between two places: the most on the way."""
+    m = len(cubics)
+    if whole or last < first:
+        last += m
+    total = low = most = px = py = 0.0
+    for s in range(int(first), int(np.ceil(last))):
+        j = s % m
+        a, b = max(first - s, 0.0), min(last - s, 1.0)
+        for k in range(STEPS + 1):
+            t = a + (b - a) * k / STEPS
+            _, _, x, y, _, _ = jet(cubics, j, t)
+            if length(x, y) <= NO_HANDLE:
+                continue
+            if px != 0.0 or py != 0.0:
+                total += sign * np.arctan2(px * y - py * x, px * x + py * y)
+                low = min(low, total)
+                most = max(most, total - low)
+            px, py = x, y
+    return most
