@@ -59,6 +59,7 @@ class CheckJob(NamedTuple):
     Attributes:
         metrics: of a font file that is read as it is, in bulk; None of any other source.
         axes: tags of the axes along which glyphs are looked at; () for the font where it is open.
+        outer: direction of outer contours; see :attr:`.Source.outer`.
     """
 
     place: Place
@@ -66,6 +67,7 @@ class CheckJob(NamedTuple):
     thresholds: Thresholds
     axes: tuple[str, ...]
     steps: int
+    outer: int
 
 
 class Task(NamedTuple):
@@ -129,7 +131,7 @@ def check_font(
     tasks = sorted({Task(index[name], name) for name in names})
     place = (source.path.absolute(), source.face_index, tuple(source.location.items()))
     in_bulk = type(source) is Font and not chosen
-    job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps)
+    job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps, source.outer)
     return _found(job, tasks, tags if chosen else (), executor or InProcess(), observer, once)
 
 
@@ -234,10 +236,10 @@ def _measured(
     try:
         if job.axes:
             masters = [glyph for glyph in glyphs if isinstance(glyph, Masters)]
-            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds)
+            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds, job.outer)
         else:
             arrays = [glyph.arrays for glyph in glyphs if isinstance(glyph, Outline)]
-            rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em)
+            rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em, job.outer)
         return [(glyphs, rows)]
     except Exception as error:
         if len(glyphs) > 1:

@@ -56,7 +56,7 @@ KINDS = (
 class Limits(NamedTuple):
     """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`.
 
-    ``unit`` is a thousandth of an em.
+    ``unit`` is a thousandth of an em. ``outer`` is the direction of outer contours, as in :attr:`.Source.outer`.
     """
 
     kink: float
@@ -77,6 +77,7 @@ class Limits(NamedTuple):
     handles: float
     doubled: float
     unit: float
+    outer: int
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,8 @@ class Thresholds:
             value = getattr(self, each.name)
             require(is_positive(value, 1e6), f"the threshold {each.name} is above 0 and up to a million", value)
 
-    def limits(self, units_per_em: float) -> Limits:
-        """In font units and radians."""
+    def limits(self, units_per_em: float, outer: int = 0) -> Limits:
+        """In font units and radians, of a font whose outer contours have the direction ``outer``."""
         from math import radians
 
         unit = units_per_em / 1000
@@ -132,5 +133,5 @@ class Thresholds:
             radians(self.kink), radians(self.corner_angle), radians(self.line_angle), self.jump / units_per_em,
             self.relative_jump, self.lump, self.lump_height * unit, radians(self.inflection), self.straight * unit,
             self.straight_length * unit, radians(self.slanted), self.slanted_offset * unit, self.slanted_length * unit,
-            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit,
+            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit, outer,
         )  # fmt: skip

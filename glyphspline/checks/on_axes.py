@@ -40,13 +40,14 @@ class _Turn(NamedTuple):
 
 
 def on_axes(
-    glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds
-) -> Measured:
+    glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
+    outer: int = 0,
+) -> Measured:  # fmt: skip
     """Measure glyphs of a variable font, each finding at its worst place.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
-        tags: of the axes along which they are looked at. steps: of an axis.
+        tags: of the axes along which they are looked at. steps: of an axis. outer: see :attr:`.Source.outer`.
 
     Raises:
         GlyphsplineError: masters of a glyph cannot be told apart.
@@ -55,7 +56,7 @@ def on_axes(
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]
     places = [places_of(masters, location, chosen, steps) for masters in glyphs]
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
-    rows = measured(instances, thresholds, em)
+    rows = measured(instances, thresholds, em, outer)
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
