@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import nullcontext
 from hashlib import blake2b
 from itertools import groupby
 from typing import NamedTuple
@@ -132,27 +133,35 @@ def check_font(
     place = (source.path.absolute(), source.face_index, tuple(source.location.items()))
     in_bulk = type(source) is Font and not chosen
     job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps, source.outer)
-    return _found(job, tasks, tags if chosen else (), executor or InProcess(), observer, once)
+    return _found(job, tasks, tags if chosen else (), executor, observer, once)
 
 
 def _found(
-    job: CheckJob, tasks: list[Task], tags: Sequence[str], pool: Executor, observer: Observer | None, once: bool
+    job: CheckJob,
+    tasks: list[Task],
+    tags: Sequence[str],
+    executor: Executor | None,
+    observer: Observer | None,
+    once: bool,
 ) -> Iterator[GlyphFindings]:
-    most = MASTERS_BATCH if job.axes else BATCH
-    chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
-    waiting: dict[Task, tuple[Sequence[Task], Checked]] = {}  # by a chunk's first glyph, until those before are done
-    told = _Told() if once else None
-    done = broken = following = 0
-    for chunk, result in spread(pool, check_tasks, job, chunks):
-        if isinstance(result, Exception):
-            result = _nothing({task.gid: result.message for task in chunk})
-        waiting[chunk[0]] = chunk, result
-        done, broken = done + len(chunk), broken + len(result.errors)
-        if observer:
-            observer(done, len(tasks), broken)
-        while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
-            following += len(ready[0])
-            yield from _values(*ready, tags, told)
+    with nullcontext(executor) if executor else InProcess() as pool:
+        most = MASTERS_BATCH if job.axes else BATCH
+        chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
+        waiting: dict[
+            Task, tuple[Sequence[Task], Checked]
+        ] = {}  # by a chunk's first glyph, until those before are done
+        told = _Told() if once else None
+        done = broken = following = 0
+        for chunk, result in spread(pool, check_tasks, job, chunks):
+            if isinstance(result, Exception):
+                result = _nothing({task.gid: result.message for task in chunk})
+            waiting[chunk[0]] = chunk, result
+            done, broken = done + len(chunk), broken + len(result.errors)
+            if observer:
+                observer(done, len(tasks), broken)
+            while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
+                following += len(ready[0])
+                yield from _values(*ready, tags, told)
 
 
 def _values(
