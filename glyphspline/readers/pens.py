@@ -29,6 +29,11 @@ MAX_SEGMENTS, MAX_COMPONENTS = 200_000, 10_000
 """Limits far above any real glyph. A few hundred bytes of nested components can ask for 2^64 copies."""
 
 
+def notes_of(left_out: Sequence[int]) -> tuple[str, ...]:
+    """One sentence for each contour that encloses nothing, by its number."""
+    return tuple(f"contour {number} left out: it encloses nothing" for number in left_out)
+
+
 class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     """Collects contours: lines, quadratics with their implied points made explicit, and cubics.
 
@@ -38,7 +43,6 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
 
     Attributes:
         contours: the contours so far. left_out: numbers of those left out. drawn: the count of both.
-        numbers: the number of each contour to come, unless contours are drawn from 0 on without gaps.
         snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
     """
 
@@ -48,7 +52,6 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         super().__init__(glyph_set)
         self.contours: list[Contour] = []
         self.left_out: list[int] = []
-        self.numbers: Sequence[int] = ()
         self.drawn = 0
         self.snapped = 0.0
         self._coincident = coincident
@@ -61,7 +64,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     @property
     def notes(self) -> tuple[str, ...]:
         """One sentence for each contour left out."""
-        return tuple(f"contour {number} left out: it encloses nothing" for number in sorted(self.left_out))
+        return notes_of(self.left_out)
 
     def addComponent(self, glyphName: str, transformation: Any) -> None:
         """Draw another glyph of the set in place; a loop of components, or too many, is an error."""
@@ -108,18 +111,15 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
             self.snapped = max(self.snapped, hypot(bx - ax, by - ay))
         points = np.array(self._points, dtype=np.float64)
         if not np.isfinite(points).all():
-            raise GlyphsplineError("coordinates that are not finite", contour=self._number())
+            raise GlyphsplineError("coordinates that are not finite", contour=self.drawn)
         if self._degrees and (self._is_wide() or not self._flat(points)):
             self.contours.append(Contour(points, np.array(self._degrees, dtype=np.int64)))
         else:
-            self.left_out.append(self._number())
+            self.left_out.append(self.drawn)
         self.drawn += 1
         self._points, self._degrees = [], []
 
     _closePath = _endPath = finish
-
-    def _number(self) -> int:
-        return self.numbers[self.drawn] if self.drawn < len(self.numbers) else self.drawn
 
     def _same(self, a: Point, b: Point) -> bool:
         return abs(a[0] - b[0]) <= self._coincident and abs(a[1] - b[1]) <= self._coincident

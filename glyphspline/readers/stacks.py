@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import GlyphsplineError
 from ..outlines.masters import MasterContour
 from ..types import FloatArray
-from .pens import COINCIDENT, MAX_SEGMENTS
+from .pens import COINCIDENT, MAX_SEGMENTS, notes_of
 
 
 class StackPen:
@@ -100,7 +100,7 @@ class StackPen:
         kept = np.repeat(~near, degrees)
         points, degrees = np.ascontiguousarray(points[:, kept]), degrees[~near]
         if not len(degrees) or all(_is_flat(master) for master in points):
-            self.notes.append(f"contour {number} left out: it encloses nothing")
+            self.notes += notes_of([number])
         else:
             self.contours.append(MasterContour(points, degrees))
 

@@ -7,7 +7,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-SUITES = ("core", "startup", "faithful", "batch", "viewer")
+SUITES = ("core", "startup", "faithful", "batch", "check", "viewer")
 
 
 def main() -> None:

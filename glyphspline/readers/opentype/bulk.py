@@ -2,8 +2,9 @@
 
 HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
 2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
-the rules of :class:`~glyphspline.readers.pens.ContourPen`. Glyphs of which these rules leave anything out, or whose
-drawing may be incomplete, are read again by the careful reader, which reports what is wrong.
+the rules of :class:`~glyphspline.readers.pens.ContourPen`. Flat contours are left out and noted: some fonts have them
+in most glyphs, mainly single points that serve as anchors. Glyphs with a contour that is nearly flat, or whose drawing
+may be incomplete, are read again by the careful reader, which reports what is wrong.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from ...compiled import compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...types import BoolArray, FloatArray, IntArray
-from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, notes_of
 from ..source import Head, OutlineOrError, attempt, opening
 from .careful import CarefulReader
 from .containers import unpacked
@@ -44,8 +45,9 @@ LONGEST = 7
 LARGEST = 1e12
 """Coordinates beyond this go to the careful reader, which refuses infinities and NaN."""
 
-WIDE = 3 * COINCIDENT
-"""A contour is certainly not flat if a point is farther than this from the line from the first point to the farthest.
+WIDE, FLAT = 3 * COINCIDENT, COINCIDENT / 3
+"""A contour is certainly not flat if a point is farther than the first of these from the line from the first point to
+the farthest, and certainly flat if no point is farther than the second.
 
 The careful reader uses ``COINCIDENT``, but may choose another of several farthest points.
 """
@@ -119,7 +121,7 @@ def _functions() -> Any:
 @compiled
 def _contours(
     buffer: FloatArray, places: IntArray, expected: IntArray
-) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, BoolArray, FloatArray]:
+) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, IntArray, BoolArray, FloatArray]:
     """Contours of glyphs from their drawing operations.
 
     Args:
@@ -128,20 +130,22 @@ def _contours(
 
     Returns:
         Points, degrees, offsets and starts as in :class:`ContourArrays`; offsets and starts count from 0 in each glyph,
-        and are one more than contours in each. (k + 1, 3) the contours, segments and points before each glyph. (k,)
-        whether the careful reader has to read a glyph. (k,) how far points were snapped: see :class:`.Outline`.
+        and are one more than contours in each. Numbers of the flat contours, which are left out. (k + 1, 4) the
+        contours, segments, points and contours left out before each glyph. (k,) whether the careful reader has to read
+        a glyph. (k,) how far points were snapped: see :class:`.Outline`.
     """
     count = len(expected)
     room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
     points, degrees = np.empty((room, 2)), np.empty(room, dtype=np.int64)
     offsets, starts = np.empty(room + count, dtype=np.int64), np.empty(room + count, dtype=np.int64)
-    before, unusual = np.zeros((count + 1, 3), dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    left_out = np.empty(room, dtype=np.int64)
+    before, unusual = np.zeros((count + 1, 4), dtype=np.int64), np.zeros(count, dtype=np.bool_)
     snapped = np.zeros(count)
     for g in range(count):
         at, stop = places[g], places[g + 1]
         odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
-        first, first_m, first_p = before[g]
-        c, m, p = first + g, first_m, first_p
+        first, first_m, first_p, first_left = before[g]
+        c, m, p, left = first + g, first_m, first_p, first_left
         offsets[c] = starts[c] = 0
         begin = p
         drawing = False
@@ -160,15 +164,21 @@ def _contours(
                         dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
                         if dx * dx + dy * dy > farthest:
                             farthest, fx, fy = dx * dx + dy * dy, dx, dy
-                    odd = True
+                    length, widest = np.sqrt(farthest), 0.0
                     for j in range(begin, p):
                         dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
-                        if abs(dx * fy - dy * fx) > WIDE * np.sqrt(farthest):
-                            odd = False
+                        widest = max(widest, abs(dx * fy - dy * fx))
+                        if widest > WIDE * length:
                             break
-                    c += 1
-                    offsets[c], starts[c] = m - first_m, p - first_p
-                    begin = p
+                    if widest > FLAT * length:
+                        odd = widest <= WIDE * length
+                        c += 1
+                        offsets[c], starts[c] = m - first_m, p - first_p
+                        begin = p
+                    else:
+                        left_out[left] = c - g - first + left - first_left
+                        left += 1
+                        m, p = offsets[c] + first_m, begin
                 if at >= stop:
                     break
                 sx, sy = x, y = buffer[at + 1], buffer[at + 2]
@@ -191,19 +201,19 @@ def _contours(
                     snapped[g] = max(snapped[g], np.hypot(buffer[k] - x, buffer[k + 1] - y))
             at += 1 + 2 * kind
         found = c - g - first
-        unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
-        for k in range(3):  # assigning the row would compile 40 functions for the message of an error
+        unusual[g] = odd or (expected[g] >= 0 and found + left - first_left != expected[g])
+        for k in range(4):  # assigning the row would compile 40 functions for the message of an error
             before[g + 1, k] = before[g, k]
         if not unusual[g]:
-            before[g + 1, 0], before[g + 1, 1], before[g + 1, 2] = first + found, m, p
-    return points, degrees, offsets, starts, before, unusual, snapped
+            before[g + 1, 0], before[g + 1, 1], before[g + 1, 2], before[g + 1, 3] = first + found, m, p, left
+    return points, degrees, offsets, starts, left_out, before, unusual, snapped
 
 
 @compiled
 def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
     """Number of contours of each glyph by its record, components included, as :class:`.glyf.GlyphRecords` counts them.
 
-    ``UNUSUAL`` where a contour has one point or a record is broken.
+    ``UNUSUAL`` where a record is broken.
 
     Args:
         glyf: (B,) bytes of the table. loca: where in it records begin, and the end. gids: (k,) of the glyphs.
@@ -234,7 +244,7 @@ def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
                 last = -1
                 for j in range(at, at + 2 * contours, 2):
                     point = glyf[j] << 8 | glyf[j + 1]
-                    if point < last + 2:
+                    if point <= last:
                         found[k] = UNUSUAL
                         break
                     last = point
@@ -320,17 +330,20 @@ class BulkReader:
         advance = self._hb.font.get_glyph_h_advance
         with self._lock:
             places, expected = self._draw([gid for _, gid, _ in heads])
-            points, degrees, offsets, starts, before, unusual, snapped = _contours(self._buffer, places, expected)
+            made = _contours(self._buffer, places, expected)
+        points, degrees, offsets, starts, left_out, before, unusual, snapped = made
         found: list[OutlineOrError] = []
         spans = pairwise(before.tolist())
-        for g, (head, odd, ((c, m, p), (d, n, q))) in enumerate(zip(heads, unusual.tolist(), spans, strict=False)):
+        glyphs = zip(heads, unusual.tolist(), spans, strict=False)
+        for g, (head, odd, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
             name, gid, unicodes = head
             if odd:
                 found.append(self._read_carefully(Head(*head), metrics))
                 continue
             own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
             width, moved = float(advance(gid)), float(snapped[g])
-            found.append(Outline(name, gid, unicodes, width, Contours(own), metrics, snapped=moved))
+            notes = notes_of(left_out[a:b].tolist()) if b > a else ()
+            found.append(Outline(name, gid, unicodes, width, Contours(own), metrics, notes, moved))
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:

@@ -14,9 +14,9 @@ _WORDS, _SCALE, _MORE, _TWO_SCALES, _MATRIX = 0x01, 0x08, 0x20, 0x40, 0x80
 
 @dataclass(frozen=True)
 class Parts:
-    """Number of points of each contour of a glyph, components decomposed, and number of components."""
+    """Numbers of contours and of components of a glyph, components decomposed."""
 
-    contours: tuple[int, ...] = ()
+    contours: int = 0
     components: int = 0
 
 
@@ -54,10 +54,9 @@ class GlyphRecords:
         count = struct.unpack_from(">h", record)[0]
         if count >= 0:
             ends = struct.unpack_from(f">{count}H", record, 10)
-            lengths = tuple(last - before for before, last in zip((-1, *ends), ends, strict=False))
-            return Parts(lengths) if all(length > 0 for length in lengths) else None
-        contours: tuple[int, ...] = ()
-        components = 0
+            ascending = all(last > before for before, last in zip((-1, *ends), ends, strict=False))
+            return Parts(count) if ascending else None
+        contours = components = 0
         for component in component_gids(record):
             part = self.parts(component, (*above, gid))
             if part is None:
@@ -65,7 +64,7 @@ class GlyphRecords:
             components += 1 + part.components
             if components > MAX_COMPONENTS:
                 raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
-            if len(contours) + len(part.contours) > MAX_SEGMENTS:
+            if contours + part.contours > MAX_SEGMENTS:
                 raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
             contours += part.contours
         return Parts(contours, components)

@@ -47,16 +47,11 @@ class HarfBuzz:
         Raises:
             GlyphsplineError: components in a loop, or too many components or segments.
         """
-        pen = ContourPen()
-        if records is None:
-            self.font.draw_glyph_with_pen(gid, pen)
-            pen.finish()
-            return pen if self.is_whole(gid) else None
-        parts = records.parts(gid)
-        if parts is None:
+        parts = None if records is None else records.parts(gid)
+        if records is not None and parts is None:
             return None
-        pen.numbers = [k for k, points in enumerate(parts.contours) if points > 1]
-        pen.left_out = [k for k, points in enumerate(parts.contours) if points == 1]  # HarfBuzz skips them
+        pen = ContourPen()
         self.font.draw_glyph_with_pen(gid, pen)
         pen.finish()
-        return pen if pen.drawn == len(pen.numbers) else None
+        whole = self.is_whole(gid) if parts is None else pen.drawn == parts.contours
+        return pen if whole else None
