@@ -19,7 +19,7 @@ import matplotlib
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.checks.check import check_many
+from glyphspline.checks.check import check_many, with_unit
 from glyphspline.checks.finding import Finding, badness
 from glyphspline.checks.kinds import KINDS
 from glyphspline.curves.bezier import evaluate
@@ -37,6 +37,9 @@ NEAREST, FARTHEST = 12.0, 130.0
 """Half the width of a tile, in thousandths of an em, at least and at most."""
 
 WITH_COMB = {"jump", "lump", "inflection"}
+ON_PURPOSE = frozenset({"overlap", "crossing"})
+"""What variable fonts have on purpose, so that it is left out."""
+
 POWERS = {"units": 1, "units²": 2}
 """Powers of the em that values are compared in, by their unit."""
 
@@ -55,7 +58,8 @@ def found_in(font: Path, most: int) -> list[Place]:
     names = list(dict.fromkeys(source.cmap[code] for code in sorted(source.cmap)))
     names = [names[k] for k in np.unique(np.linspace(0, len(names) - 1, most).astype(int))]
     outlines = [each for each in source.outlines(names, errors="return") if isinstance(each, Outline)]
-    found = check_many(outlines)
+    meant = ON_PURPOSE if source.axes else frozenset()
+    found = [[finding for finding in each if finding.kind not in meant] for each in check_many(outlines)]
     counts = Counter(finding.kind for each in found for finding in each)
     print(f"{source.family} {source.style}: {len(outlines)} glyphs", *[f"{k} {n}" for k, n in counts.items()], sep=", ")
     every = zip(outlines, found, strict=True)
@@ -165,14 +169,14 @@ def draw(axes: Axes, place: Place) -> None:
     axes.plot(*finding.point, "o", color="#d33", markersize=9, fillstyle="none", markeredgewidth=0.9)
     axes.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), xticks=[], yticks=[])
     axes.set_aspect("equal")
-    detail = "" if finding.detail is None else f" ({finding.detail:.3g})"
-    heading = f"{place.family} {outline.name}: {finding.value:.4g} {finding.unit}{detail}"
-    axes.set_title(f"{heading}\n{2 * half:.0f} units wide", fontsize=6.5, pad=2)
+    heading = f"{place.family} {outline.name}\n{with_unit(finding.value, finding.unit)}"
+    axes.set_title(f"{heading}, {2 * half:.0f} units wide", fontsize=6.5, pad=2)
     whole = axes.inset_axes((0.0, 0.0, 0.27, 0.27))
     whole.add_patch(matplotlib.patches.PathPatch(drawing, facecolor="#444", edgecolor="none"))
     low, high = drawing.vertices.min(axis=0), drawing.vertices.max(axis=0)
-    whole.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xticks=[], yticks=[])
-    whole.set_aspect("equal", adjustable="datalim")
+    middle, half = (low + high) / 2, (high - low).max() / 2 * np.array([-1, 1])
+    whole.set(xlim=middle[0] + half, ylim=middle[1] + half, xticks=[], yticks=[])
+    whole.set_aspect("equal")
     whole.plot(*finding.point, "o", color="#d33", markersize=5, fillstyle="none")
 
 
@@ -205,7 +209,7 @@ def main() -> None:
             sheet(chosen, given.folder / f"{kind}.png")
             for number, (finding, outline, family) in enumerate(chosen):
                 where = f"contour {finding.contour}, segment {finding.segment}"
-                print(kind, number + 1, family, outline.name, where, f"{finding.value:.4g} {finding.unit}", sep="; ")
+                print(kind, number + 1, family, outline.name, where, with_unit(finding.value, finding.unit), sep="; ")
 
 
 if __name__ == "__main__":
