@@ -64,9 +64,21 @@ def test_glyphs_come_in_order_with_what_check_says_of_each() -> None:
     names = [*font.glyph_names[::-1], font.glyph_names[0]]
     glyphs = list(check_font(font, names, once=False))
     assert [(glyph.glyph, glyph.gid) for glyph in glyphs] == [(name, k) for k, name in enumerate(font.glyph_names)]
-    assert [glyph.findings for glyph in glyphs] == [gs.check(font.outline(name)) for name in font.glyph_names]
+    assert [glyph.findings for glyph in glyphs] == [
+        gs.check(font.outline(name), outer=font.outer) for name in font.glyph_names
+    ]
     assert sum(len(glyph.findings) for glyph in glyphs) > 100
     assert [glyph.error for glyph in glyphs] == [None] * len(glyphs)
+
+
+def test_a_font_that_was_edited_is_read_again(tmp_path: Path) -> None:
+    path = tmp_path / "font.ttf"
+    path.write_bytes(KOUZAN.read_bytes())
+    assert of(found(path), "kink")
+    path.write_bytes((FONTS / "variable.ttf").read_bytes())
+    glyphs = found(path, axes=())
+    assert [glyph.glyph for glyph in glyphs] == list(gs.open_font(FONTS / "variable.ttf").glyph_names)
+    assert not any(glyph.error for glyph in glyphs)
 
 
 @pytest.mark.parametrize("name", ["kouzan-gyosho.ttf", "kouzan-gyosho.otf", "v.ttf"])

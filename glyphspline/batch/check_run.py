@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import nullcontext
 from hashlib import blake2b
 from itertools import groupby
 from typing import NamedTuple
@@ -59,6 +60,7 @@ class CheckJob(NamedTuple):
     Attributes:
         metrics: of a font file that is read as it is, in bulk; None of any other source.
         axes: tags of the axes along which glyphs are looked at; () for the font where it is open.
+        outer: direction of outer contours; see :attr:`.Source.outer`.
     """
 
     place: Place
@@ -66,6 +68,7 @@ class CheckJob(NamedTuple):
     thresholds: Thresholds
     axes: tuple[str, ...]
     steps: int
+    outer: int
 
 
 class Task(NamedTuple):
@@ -129,28 +132,36 @@ def check_font(
     tasks = sorted({Task(index[name], name) for name in names})
     place = (source.path.absolute(), source.face_index, tuple(source.location.items()))
     in_bulk = type(source) is Font and not chosen
-    job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps)
-    return _found(job, tasks, tags if chosen else (), executor or InProcess(), observer, once)
+    job = CheckJob(place, source.metrics if in_bulk else None, thresholds, chosen, steps, source.outer)
+    return _found(job, tasks, tags if chosen else (), executor, observer, once)
 
 
 def _found(
-    job: CheckJob, tasks: list[Task], tags: Sequence[str], pool: Executor, observer: Observer | None, once: bool
+    job: CheckJob,
+    tasks: list[Task],
+    tags: Sequence[str],
+    executor: Executor | None,
+    observer: Observer | None,
+    once: bool,
 ) -> Iterator[GlyphFindings]:
-    most = MASTERS_BATCH if job.axes else BATCH
-    chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
-    waiting: dict[Task, tuple[Sequence[Task], Checked]] = {}  # by a chunk's first glyph, until those before are done
-    told = _Told() if once else None
-    done = broken = following = 0
-    for chunk, result in spread(pool, check_tasks, job, chunks):
-        if isinstance(result, Exception):
-            result = _nothing({task.gid: result.message for task in chunk})
-        waiting[chunk[0]] = chunk, result
-        done, broken = done + len(chunk), broken + len(result.errors)
-        if observer:
-            observer(done, len(tasks), broken)
-        while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
-            following += len(ready[0])
-            yield from _values(*ready, tags, told)
+    with nullcontext(executor) if executor else InProcess() as pool:
+        most = MASTERS_BATCH if job.axes else BATCH
+        chunks = slices(tasks, max(1, min(most, len(tasks) // (4 * pool_size(pool)))))
+        waiting: dict[
+            Task, tuple[Sequence[Task], Checked]
+        ] = {}  # by a chunk's first glyph, until those before are done
+        told = _Told() if once else None
+        done = broken = following = 0
+        for chunk, result in spread(pool, check_tasks, job, chunks):
+            if isinstance(result, Exception):
+                result = _nothing({task.gid: result.message for task in chunk})
+            waiting[chunk[0]] = chunk, result
+            done, broken = done + len(chunk), broken + len(result.errors)
+            if observer:
+                observer(done, len(tasks), broken)
+            while following < len(tasks) and (ready := waiting.pop(tasks[following], None)) is not None:
+                following += len(ready[0])
+                yield from _values(*ready, tags, told)
 
 
 def _values(
@@ -234,10 +245,10 @@ def _measured(
     try:
         if job.axes:
             masters = [glyph for glyph in glyphs if isinstance(glyph, Masters)]
-            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds)
+            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds, job.outer)
         else:
             arrays = [glyph.arrays for glyph in glyphs if isinstance(glyph, Outline)]
-            rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em)
+            rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em, job.outer)
         return [(glyphs, rows)]
     except Exception as error:
         if len(glyphs) > 1:

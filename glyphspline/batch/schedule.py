@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -38,6 +39,12 @@ class InProcess(Executor):
         except Exception as error:
             future.set_exception(error)
         return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Forget the source that is open: its file may have been edited when the next one is made."""
+        if worker := sys.modules.get(f"{__package__}.worker"):
+            worker.source_of.cache_clear()
+            worker.bulk_reader.cache_clear()
 
 
 def workers(

@@ -192,7 +192,8 @@ def contour_findings(
                 most += sign
                 total += areas[c]
         for c in range(glyphs[g], glyphs[g + 1]):
-            if outer[c] and areas[c] * (most if most != 0.0 else total) < 0.0:
+            wanted = limits.outer if limits.outer != 0 else (most if most != 0.0 else total)
+            if outer[c] and areas[c] * wanted < 0.0:
                 table = add(table, count, DIRECTION, c, 0.0, abs(areas[c]), np.nan, -1)
                 count += 1
     return table[:count]

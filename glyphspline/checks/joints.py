@@ -26,9 +26,9 @@ CHANCE = 3 * np.sqrt(1 / 12)
 def joint_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
     """(n, 6) kinks and jumps of curvature of contours; see :mod:`.table`.
 
-    A joint is smooth if it turns by less than the corner angle. It kinks if it turns by more than the limit, and, where
-    both handles are in whole units, by more than rounding may make. Curvature jumps are told where both sides are
-    cubics: a chain of quadratics has them everywhere.
+    A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
+    turns by more than the limit, and, where both handles are in whole units, by more than rounding may make. Curvature
+    jumps are told where both sides are cubics: a chain of quadratics has them everywhere.
 
     Args:
         cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
@@ -41,7 +41,8 @@ def joint_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) 
             ax, ay = handle(cubics, contours.degrees, i, True)
             bx, by = handle(cubics, contours.degrees, j, False)
             turn = turn_of(ax, ay, bx, by)
-            if not abs(turn) < limits.corner_angle:
+            lines = contours.degrees[i] == 1 and contours.degrees[j] == 1
+            if not abs(turn) < (limits.line_angle if lines else limits.corner_angle):
                 continue
             if abs(turn) >= least_kink(ax, ay, bx, by, limits):
                 table = add(table, count, KINK, c, j - a, abs(np.degrees(turn)), np.nan, -1)

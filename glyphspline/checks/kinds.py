@@ -56,11 +56,12 @@ KINDS = (
 class Limits(NamedTuple):
     """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`.
 
-    ``unit`` is a thousandth of an em.
+    ``unit`` is a thousandth of an em. ``outer`` is the direction of outer contours, as in :attr:`.Source.outer`.
     """
 
     kink: float
     corner_angle: float
+    line_angle: float
     jump: float
     relative_jump: float
     lump: float
@@ -76,6 +77,7 @@ class Limits(NamedTuple):
     handles: float
     doubled: float
     unit: float
+    outer: int
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,8 @@ class Thresholds:
     """From which value on each kind counts.
 
     Attributes:
-        kink: degrees of turn at a joint; from ``corner_angle`` degrees on it is a corner, and meant.
+        kink: degrees of turn at a joint; from ``corner_angle`` degrees on it is a corner, and meant; of two lines from
+            line_angle degrees on: the chamfer of a serif is no kink.
         jump: of curvature at a smooth joint, in 1/em; relative_jump: and as a share of the larger curvature.
         lump: share by which a curvature exceeds the extrema beside it, if that moves the curve by lump_height,
             in thousandths of an em.
@@ -100,6 +103,7 @@ class Thresholds:
 
     kink: float = 0.5
     corner_angle: float = 12.0
+    line_angle: float = 3.0
     jump: float = 1.0
     relative_jump: float = 0.25
     lump: float = 0.25
@@ -120,14 +124,14 @@ class Thresholds:
             value = getattr(self, each.name)
             require(is_positive(value, 1e6), f"the threshold {each.name} is above 0 and up to a million", value)
 
-    def limits(self, units_per_em: float) -> Limits:
-        """In font units and radians."""
+    def limits(self, units_per_em: float, outer: int = 0) -> Limits:
+        """In font units and radians, of a font whose outer contours have the direction ``outer``."""
         from math import radians
 
         unit = units_per_em / 1000
         return Limits(
-            radians(self.kink), radians(self.corner_angle), self.jump / units_per_em, self.relative_jump, self.lump,
-            self.lump_height * unit, radians(self.inflection), self.straight * unit, self.straight_length * unit,
-            radians(self.slanted), self.slanted_offset * unit, self.slanted_length * unit, self.extremum * unit,
-            self.short * unit, self.handles, self.doubled * unit, unit,
+            radians(self.kink), radians(self.corner_angle), radians(self.line_angle), self.jump / units_per_em,
+            self.relative_jump, self.lump, self.lump_height * unit, radians(self.inflection), self.straight * unit,
+            self.straight_length * unit, radians(self.slanted), self.slanted_offset * unit, self.slanted_length * unit,
+            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit, outer,
         )  # fmt: skip

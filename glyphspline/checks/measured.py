@@ -21,9 +21,11 @@ PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
 """Kinds whose values compiled code has in 1/unit."""
 
 
-def measured(outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float) -> Measured:
-    """Measure the contours of glyphs of one em, all passes over all glyphs."""
-    limits = thresholds.limits(units_per_em)
+def measured(
+    outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float, outer: int = 0
+) -> Measured:
+    """Measure the contours of glyphs of one em, all passes over all glyphs; ``outer`` as in :attr:`.Source.outer`."""
+    limits = thresholds.limits(units_per_em, outer)
     contours = joined(outlines)
     glyphs = offsets_of([outline.num_contours for outline in outlines])
     cubics = all_cubics(contours)

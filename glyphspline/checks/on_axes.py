@@ -16,7 +16,7 @@ from ..outlines.masters import Masters
 from ..types import FloatArray
 from .axis_kinks import Glyphs, joint_controls, kinks, turns_of
 from .columns import Measured
-from .joints import ROUNDING
+from .joints import CHANCE
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
 from .measured import measured
 
@@ -40,13 +40,14 @@ class _Turn(NamedTuple):
 
 
 def on_axes(
-    glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds
-) -> Measured:
+    glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
+    outer: int = 0,
+) -> Measured:  # fmt: skip
     """Measure glyphs of a variable font, each finding at its worst place.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
-        tags: of the axes along which they are looked at. steps: of an axis.
+        tags: of the axes along which they are looked at. steps: of an axis. outer: see :attr:`.Source.outer`.
 
     Raises:
         GlyphsplineError: masters of a glyph cannot be told apart.
@@ -55,7 +56,7 @@ def on_axes(
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]
     places = [places_of(masters, location, chosen, steps) for masters in glyphs]
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
-    rows = measured(instances, thresholds, em)
+    rows = measured(instances, thresholds, em, outer)
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
@@ -127,12 +128,21 @@ def _turns(
         turn
         for turn in found
         if turn.turn >= by_rounding(glyphs[turn.glyph], turn, controls[turn.glyph][turn.contour][:, turn.joint])
+        and not (turn.turn - turn.made >= thresholds.line_angle and is_of_lines(glyphs[turn.glyph], turn))
     ]
     return counted, smooth
 
 
+def is_of_lines(masters: Masters, turn: _Turn) -> bool:
+    """Whether two lines meet at the joint."""
+    degrees = masters.contours[turn.contour].degrees
+    return bool(degrees[turn.joint - 1] == degrees[turn.joint] == 1)
+
+
 def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
-    """Degrees that rounding to whole units may turn a joint by; 0 where the default master is not in whole units.
+    """Degrees by which rounding may turn a joint: see :func:`.joints.least_kink`.
+
+    It is 0 where the default master is not in whole units.
 
     Deltas are whole too. Those of points between others are not, but no farther off.
 
@@ -146,7 +156,8 @@ def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
     here = np.tensordot(masters.weights_at(turn.at), controls, axes=1)
     lengths = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
     with np.errstate(divide="ignore"):
-        return float(np.degrees(ROUNDING * (1 / lengths).sum()))
+        a, b = 1 / lengths
+        return float(np.degrees(CHANCE * np.sqrt(a * a + b * b + (a + b) ** 2)))
 
 
 def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:

@@ -43,6 +43,8 @@ class Source(ABC):
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
         cmap: code point to glyph name.
+        outer: the direction in which outer contours run by the rules of the format: 1 counter-clockwise (PostScript),
+            -1 clockwise (TrueType), 0 if it has none.
     """
 
     path: Path
@@ -51,6 +53,7 @@ class Source(ABC):
     num_faces: int = 1
     location: Mapping[str, float] = MappingProxyType({})
     axes: tuple[DesignAxis, ...] = ()
+    outer: int = 0
     family: str
     style: str
     metrics: FontMetrics

@@ -46,6 +46,7 @@ class Face:
     num_faces: int
     location: Mapping[str, float]
     metrics: FontMetrics
+    outer: int
 
     def __init__(
         self, path: Path, format: str, plain: bytes, face_index: int, num_faces: int, location: Location
@@ -60,6 +61,7 @@ class Face:
             raise FontError(f"has no outlines: {what}")
         self.path, self.face_index, self.num_faces = path, face_index, num_faces
         self.format = format
+        self.outer = -1 if "glyf" in tables else 1
         self.axes, self.instances = axes_of(tables), instances_of(tables)
         within = location_within(location, self.axes, self.instances, path)
         self.location = MappingProxyType(within)
