@@ -2,10 +2,10 @@
 
     python scripts/worst_findings.py FOLDER FONT... [--glyphs 600] [--kinds kink,jump]
 
-Of each face, glyphs spread evenly over those that have characters are checked, variable fonts at their default location.
-Values are compared per em; each family has at most four findings on a sheet, each of another glyph. A tile shows the
-outline around the place with its points and handles, the place in red, and the glyph as a whole in the corner; where the
-kind is about curvature, its comb too.
+Of each face, glyphs spread evenly over those that have characters are checked, variable fonts at their default
+location and without overlaps and crossings. Values are compared per em; each family has at most four findings on a
+sheet, each of another glyph. A tile shows the outline around the place with its points and handles, the place in red,
+and the glyph as a whole in the corner; where the kind is about curvature, its comb too.
 """
 
 from __future__ import annotations
@@ -59,7 +59,9 @@ def found_in(font: Path, most: int) -> list[Place]:
     names = [names[k] for k in np.unique(np.linspace(0, len(names) - 1, most).astype(int))]
     outlines = [each for each in source.outlines(names, errors="return") if isinstance(each, Outline)]
     meant = ON_PURPOSE if source.axes else frozenset()
-    found = [[finding for finding in each if finding.kind not in meant] for each in check_many(outlines)]
+    found = [
+        [finding for finding in each if finding.kind not in meant] for each in check_many(outlines, outer=source.outer)
+    ]
     counts = Counter(finding.kind for each in found for finding in each)
     print(f"{source.family} {source.style}: {len(outlines)} glyphs", *[f"{k} {n}" for k, n in counts.items()], sep=", ")
     every = zip(outlines, found, strict=True)
@@ -173,7 +175,8 @@ def draw(axes: Axes, place: Place) -> None:
     axes.set_title(f"{heading}, {2 * half:.0f} units wide", fontsize=6.5, pad=2)
     whole = axes.inset_axes((0.0, 0.0, 0.27, 0.27))
     whole.add_patch(matplotlib.patches.PathPatch(drawing, facecolor="#444", edgecolor="none"))
-    low, high = drawing.vertices.min(axis=0), drawing.vertices.max(axis=0)
+    points = np.asarray(drawing.vertices)
+    low, high = points.min(axis=0), points.max(axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 * np.array([-1, 1])
     whole.set(xlim=middle[0] + half, ylim=middle[1] + half, xticks=[], yticks=[])
     whole.set_aspect("equal")
@@ -196,7 +199,7 @@ def sheet(places: list[Place], path: Path) -> None:
 
 def main() -> None:
     """Check the fonts and draw a sheet for each kind."""
-    parser = ArgumentParser(description=__doc__, usage=None)
+    parser = ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("fonts", type=Path, nargs="+")
     parser.add_argument("--glyphs", type=int, default=600, help="of each font, at most")
