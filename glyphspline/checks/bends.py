@@ -64,10 +64,14 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
         start = first_of(values, n)
         whole = not np.isnan(values[start])
         if whole:  # from an inflection, if there is one
+            sign = 0.0
             for i in range(start, start + n):
-                if values[i % n] * values[start] < 0 and abs(values[i % n]) >= least:
-                    start, whole = i, False
-                    break
+                value = values[i % n]
+                if abs(value) >= least:
+                    if value * sign < 0:
+                        start, whole = i, False
+                        break
+                    sign = value
         first, sign = start, 0.0
         for i in range(start, start + n + 1):
             value = values[i % n]
@@ -164,9 +168,12 @@ def point_at(cubics: FloatArray, place: float) -> tuple[float, float, float, flo
 
 @compiled(internal=True)
 def turned(cubics: FloatArray, first: float, last: float, sign: float, whole: bool) -> float:
-    """By how many radians a closed chain turns to one side, 1 or -1, between two places: the most on the way."""
+    """By how many radians a closed chain turns to one side, 1 or -1, between two places: the most on the way.
+
+    From a place to itself is all the way round: a bend may begin and end at the only inflection of its sign.
+    """
     m = len(cubics)
-    if whole or last < first:
+    if whole or last <= first:
         last += m
     total = low = most = px = py = 0.0
     for s in range(int(first), int(np.ceil(last))):

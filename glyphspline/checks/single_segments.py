@@ -65,12 +65,15 @@ def segment_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits
                     count += 1
                     continue
             if degrees[j] == 3:
-                reach = reaches_beyond(cubic, limits)
+                reach, alone = reaches_beyond(cubic, limits)
+                if alone:
+                    alone = bends_back(cubics, degrees, a, b, j, 1.0, limits)[0] == 0.0
                 if reach > 0.0:
-                    table = add(table, count, HANDLES, c, place, reach, np.nan, -1)
-                    count += 1
+                    if not alone:
+                        table = add(table, count, HANDLES, c, place, reach, np.nan, -1)
+                        count += 1
                     continue
-                back, t = bends_back(cubics, degrees, a, b, j, limits)
+                back, t = bends_back(cubics, degrees, a, b, j, BACK, limits)
                 if back > 0.0:
                     table = add(table, count, INFLECTION, c, j - a + t, np.degrees(back), np.nan, -1)
                     count += 1
@@ -171,8 +174,10 @@ def line_would_do(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int,
 
 
 @compiled(internal=True)
-def reaches_beyond(cubic: FloatArray, limits: Limits) -> float:
+def reaches_beyond(cubic: FloatArray, limits: Limits) -> tuple[float, bool]:
     """Share by which a handle of a cubic reaches beyond where both handles meet, or beyond the other end; else 0.
+
+    And whether only one handle does, and only the former: the cubic then has one inflection, and no cusp or loop.
 
     Where all points are in whole units, the handle's end and the meeting point may both be off by the rounding.
     """
@@ -181,9 +186,9 @@ def reaches_beyond(cubic: FloatArray, limits: Limits) -> float:
     x, y = cubic[3, 0] - cubic[0, 0], cubic[3, 1] - cubic[0, 1]
     first, second, chord = length(ux, uy), length(vx, vy), length(x, y)
     if first == 0.0 or second == 0.0 or chord == 0.0:
-        return 0.0
+        return 0.0, False
     rounding = 2 * ROUNDING if all_whole(cubic) else 0.0
-    most = 0.0
+    most, alone = 0.0, False
     cross = ux * vy - uy * vx
     sine = abs(cross) / (first * second)
     if sine > limits.kink:
@@ -193,19 +198,25 @@ def reaches_beyond(cubic: FloatArray, limits: Limits) -> float:
                 most = max(most, 1 / s - 1)
             if second * (1 - r) > rounding / sine:
                 most = max(most, 1 / r - 1)
+            alone = (s < 1.0) != (r < 1.0)
     for beyond in (ux * x + uy * y, -vx * x - vy * y):
         if beyond - chord * chord > rounding * chord:
-            most = max(most, beyond / (chord * chord) - 1)
-    return most if most >= limits.handles else 0.0
+            most, alone = max(most, beyond / (chord * chord) - 1), False
+    return (most, alone) if most >= limits.handles else (0.0, False)
 
 
 @compiled(internal=True)
-def bends_back(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, limits: Limits) -> tuple[float, float]:
+def bends_back(
+    cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, share: float, limits: Limits
+) -> tuple[float, float]:
     """By how many radians a cubic bends back that else bends one way, and where that begins or ends; else 0.
 
     An S that turns both ways is meant. So is a turn back at an end if the neighbour, smoothly joined, bends that way
     too: their bend ends inside this segment. Where all points are in whole units, the corner of the control polygon
     that turns back must be more than rounding may make.
+
+    Args:
+        share: of the larger turn, up to which the smaller is not meant.
     """
     cubic = cubics[j]
     ax, ay = cubic[1, 0] - cubic[0, 0], cubic[1, 1] - cubic[0, 1]
@@ -231,7 +242,7 @@ def bends_back(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, li
         left, right = left + max(turns[k], 0.0), right + max(-turns[k], 0.0)
     sign = 1.0 if left < right else -1.0  # of the smaller turn
     back = min(left, right)
-    if back < limits.inflection or back > BACK * max(left, right):
+    if back < limits.inflection or back > share * max(left, right):
         return 0.0, 0.0
     last = 1 if np.isnan(high) else 2
     if turns[1] * sign > 0 and last == 2:
