@@ -211,7 +211,9 @@ def test_check_as_json(tmp_path: Path) -> None:
     assert (finding["kind"], finding["value"]) == ("kink", pytest.approx(turn))
     assert finding["detail"] == pytest.approx(turn)  # made by interpolation
     assert (finding["location"], finding["between"]) == ({"wght": pytest.approx(at)}, [400, 900])
-    (none,) = json.loads(runner.invoke(app, ["check", str(path), "--json", "--text", "b"]).stdout)["fonts"]
+    (none,) = json.loads(runner.invoke(app, ["check", str(path), "--json", "--kinds", "kink", "--text", "b"]).stdout)[
+        "fonts"
+    ]
     assert (none["findings"], none["axes"][0]["largest_turn"]) == ([], None)
 
 

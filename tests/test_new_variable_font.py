@@ -113,8 +113,8 @@ def matched(sources: Sequence[Source], axis: str = AXIS) -> tuple[dict[str, Redr
 
 def off(drawn: Drawing, gid: int, outline: Outline) -> float:
     """The largest distance between what is drawn and an outline's contours, from each to the nearest."""
-    mine = [dense(contour, 16) for contour in drawn.contours(gid)]
-    its = [dense(list(contour.cubics()), 16) for contour in outline.contours]
+    mine = [dense(contour, 64) for contour in drawn.contours(gid)]
+    its = [dense(list(contour.cubics()), 64) for contour in outline.contours]
     assert len(mine) == len(its)
     there = [min(apart(one, other) for other in its) for one in mine]
     return max([*there, *[min(apart(other, one) for one in mine) for other in its]], default=0.0)
