@@ -97,7 +97,7 @@ def test_long_lists_are_shown_piece_by_piece(page: Any, findings: Path) -> None:
     cards = page.locator(".card").count()
     assert cards == min(every, 120) < every
     page.locator("#more-cards").click()
-    assert page.locator(".card").count() == min(every, 240)
+    page.wait_for_function("n => document.querySelectorAll('.card').length === n", arg=min(every, 240))
 
 
 def test_light_and_dark(page: Any, findings: Path) -> None:
