@@ -43,8 +43,7 @@ class InProcess(Executor):
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Forget the source that is open: its file may have been edited when the next one is made."""
         if worker := sys.modules.get(f"{__package__}.worker"):
-            worker.source_of.cache_clear()
-            worker.bulk_reader.cache_clear()
+            worker.forget_opened()
 
 
 def workers(

@@ -117,6 +117,15 @@ def source_of(path: Path, face_index: int, location: Location) -> Source:
     return open_source(path, face_index, dict(location))
 
 
+OPENED = (bulk_reader, source_of)
+
+
+def forget_opened() -> None:
+    """Open fonts anew from now on: their files may have been edited."""
+    for opened in OPENED:
+        opened.cache_clear()
+
+
 def cost_of(outline: Outline, vertices: float, limits: Limits) -> float:
     """Segments of an outline and vertices together.
 
