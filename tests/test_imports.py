@@ -20,7 +20,7 @@ BASE = {"cache", "compiled", "compiling", "errors", "extras", "types", "_version
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"checks", "readers", "writers"}
+WRITERS = FITTING | {"checks", "readers", "layout", "writers"}
 PLAN = {
     "_version": set(),
     "cache": {"errors"},
@@ -36,6 +36,7 @@ PLAN = {
     "comparing": CHECKS | {"comparing"},
     "fitting": FITTING,
     "readers": CURVES | {"outlines"},
+    "layout": FITTING | {"readers"},
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"comparing", "report"},
