@@ -52,6 +52,19 @@ def test_a_size_is_the_height_and_the_width_is_in_proportion() -> None:
     assert max(pixels(Appearance(size="5000mm")).shape) <= 8000
 
 
+def test_the_size_of_an_em_does_not_depend_on_the_region_shown() -> None:
+    for view_box in ("em", "ink"):
+        root = root_of(gs.to_svg(result(DISC), view_box=view_box, em="12pt"))
+        _, _, width, height = map(float, root.attrib["viewBox"].split())
+        lengths = [float(root.attrib[name].removesuffix("pt")) for name in ("width", "height")]
+        assert lengths == pytest.approx([width * 12 / 1000, height * 12 / 1000], abs=1e-4)
+    assert media_box(drawing_image(result(DISC), "pdf", Appearance(em="1in"))) == pytest.approx([0, 0, 43.2, 72])
+    with pytest.raises(gs.OptionError, match="exclude each other"):
+        gs.to_svg(result(DISC), size="20mm", em="12pt")
+    with pytest.raises(gs.OptionError, match="em is a length"):
+        gs.to_svg(result(DISC), em="12")
+
+
 def test_colours_are_those_asked_for() -> None:
     path = root_of(gs.to_svg(result(DISC), fill="none", stroke="#f00"))[-1]
     assert (path.attrib["fill"], path.attrib["stroke"], path.attrib["stroke-width"]) == ("none", "#f00", "1")

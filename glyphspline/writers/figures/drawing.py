@@ -24,7 +24,7 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
 
     Args:
         glyph: a result of :func:`glyphspline.convert`. kind: of the file.
-        look: its height is 6 inches unless it says another; "currentColor" is black.
+        look: without a size the drawing is 6 inches high; "currentColor" is black.
         ink: the box around the glyph's curves, if it is known.
     """
     outline = glyph.outline
@@ -32,7 +32,7 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
         outline, ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
     )
     width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
-    inches = look.inches(HEIGHT)
+    inches = look.inches(height, outline.metrics.units_per_em, HEIGHT)
     figure = blank(inches * width / height, inches)
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height))
@@ -43,5 +43,5 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
     for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
         patch.set_clip_on(False)
         axes.add_patch(patch)
-    dpi = PX if str(look.size).endswith("px") else DPI
+    dpi = PX if str(look.size or look.em).endswith("px") else DPI
     return saved(figure, kind, min(dpi, LARGEST / (inches * max(1.0, width / height))))

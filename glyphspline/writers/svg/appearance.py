@@ -16,7 +16,7 @@ INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0, "pt": 1 / 72, "pc": 1 / 6, 
 """Units of lengths in CSS and SVG, in inches."""
 
 LARGEST = 200.0
-"""Maximum height of a drawing in inches: five metres, which is what a cutter's roll takes."""
+"""Maximum height of a drawing, and of its em, in inches: five metres, which is what a cutter's roll takes."""
 
 _LENGTH = re.compile(rf"(\d{{1,6}}(?:\.\d{{1,6}})?)({'|'.join(INCHES)})")
 _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
@@ -34,45 +34,61 @@ class Appearance:
         size: height of the drawing with its unit (mm, cm, in, pt, pc, px), its width in proportion; None: none is said.
         fill: colour of the ink: "currentColor", "none", #rgb, #rrggbb or a name of CSS.
         stroke: colour of a line of 1/1000 em along the outline, likewise.
+        em: instead of ``size``, the length of an em with its unit, which is the size that type has.
 
     Raises:
-        OptionError: one of these is none of what it can be.
+        OptionError: one of these is none of what it can be, or both sizes are given.
     """
 
     view_box: ViewBox = "em"
     size: str | None = None
     fill: str = CURRENT
     stroke: str = "none"
+    em: str | None = None
 
     def __post_init__(self) -> None:
         require_choice("view_box", self.view_box, VIEW_BOXES)
-        if self.size is not None:
-            self.inches(1.0)
+        require(self.size is None or self.em is None, "size and em exclude each other", (self.size, self.em))
+        for name in ("size", "em"):
+            _length_of(name, getattr(self, name))
         for name in ("fill", "stroke"):
             rule = f"{name} is a colour: a name of CSS, #rgb, #rrggbb, currentColor or none"
             require(is_colour(getattr(self, name)), rule, getattr(self, name))
 
-    def inches(self, default: float) -> float:
-        """The height in inches, ``default`` where none is said."""
-        if self.size is None:
-            return default
-        value, unit = self._length
-        return value * INCHES[unit]
+    def scale(self, height: float, units_per_em: float) -> tuple[float, str] | None:
+        """Length of a font unit in a drawing so many of them high, and its unit; None where no size is said."""
+        size, em = _length_of("size", self.size), _length_of("em", self.em)
+        if size:
+            return size[0] / height, size[1]
+        return em and (em[0] / units_per_em, em[1])
 
-    def attributes(self, width: float, height: float) -> str:
+    def inches(self, height: float, units_per_em: float, default: float) -> float:
+        """Height in inches of a drawing so many font units high, ``default`` where no size is said."""
+        found = self.scale(height, units_per_em)
+        return default if found is None else height * found[0] * INCHES[found[1]]
+
+    def attributes(self, width: float, height: float, units_per_em: float) -> str:
         """Width and height of a document whose view box is so many units wide and high, as attributes."""
-        if self.size is None:
+        found = self.scale(height, units_per_em)
+        if found is None:
             return ""
-        value, unit = self._length
-        return f' width="{number(value * width / height, 4)}{unit}" height="{number(value, 6)}{unit}"'
+        scale, unit = found
+        return f' width="{number(width * scale, 4)}{unit}" height="{number(height * scale, 6)}{unit}"'
 
-    @property
-    def _length(self) -> tuple[float, str]:
-        found = _LENGTH.fullmatch(self.size) if isinstance(self.size, str) else None
-        if found is None or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
-            units = ", ".join(INCHES)
-            raise OptionError(f"size is a height above 0 and up to 5 m with its unit ({units}), not {self.size!r}")
-        return float(found[1]), found[2]
+
+def _length_of(name: str, value: str | None) -> tuple[float, str] | None:
+    """A length and its unit.
+
+    Raises:
+        OptionError: it is none, or too long.
+    """
+    if value is None:
+        return None
+    found = _LENGTH.fullmatch(value) if isinstance(value, str) else None
+    if found is None or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
+        units = ", ".join(INCHES)
+        raise OptionError(f"{name} is a length above 0 and up to 5 m with its unit ({units}), not {value!r}")
+    return float(found[1]), found[2]
 
 
 def is_colour(value: object) -> bool:

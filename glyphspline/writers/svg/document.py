@@ -20,6 +20,7 @@ def to_svg(
     size: str | None = None,
     fill: str = CURRENT,
     stroke: str = "none",
+    em: str | None = None,
 ) -> str:
     """The interpolated glyph as an SVG document.
 
@@ -36,6 +37,7 @@ def to_svg(
             ``height``. Units are mm, cm, in, pt, pc and px. None: as large as the page makes it.
         fill: colour of the ink: a name of CSS, #rgb, #rrggbb, "none", or "currentColor", that of the text around it.
         stroke: colour of a line of 1/1000 em along the outline, likewise.
+        em: instead of ``size``, the length of an em with its unit: the size that type has, as in "12pt".
 
     Raises:
         OptionError: a view box, a size or a colour that is none of these.
@@ -47,7 +49,7 @@ def to_svg(
         True
     """
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
-    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke)).decode()
+    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke, em)).decode()
 
 
 def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -> bytes:
@@ -55,7 +57,8 @@ def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -
     outline, precision = glyph.outline, glyph.options.precision
     value = view_box_value(shown_box(outline, path.box, look.view_box), precision)
     overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
-    size = look.attributes(*map(float, value.split()[2:])) if look.size else ""
+    width, height = map(float, value.split()[2:])
+    size = look.attributes(width, height, outline.metrics.units_per_em)
     line = number(STROKE * outline.metrics.units_per_em, 3)
     stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
     prefix = id_prefix(outline.name, outline.gid)
