@@ -20,6 +20,9 @@ MOST_VERTICES = 1000
 MOST_MOVED = 1000
 """Maximum number of moved vertices."""
 
+LONGEST_TEXT = 500
+"""Maximum number of characters of the line of text."""
+
 Moved = tuple[tuple[int, int, float, float], ...]
 """(contour, vertex, x, y) each, in font units, y up."""
 
@@ -34,6 +37,7 @@ class State:
     sampling: Sampling
     amount: float
     moved: Moved = ()
+    text: str = ""
 
 
 def read_state(given: Any, units_per_em: float) -> State:
@@ -63,7 +67,7 @@ def read_state(given: Any, units_per_em: float) -> State:
         step=amount if sampling == "step" else None,
         count=int(amount) if sampling == "count" else None,
     )
-    return State(given["glyph"], _location(given), options, sampling, amount, _moved(given))
+    return State(given["glyph"], _location(given), options, sampling, amount, _moved(given), _text(given))
 
 
 def _number(given: Mapping[str, Any], key: str, default: float) -> float:
@@ -77,6 +81,13 @@ def _location(given: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     if not isinstance(location, Mapping):
         raise GlyphsplineError("location is an object of axis tags and values")
     return tuple((str(tag), _number(location, tag, 0.0)) for tag in sorted(location))
+
+
+def _text(given: Mapping[str, Any]) -> str:
+    text = given.get("text") or ""
+    if not isinstance(text, str) or len(text) > LONGEST_TEXT:
+        raise GlyphsplineError(f"text is a string of at most {LONGEST_TEXT} characters")
+    return text
 
 
 def _moved(given: Mapping[str, Any]) -> Moved:

@@ -202,7 +202,22 @@
     at("command").textContent = found.command;
     draw();
   });
+  /* The text is drawn by the server; a click on one of its glyphs shows that glyph. */
+  let lineSaid = null;
+  const markText = () => {
+    for (const use of at("text-line").querySelectorAll("use")) use.classList.toggle("chosen", use.dataset.glyph === state.glyph);
+  };
+  const askText = line("/api/text", (found) => {
+    at("text-about").textContent = found.error ?? found.notes.join(" · ");
+    at("text-about").classList.toggle("bad", Boolean(found.error));
+    lineSaid = found.error ? null : found.svg;
+    at("save-text").disabled = at("text-line").hidden = !lineSaid;
+    if (!lineSaid) return;
+    at("text-line").replaceChildren(document.importNode(new DOMParser().parseFromString(lineSaid, "image/svg+xml").documentElement, true));
+    markText();
+  });
   const ask = () => {
+    if (state.text) askText();
     if (at("along").checked) return askMasters();
     steps = wanted = null;
     asked++;
@@ -327,6 +342,7 @@
     state.glyph = name;
     state.moved = [];
     for (const option of at("glyphs").children) option.setAttribute("aria-selected", String(option.dataset.name === name));
+    markText();
     ask();
   };
   const find = async () => {
@@ -353,6 +369,19 @@
     choose(option.dataset.name);
   });
 
+  at("text").addEventListener("input", () => {
+    state.text = at("text").value;
+    if (state.text.trim()) return askText();
+    state.text = lineSaid = null;
+    at("text-about").textContent = "";
+    at("save-text").disabled = at("text-line").hidden = true;
+  });
+  at("text-line").addEventListener("click", (event) => {
+    const use = event.target.closest("use");
+    if (use) choose(use.dataset.glyph);
+  });
+  at("save-text").addEventListener("click", () => lineSaid && download(lineSaid, "text.svg"));
+
   at("step").addEventListener("pointerdown", () => withSteps(() => {}));
   at("step").addEventListener("focus", () => withSteps(() => {}));
   at("step").addEventListener("input", () => withSteps(draw));
@@ -376,13 +405,16 @@
     at("copy").textContent = "Copied";
     setTimeout(() => { at("copy").textContent = "Copy command"; }, 1200);
   });
+  const download = (svg, name) => {
+    const url = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
+    GS.element("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  };
   at("save").addEventListener("click", async () => {
     const answer = await fetch("/api/svg", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(state) });
     const found = await answer.json();
     if (found.error) return;
-    const url = URL.createObjectURL(new Blob([found.svg], { type: "image/svg+xml" }));
-    GS.element("a", { href: url, download: `gid-${shown.gid}.svg` }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
+    download(found.svg, `gid-${shown.gid}.svg`);
   });
   for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
   at("closer").addEventListener("click", () => zoom.zoom(1.6));

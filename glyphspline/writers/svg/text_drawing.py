@@ -1,0 +1,81 @@
+"""A text laid out as an SVG drawing in which each glyph is an element of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+
+import numpy as np
+
+from ...fitting.results import GlyphResult, end_to_end
+from ...layout.placed import Layout
+from ...types import IntArray
+from .appearance import PLAIN, Appearance
+from .document import STROKE
+from .markup import document, id_prefix, number, text, union, view_box_value
+from .path_data import Box, curves_data
+
+
+def text_document(
+    layout: Layout, results: Sequence[GlyphResult], which: IntArray, look: Appearance = PLAIN, ink: Box | None = None
+) -> bytes:
+    """The text in UTF-8: each distinct glyph is a path, drawn once for each place by a ``<use>`` of its own.
+
+    Ids are stable: ``font-0-g36-A`` is the path of a glyph of the first font, ``line-0`` a line, ``glyph-7`` the eighth
+    glyph in visual order. ``data-cluster`` is the number of the character of the text that a glyph stands for.
+
+    Args:
+        layout: n placed glyphs. results: of the distinct glyphs. which: (n,) the result of each.
+        look: of the drawing; its em box is the box of the lines. ink: the box around all curves.
+    """
+    precision = results[0].options.precision if results else 2
+    em = layout.fonts[0].metrics.units_per_em
+    arrays, offsets = end_to_end(results)
+    paths = curves_data(arrays.curves, precision, offsets)
+    fonts = np.zeros(len(results), dtype=np.int64)
+    fonts[which] = layout.font
+    ids = [
+        f"font-{font}-{id_prefix(result.outline.name, result.outline.gid)}"
+        for font, result in zip(fonts.tolist(), results, strict=True)
+    ]
+    names = [
+        f' data-glyph="{text(result.outline.name)}" href="#{own}' for own, result in zip(ids, results, strict=True)
+    ]
+    box = layout.box if look.view_box == "metrics" else ink if look.view_box == "ink" else union(layout.box, ink)
+    value = view_box_value(box or (0.0, 0.0, 0.0, 0.0), precision)
+    width, height = map(float, value.split()[2:])
+    overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
+    stroke = ""
+    if look.stroke != "none":
+        stroke = f' stroke="{text(look.stroke)}" stroke-width="{number(STROKE * em, 3)}"'
+    parts: list[str | memoryview] = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{look.attributes(width, height, em)}{overflow}'
+        f' role="img" aria-labelledby="text-title" data-units-per-em="{number(em, precision)}">\n'
+        f'<title id="text-title">{text(layout.text)}</title>\n<defs>\n'
+    ]
+    for name, path in zip(ids, paths, strict=True):
+        if path.text:
+            parts += [f'<path id="{name}" d="', path.text, '"/>\n']
+    parts.append(f'</defs>\n<g fill="{text(look.fill)}"{stroke} fill-rule="nonzero">\n')
+    drawn = [bool(path.text) for path in paths]
+    places = zip(
+        range(len(layout)), layout.line.tolist(), which.tolist(), layout.cluster.tolist(), layout.origin.tolist(),
+        np.degrees(layout.angle).tolist(), strict=True,
+    )  # fmt: skip
+    for line, own in groupby(places, key=lambda place: place[1]):
+        parts.append(f'<g id="line-{line}">\n')
+        parts.append(
+            "".join([
+                f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
+                for k, _, glyph, cluster, (x, y), angle in own
+                if drawn[glyph]
+            ])
+        )
+        parts.append("</g>\n")
+    return document([*parts, "</g>\n</svg>\n"])
+
+
+def _put(x: float, y: float, angle: float, precision: int) -> str:
+    """The place of a glyph as attributes; turned ones have a transform."""
+    across, down = number(x, precision), number(-y, precision)
+    return f' transform="translate({across} {down}) rotate({number(-angle, 6)})"' if angle else f' x="{across}" y="{down}"'
