@@ -65,11 +65,13 @@ def text_document(
     for line, own in groupby(places, key=lambda place: place[1]):
         parts.append(f'<g id="line-{line}">\n')
         parts.append(
-            "".join([
-                f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
-                for k, _, glyph, cluster, (x, y), angle in own
-                if drawn[glyph]
-            ])
+            "".join(
+                [
+                    f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
+                    for k, _, glyph, cluster, (x, y), angle in own
+                    if drawn[glyph]
+                ]
+            )
         )
         parts.append("</g>\n")
     return document([*parts, "</g>\n</svg>\n"])
@@ -78,4 +80,6 @@ def text_document(
 def _put(x: float, y: float, angle: float, precision: int) -> str:
     """The place of a glyph as attributes; turned ones have a transform."""
     across, down = number(x, precision), number(-y, precision)
-    return f' transform="translate({across} {down}) rotate({number(-angle, 6)})"' if angle else f' x="{across}" y="{down}"'
+    return (
+        f' transform="translate({across} {down}) rotate({number(-angle, 6)})"' if angle else f' x="{across}" y="{down}"'
+    )
