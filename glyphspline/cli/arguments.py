@@ -14,6 +14,8 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
+from ..layout.along_path import Align, Side
+from ..layout.setting import Direction
 from ..types import Names
 from ..writers.formats import OURS, DxfKind
 from ..writers.svg.appearance import ViewBox
@@ -27,6 +29,7 @@ glyph_option = partial(typer.Option, rich_help_panel="Which glyphs")
 closeness_option = partial(typer.Option, rich_help_panel="How close to the source")
 corner_option = partial(typer.Option, rich_help_panel="Corners")
 file_option = partial(typer.Option, rich_help_panel="What is written")
+text_option = partial(typer.Option, rich_help_panel="The text")
 look_option = partial(typer.Option, rich_help_panel="How drawings look")
 run_option = partial(typer.Option, rich_help_panel="The run")
 look_for_option = partial(typer.Option, rich_help_panel="What is looked for")
@@ -214,6 +217,58 @@ FileNames = Annotated[
 Each = Annotated[bool, file_option("--each", help="A folder in DIR for each font, as of several, for one font too.")]
 Precision = Annotated[int, file_option("--precision", parser=whole, metavar="N", help="Decimals written, 0 to 9.")]
 RemoveOverlaps = Annotated[bool, file_option("--remove-overlaps", help="Unite overlapping contours first.")]
+
+Words = Annotated[
+    str | None, typer.Argument(metavar="[TEXT]", help="What is set; - is standard input.", show_default=False)
+]
+WordsFile = Annotated[Path | None, text_option("--text-file", metavar="FILE", help="Instead: a UTF-8 file's text.")]
+Fallbacks = Annotated[
+    list[Path] | None,
+    text_option("--fallback-font", metavar="FONT", help="For characters that FONT lacks. Repeatable."),
+]
+Features = Annotated[str, text_option("--features", metavar="TAG,…", help="OpenType features: liga,-kern,ss01=2.")]
+Script = Annotated[str | None, text_option("--script", metavar="CODE", help="Of all text, by ISO 15924: Arab.")]
+Language = Annotated[str | None, text_option("--language", metavar="TAG", help="By BCP 47: de, zh-Hant.")]
+Flow = Annotated[
+    Direction | None, text_option("--direction", help="Without it as the text's first letter has it; ttb: columns.")
+]
+LineWidth = Annotated[
+    str | None,
+    text_option("--width", metavar="LENGTH", help="Break lines at it: font units, 12em, or 80mm if --size is given."),
+]
+Alignment = Annotated[Align, text_option("--align", help="Of lines, or on the path.")]
+LineHeight = Annotated[
+    str | None, text_option("--line-height", metavar="LENGTH", help="Distance of baselines. Without it, the font's.")
+]
+OnPath = Annotated[
+    str | None,
+    text_option(
+        "--path",
+        metavar="SVG#ID",
+        help="Letters stand along this path of a drawing, whose user unit is a pixel if --size is given, or else a "
+        "font unit.",
+    ),
+]
+Bend = Annotated[bool, text_option("--bend", help="Deform letters along the path too, within the tolerance.")]
+Offset = Annotated[
+    str | None, text_option("--offset", metavar="LENGTH", help="How far along the path the text begins.")
+]
+WhichSide = Annotated[Side, text_option("--side", help="Of the path; right: the text runs from its end.")]
+Drawings = Annotated[
+    list[Path],
+    file_option(
+        "--out", "-o", metavar="FILE", show_default=False,
+        help="SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD to write; - is standard output. Repeatable.",
+    ),
+]  # fmt: skip
+FormatName = Annotated[
+    str | None,
+    file_option("--format", metavar="NAME", help="Of --out, if its suffix does not say it: curvature, source, …"),
+]
+EachGlyph = Annotated[
+    bool, file_option("--each-glyph", help="In SVG each glyph is an element with an id, not all one path.")
+]
+TypeSize = Annotated[str | None, look_option("--size", metavar="LENGTH", help="How large an em is: 12pt, 20mm.")]
 
 Region = Annotated[ViewBox, look_option("--view-box", help="Region a drawing shows.")]
 Height = Annotated[

@@ -123,6 +123,62 @@ def convert(
 
 
 @app.command()
+def text(
+    font: opt.FontFile,
+    out: opt.Drawings,
+    words: opt.Words = None,
+    text_file: opt.WordsFile = None,
+    fallbacks: opt.Fallbacks = None,
+    features: opt.Features = "",
+    script: opt.Script = None,
+    language: opt.Language = None,
+    direction: opt.Flow = None,
+    width: opt.LineWidth = None,
+    align: opt.Alignment = "start",
+    line_height: opt.LineHeight = None,
+    path: opt.OnPath = None,
+    bend: opt.Bend = False,
+    offset: opt.Offset = None,
+    side: opt.WhichSide = "left",
+    face_index: opt.FaceIndex = 0,
+    location: opt.Location = None,
+    variant: opt.Variant = Options.variant,
+    margin: opt.Margin = Options.margin,
+    fallback: opt.WhereNone = Options.fallback,
+    preset: opt.Choice = None,
+    corners: opt.CornerMode = Options.corners,
+    corner_angle: opt.CornerAngle = Options.corner_angle,
+    continuity: opt.Between = Options.continuity,
+    tolerance: opt.Tolerance = Options.tolerance,
+    effort: opt.HowHard = Options.effort,
+    remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
+    format_name: opt.FormatName = None,
+    each_glyph: opt.EachGlyph = False,
+    flatness: opt.Flatness = None,
+    dxf: opt.Dxf = "spline",
+    precision: opt.Precision = Options.precision,
+    view_box: opt.Region = Appearance.view_box,
+    size: opt.TypeSize = None,
+    fill: opt.Fill = Appearance.fill,
+    stroke: opt.Stroke = Appearance.stroke,
+    config: opt.Config = None,
+    quiet: opt.Quiet = False,
+) -> None:
+    """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
+
+    Each glyph is fitted once, however often it stands there. The exit status is 1 if the fonts lack characters of the
+    text, or glyphs cannot be read.
+    """
+    given = dict(locals())
+    with errors(quiet):
+        listen(quiet)
+        from .text_command import set_text
+
+        status = set_text(given)
+    raise typer.Exit(status)
+
+
+@app.command()
 def info(
     font: opt.FontFile,
     face_index: opt.OneFace = None,
