@@ -92,14 +92,7 @@ def read_drawing(file: Path) -> Outline:
     from .svg_shapes import draw_shapes  # imports SciPy, which fonts do not need
 
     with opening(file, "drawing"):
-        if file.stat().st_size > LARGEST_FILE:
-            raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB")
-        try:
-            root = fromstring(file.read_bytes())
-        except DefusedXmlException as error:
-            raise GlyphsplineError("its XML declares entities, which are refused") from error
-        if root.tag.rpartition("}")[2] != "svg":
-            raise GlyphsplineError("not an SVG drawing")
+        root = svg_root(file)
         metrics, advance = _metrics(root)
         pen = ContourPen(coincident=COINCIDENT * metrics.units_per_em)
         notes = draw_shapes(root, pen)
@@ -108,6 +101,23 @@ def read_drawing(file: Path) -> Outline:
     unicodes = _unicodes(root.get("data-unicodes"), name)
     said = (*pen.notes, *notes)
     return Outline(name, gid, unicodes, advance, tuple(pen.contours), metrics, said, pen.snapped)
+
+
+def svg_root(file: Path) -> Any:
+    """The root element of an SVG document.
+
+    Raises:
+        GlyphsplineError: the file is too large, not an SVG drawing, or declares entities.
+    """
+    if file.stat().st_size > LARGEST_FILE:
+        raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB")
+    try:
+        root = fromstring(file.read_bytes())
+    except DefusedXmlException as error:
+        raise GlyphsplineError("its XML declares entities, which are refused") from error
+    if root.tag.rpartition("}")[2] != "svg":
+        raise GlyphsplineError("not an SVG drawing")
+    return root
 
 
 def _unicodes(written: str | None, name: str) -> tuple[int, ...]:

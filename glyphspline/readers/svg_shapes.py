@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from svgpathtools import Arc, CubicBezier, Line, QuadraticBezier, parse_path
 from svgpathtools.parser import parse_transform
-from svgpathtools.svg_to_paths import ellipse2pathd, rect2pathd
+from svgpathtools.svg_to_paths import rect2pathd
 
 from ..errors import GlyphsplineError
 from ..types import FloatArray
@@ -40,9 +40,12 @@ def draw_shapes(root: Any, pen: Any) -> tuple[str, ...]:
 
 
 def shapes(
-    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0
+    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0, everywhere: bool = False
 ) -> Iterator[tuple[Any, FloatArray, bool]]:
-    """Each shape with the (3, 3) matrix to font space, and whether it is filled."""
+    """Each shape with the (3, 3) matrix to font space, and whether it is filled.
+
+    Those that are only defined or not displayed, and lines, are among them with ``everywhere``.
+    """
     if depth > DEEPEST:
         raise GlyphsplineError(f"groups nested more than {DEEPEST} deep")
     if not isinstance(element.tag, str):
@@ -50,15 +53,15 @@ def shapes(
     tag, style = element.tag.rpartition("}")[2], styles(element)
     if tag in LEFT_OUT:
         left_out[LEFT_OUT[tag]] += 1
-    if tag in NOT_DRAWN or style.get("display") == "none":
+    if not everywhere and (tag in NOT_DRAWN or style.get("display") == "none"):
         return
     if element.get("transform"):
         matrix = matrix @ np.asarray(parse_transform(element.get("transform")), dtype=np.float64)
     filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
-    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline"):
+    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline") or (everywhere and tag == "line"):
         yield element, matrix, filled
     for child in element:
-        yield from shapes(child, matrix, filled, left_out, depth + 1)
+        yield from shapes(child, matrix, filled, left_out, depth + 1, everywhere)
 
 
 def styles(element: Any) -> dict[str, str]:
@@ -72,19 +75,28 @@ def styles(element: Any) -> dict[str, str]:
 
 
 def path_data(element: Any) -> str:
-    """A shape as path data."""
+    """A shape as path data, which begins and runs as SVG 2 has it for the shape."""
     tag = element.tag.rpartition("}")[2]
     if tag == "path":
         return str(element.get("d") or "")
-    convert = {"rect": rect2pathd, "circle": ellipse2pathd, "ellipse": ellipse2pathd}
-    if tag in convert:
-        return str(convert[tag](dict(element.attrib)))
+    if tag == "rect":
+        return str(rect2pathd(dict(element.attrib)))
+    if tag in ("circle", "ellipse"):
+        cx, cy = float(element.get("cx", 0)), float(element.get("cy", 0))
+        rx, ry = (float(element.get(key)) for key in (("r", "r") if tag == "circle" else ("rx", "ry")))
+        ends = ((cx, cy + ry), (cx - rx, cy), (cx, cy - ry), (cx + rx, cy))
+        return f"M{cx + rx!r},{cy!r}" + "".join([f"A{rx!r},{ry!r} 0 0 1 {x!r},{y!r}" for x, y in ends]) + "Z"
+    if tag == "line":
+        return "M{},{}L{},{}".format(*[element.get(key, 0) for key in ("x1", "y1", "x2", "y2")])
     points = element.get("points") or ""
-    return f"M{points}Z" if points.strip() else ""
+    return f"M{points}{'Z' if tag == 'polygon' else ''}" if points.strip() else ""
 
 
-def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
-    """Draw path data subpath by subpath: svgpathtools would join two that meet in a point."""
+def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None:
+    """Draw path data subpath by subpath: svgpathtools would join two that meet in a point.
+
+    An open subpath ends with ``endPath``. ``arc``: degrees of an elliptic arc that become one cubic.
+    """
     here = 0j
     for subpath in re.findall(r"[Mm][^Mm]*", data):
         start = moved_to(subpath, here)
@@ -92,10 +104,11 @@ def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
         pen.moveTo(placed([start], matrix)[0])
         end = start
         for segment in path:
-            draw_segment(segment, matrix, pen)
+            draw_segment(segment, matrix, pen, arc)
             end = segment.end
-        pen.closePath()
-        here = start if subpath.rstrip().endswith(("Z", "z")) else end
+        closed = subpath.rstrip(" \t\r\n\f,").endswith(("Z", "z"))
+        (pen.closePath if closed else pen.endPath)()
+        here = start if closed else end
 
 
 def moved_to(subpath: str, here: complex) -> complex:
@@ -107,21 +120,21 @@ def moved_to(subpath: str, here: complex) -> complex:
     return here + point if subpath[0] == "m" else point
 
 
-def draw_segment(segment: Any, matrix: FloatArray, pen: Any) -> None:
+def draw_segment(segment: Any, matrix: FloatArray, pen: Any, arc: float) -> None:
     """Draw a line, quadratic, cubic or arc from the current point."""
     if isinstance(segment, Line | QuadraticBezier | CubicBezier):
         points = placed(segment.bpoints()[1:], matrix)
         (pen.lineTo, pen.qCurveTo, pen.curveTo)[len(points) - 1](*points)
     elif isinstance(segment, Arc):
-        for cubic in arc_cubics(segment):
+        for cubic in arc_cubics(segment, arc):
             pen.curveTo(*placed(cubic, matrix))
     else:
         raise GlyphsplineError(f"a path segment of an unknown kind, {type(segment).__name__}")
 
 
-def arc_cubics(arc: Any) -> Iterator[list[complex]]:
-    """The three points that each cubic of an elliptic arc adds."""
-    pieces = max(1, int(np.ceil(abs(arc.delta) / ARC)))
+def arc_cubics(arc: Any, degrees: float) -> Iterator[list[complex]]:
+    """The three points that each cubic of an elliptic arc adds, one for so many degrees."""
+    pieces = max(1, int(np.ceil(abs(arc.delta) / degrees)))
     handle = 4 / 3 * np.tan(np.radians(arc.delta) / pieces / 4) / np.radians(arc.delta)
     for k in range(pieces):
         t0, t1 = k / pieces, (k + 1) / pieces

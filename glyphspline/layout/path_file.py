@@ -1,0 +1,104 @@
+"""A path from an SVG file: one of its shapes, by its id."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from ..curves.bezier import as_cubic
+from ..errors import GlyphsplineError
+from ..readers.source import opening, reason
+from ..readers.svg_drawings import svg_root
+from ..types import FloatArray
+from .path import Path, meets
+
+ARC = 15.0
+"""Degrees of an elliptic arc that become one cubic, with an error of 6e-9 of the radius."""
+
+MOST_NAMED = 8
+"""Ids that an error lists."""
+
+
+def open_path(given: str | FilePath) -> Path:
+    """Read a path from an SVG file, y up, in the drawing's user units with all transforms applied.
+
+    Shapes are paths, rectangles, circles, ellipses, polygons, polylines and lines, in ``defs`` too; they begin and run
+    as SVG has it. A path whose ends meet is closed.
+
+    Args:
+        given: ``curve.svg#id``, or ``curve.svg`` if the file has only one shape.
+
+    Raises:
+        FontError: the file cannot be read, is no SVG drawing, or declares XML entities.
+        GlyphsplineError: there is no such shape, or several without an id to choose from; the shape is of several
+            pieces, has no length, or is broken. The error names file and id.
+    """
+    text = str(given)
+    file, mark, name = (text, "", "") if FilePath(text).exists() else text.rpartition("#")
+    if not file:
+        file, mark, name = text, "", ""
+    with opening(FilePath(file), "drawing"):
+        from ..readers.svg_shapes import FLIP, draw_path, path_data, shapes  # imports SciPy
+
+        root = svg_root(FilePath(file))
+        found = [(element, matrix) for element, matrix, _ in shapes(root, FLIP, True, Counter(), everywhere=True)]
+    names = [element.get("id") for element, _ in found]
+    if mark:
+        found = [pair for pair, own in zip(found, names, strict=True) if own == name]
+    listed = ", ".join([str(own) for own in names if own][:MOST_NAMED]) or "none has an id"
+    if mark and len(found) != 1:
+        what = f"{len(found)} shapes have this id" if found else f"no shape has this id; there are: {listed}"
+        raise GlyphsplineError(what, font=f"{file}#{name}")
+    if len(found) != 1:
+        what = f"{len(found)} shapes, say which by #id: {listed}" if found else "no shape that text could run along"
+        raise GlyphsplineError(what, font=file)
+    element, matrix = found[0]
+    name = name or element.get("id") or ""
+    place = f"{file}#{name}" if name else file
+    pen = PathPen()
+    try:
+        draw_path(path_data(element), matrix, pen, ARC)
+    except GlyphsplineError as error:
+        raise error.locate(font=place) from error
+    except Exception as error:  # a broken path raises any of a dozen types
+        raise GlyphsplineError(f"a broken path: {reason(error)}", font=place) from error
+    pieces = [np.array(piece) for piece in pen.pieces if piece]
+    if len(pieces) > 1:
+        raise GlyphsplineError(f"the path is of {len(pieces)} pieces; text runs along one", font=place)
+    cubics = pieces[0] if pieces else np.empty((0, 4, 2))
+    return Path(cubics, bool(len(cubics)) and np.isfinite(cubics).all() and meets(cubics), place)
+
+
+class PathPen:
+    """Collects the segments of subpaths as cubics, those of a line that closes one too."""
+
+    # The names of a pen's methods are fontTools' own.
+    # ruff: noqa: N802
+
+    def __init__(self) -> None:
+        self.pieces: list[list[FloatArray]] = []
+        self._here: Any = (0.0, 0.0)
+        self._start: Any = (0.0, 0.0)
+
+    def moveTo(self, point: Any) -> None:
+        """Begin a subpath."""
+        self.pieces.append([])
+        self._here = self._start = point
+
+    def lineTo(self, *points: Any) -> None:
+        """Add a segment: a line, or with more points a quadratic or a cubic."""
+        self.pieces[-1].append(as_cubic(np.array([self._here, *points], dtype=np.float64)))
+        self._here = points[-1]
+
+    qCurveTo = curveTo = lineTo
+
+    def closePath(self) -> None:
+        """End a subpath with a line to its start, if it is not there."""
+        if self._here != self._start:
+            self.lineTo(self._start)
+
+    def endPath(self) -> None:
+        """End an open subpath."""
