@@ -14,8 +14,8 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
-from ..layout.along_path import Align, Side
-from ..layout.setting import Direction
+from ..layout.along_path import Side
+from ..layout.setting import Align, Direction
 from ..types import Names
 from ..writers.formats import OURS, DxfKind
 from ..writers.svg.appearance import ViewBox

@@ -15,6 +15,7 @@ from .messages import say
 
 if TYPE_CHECKING:
     from ..fitting.results import GlyphResult
+    from ..layout.path import Path as Curve
     from ..layout.placed import Layout
     from ..writers.formats import Format, Settings
     from ..writers.svg.appearance import Appearance
@@ -32,12 +33,14 @@ LENGTH = re.compile(r"(-?\d{1,9}(?:\.\d{1,9})?)([a-z]*)")
 
 
 def set_text(given: Mapping[str, Any]) -> int:
-    """Lay a text out and write its drawings; returns the exit status: 1 if there are remarks, which are said, else 0.
+    """Lay a text out and write its drawings; returns the exit status: 1 if something is left out of them, else 0.
 
     Raises:
         GlyphsplineError: the text cannot be laid out, or a format is unknown.
         OSError: a file cannot be read or written.
     """
+    from ..layout.placed import LEFT_OUT
+
     files = list(formats_of(given["out"], given["format_name"]))
     look = look_of(given)
     layout, path = laid_out(given, look)
@@ -55,7 +58,7 @@ def set_text(given: Mapping[str, Any]) -> int:
             say(line)
         if len(remarks) > SHOWN:
             say(f"and {len(remarks) - SHOWN} remarks more")
-    return 1 if remarks else 0
+    return 1 if layout.missing or any(note.startswith(LEFT_OUT) for note in drawn.notes) else 0
 
 
 def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, Format]]:
@@ -107,7 +110,7 @@ def words_of(given: Mapping[str, Any]) -> str:
     return words if file is None else file.read_text(encoding="utf-8-sig")
 
 
-def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Any]:
+def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Curve | None]:
     """The text on its lines, with the path that it is to follow, in font units, or None.
 
     Raises:
@@ -121,8 +124,8 @@ def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Any]:
     font = open_source(given["font"], given["face_index"], location)
     fallbacks = [open_source(file) for file in given["fallbacks"] or ()]
     em = font.metrics.units_per_em
-    setting = {name: given[name] for name in ("features", "script", "language", "direction")}
-    lengths = {name: length(name, given[name], em, look) for name in ("width", "line_height")}
+    setting: dict[str, Any] = {name: given[name] for name in ("features", "script", "language", "direction")}
+    lengths: dict[str, Any] = {name: length(name, given[name], em, look) for name in ("width", "line_height")}
     curve = None
     if given["path"] is None:
         for name in ("bend", "offset", "side"):
@@ -131,11 +134,11 @@ def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Any]:
     else:
         if given["width"] is not None:
             raise GlyphsplineError("--width is for lines; text on a --path is one")
-        from ..layout.path_file import read_path
+        from ..layout.path_file import open_path
 
-        curve = read_path(given["path"]).scaled(pixel(em, look))
-    align = given["align"] if curve is None else "start"
-    return layout(font, text, fallbacks=fallbacks, align=align, **setting, **lengths), curve
+        curve = open_path(given["path"]).scaled(pixel(em, look))
+    setting["align"] = given["align"] if curve is None else "start"
+    return layout(font, text, fallbacks=fallbacks, **setting, **lengths), curve
 
 
 def pixel(em: float, look: Appearance) -> float:
@@ -179,14 +182,14 @@ def missing(layout: Layout) -> Iterator[str]:
 class Drawn:
     """The drawings of a text: its glyphs are fitted once for all formats, and not at all for a source's outline."""
 
-    def __init__(self, layout: Layout, path: Any, given: Mapping[str, Any], look: Appearance) -> None:
+    def __init__(self, layout: Layout, path: Curve | None, given: Mapping[str, Any], look: Appearance) -> None:
         self.options = opt.options_of(given)
         self.look, self.each = look, given["each_glyph"]
         self.given = given
-        self.notes: tuple[str, ...] = ()
+        self.notes: dict[str, None] = {}
         self.bent = None
         if path is not None:
-            place = {"align": given["align"], "side": given["side"]}
+            place: dict[str, Any] = {"align": given["align"], "side": given["side"]}
             em = layout.fonts[0].metrics.units_per_em
             place["offset"] = length("offset", given["offset"], em, look) or 0.0
             if given["bend"]:
@@ -205,7 +208,7 @@ class Drawn:
         from ..fitting.convert import convert
 
         result = self.layout.convert(self.options) if self.bent is None else convert(self.bent, self.options)
-        self.notes = result.notes
+        self.notes |= dict.fromkeys(result.notes)
         return result
 
     @cached_property
@@ -216,7 +219,7 @@ class Drawn:
         from ..fitting.results import as_glyph
 
         outline = self.layout.outline() if self.bent is None else self.bent
-        self.notes = outline.notes
+        self.notes |= dict.fromkeys(outline.notes)
         return replace(as_glyph(outline), options=self.options)
 
     @cached_property
@@ -236,9 +239,18 @@ class Drawn:
 
     def each_glyph(self, *, fitted: bool) -> bytes:
         """The SVG drawing in which each glyph is an element."""
+        from ..fitting.results import as_glyph
+        from ..outlines.outline import Outline
+        from ..writers.svg.path_data import curves_data
         from ..writers.svg.text_drawing import text_document
 
         if self.bent is not None:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
-        results, which = self.layout.distinct(self.options if fitted else None)
-        return text_document(self.layout, results, which, self.look)
+        layout = self.layout
+        if fitted:
+            results = layout.fitted(self.options)
+        else:
+            results = [as_glyph(o if isinstance(o, Outline) else Outline("")) for o in layout.outlines()]
+        self.notes |= dict.fromkeys([note for result in results for note in result.notes])
+        box = curves_data(self.unfitted.arrays.curves, self.options.precision)[0].box
+        return text_document(layout, results, layout.which, self.look, box)

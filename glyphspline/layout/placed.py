@@ -18,6 +18,9 @@ from ..readers import Source
 from ..types import FloatArray, IntArray, counted
 from .moved import Motion, moved_contours, moved_results, ranges
 
+LEFT_OUT = "left out"
+"""How the note on a glyph begins that cannot be read or converted."""
+
 NAME = "text"
 """The name of a text's outline."""
 
@@ -75,6 +78,11 @@ class Layout:
         """Font and glyph index of each glyph, once however often it stands in the text, in ascending order."""
         return [(font, gid) for font, gid in self._distinct[0].tolist()]
 
+    @property
+    def which(self) -> IntArray:
+        """(n,) which of :meth:`distinct` each placed glyph is."""
+        return self._distinct[1]
+
     def outlines(self) -> list[Outline | GlyphsplineError]:
         """The outlines of :meth:`distinct`, in units of the first font; an error in place of each broken glyph."""
         found: list[Outline | GlyphsplineError] = []
@@ -111,7 +119,21 @@ class Layout:
         Raises:
             OptionError: options that contradict each other.
         """
-        read, notes = self.outlines(), list(self.notes)
+        glyphs = self.fitted(options)
+        found, ends = end_to_end(glyphs)
+        which, motion = self._contours(ends)
+        results = moved_results(found, which, motion)
+        outline = replace(self._as_outline(found.source, ends), notes=())
+        notes = [note for glyph in glyphs for note in (*glyph.outline.notes, *glyph.notes)]
+        return GlyphResult(outline, options, ContourResults(results), (*self.notes, *notes))
+
+    def fitted(self, options: Options = DEFAULTS) -> list[GlyphResult]:
+        """The results of :meth:`distinct`, each where its own origin is; what fails has no contours, and a note.
+
+        Raises:
+            OptionError: options that contradict each other.
+        """
+        read = self.outlines()
         if self._rounded_anew(options.precision):
             moved = sqrt(2.0) * 10.0**-options.precision
             read = [replace(o, snapped=o.snapped + moved) if isinstance(o, Outline) else o for o in read]
@@ -121,15 +143,13 @@ class Layout:
         for outline, source, result in zip(read, whole, converted, strict=True):
             failed = next((found for found in (outline, result) if isinstance(found, GlyphsplineError)), None)
             if failed is not None or not isinstance(result, GlyphResult):
-                notes.append(f"left out: {failed}")
-                result = GlyphResult(replace(source, contours=()), options, ())
-            notes += [f"glyph {source.name!r}: {note}" for note in (*source.notes, *result.notes)]
+                notes = (f"{LEFT_OUT}: {failed}",)
+                result = GlyphResult(replace(source, contours=()), options, notes)
+            elif source.notes or result.notes:
+                said = [f"glyph {source.name!r}: {note}" for note in (*source.notes, *result.notes)]
+                result = replace(result, outline=replace(source, notes=()), notes=tuple(said))
             glyphs.append(result)
-        found, ends = end_to_end(glyphs)
-        which, motion = self._contours(ends)
-        results = moved_results(found, which, motion)
-        outline = replace(self._as_outline(found.source, ends), notes=())
-        return GlyphResult(outline, options, ContourResults(results), tuple(notes))
+        return glyphs
 
     def _contours(self, ends: IntArray) -> tuple[IntArray, Motion]:
         """Which contours stand in the text, glyph by glyph, and how each is moved; ``ends`` as of offsets."""
@@ -142,7 +162,8 @@ class Layout:
         which, motion = self._contours(ends)
         left, bottom, right, top = self.box
         metrics = FontMetrics(self.fonts[0].metrics.units_per_em, top, bottom)
-        return Outline(NAME, advance=right - left, contours=Contours(moved_contours(contours, which, motion)), metrics=metrics)
+        placed = Contours(moved_contours(contours, which, motion))
+        return Outline(NAME, advance=right - left, contours=placed, metrics=metrics)
 
     def _rounded_anew(self, precision: int) -> bool:
         """Whether coordinates with so many decimals are not such any more where glyphs are put."""

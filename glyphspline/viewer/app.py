@@ -131,6 +131,12 @@ def compare_answer(work: Work, state: State) -> dict[str, Any]:
     return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
 
 
+def text_answer(work: Work, state: State) -> dict[str, Any]:
+    """The line of text as a drawing, with remarks."""
+    svg, notes = work.text(state)
+    return {"svg": svg, "notes": notes}
+
+
 def masters_answer(work: Work, state: State) -> dict[str, Any]:
     """The glyph in all masters, source and result, and the command that draws it along an axis."""
     if not work.font.axes:
@@ -143,10 +149,11 @@ ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
     "compare": compare_answer,
     "masters": masters_answer,
     "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
+    "text": text_answer,
     "svg": lambda work, state: {"svg": to_svg(work.result(state))},
 }
 """By route: the glyph; its polygon by the variants 1, 2 and 3; the glyph in all masters; the iteration of its closed
-curves; the SVG file."""
+curves; the line of text; the SVG file."""
 
 
 def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:

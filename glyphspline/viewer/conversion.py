@@ -21,10 +21,12 @@ from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph
 from ..interpolation.result import Interpolation
+from ..layout.lay_out import layout
 from ..outlines.outline import Contours, Outline
 from ..readers import Font, open_font
 from ..types import FloatArray
 from ..writers.svg.curvature_map import combs
+from ..writers.svg.text_drawing import text_document
 from .state import Moved, State
 
 COMPARED = (1, 2, 3)
@@ -34,6 +36,10 @@ STEPS = 60
 """Maximum number of iterations shown: the first half of them are consecutive, then their distance grows."""
 
 
+CONVERTED = 128
+"""Converted glyphs that are kept: the distinct ones of a line of text, and some by other options."""
+
+
 class Work:
     """A font, opened at each location of its design space on request, and a cache of converted glyphs."""
 
@@ -41,7 +47,7 @@ class Work:
         self.path, self.face_index = path, face_index
         self.lock = RLock()  # a font's tables are read on demand, by one thread at a time
         self.at = lru_cache(maxsize=12)(lambda location: open_font(path, face_index, dict(location)))
-        self.converted = lru_cache(maxsize=48)(self._convert)
+        self.converted = lru_cache(maxsize=CONVERTED)(self._convert)
         self.in_all_masters = lru_cache(maxsize=16)(self._convert_masters)
         self.scale = lru_cache(maxsize=1)(self._scale)
         self.font: Font = self.at(())
@@ -81,6 +87,24 @@ class Work:
             return self.converted(state.glyph, state.location, options)
         contours = tuple(through(contour, contour.polygon, options) for contour in result.contours)
         return replace(result, options=options, contours=contours)
+
+    def text(self, state: State) -> tuple[str, list[str]]:
+        """The text of a state as an SVG drawing, each distinct glyph converted once, and remarks."""
+        with self.lock:
+            placed = layout(self.at(state.location), state.text)
+            names = [self.font.glyph_names[gid] for _, gid in placed.distinct()]
+        results = [self._of_text(name, state) for name in names]
+        drawing = text_document(placed, results, placed.which)
+        lacking = [f"no glyph for {' '.join(placed.missing)}"] if placed.missing else []
+        failed = [note for result in results if not result.contours for note in result.notes]
+        return drawing.decode(), [*lacking, *failed]
+
+    def _of_text(self, name: str, state: State) -> GlyphResult:
+        """A glyph of the text; one that is broken has no contours, and a note."""
+        try:
+            return self.converted(name, state.location, state.options)
+        except GlyphsplineError as error:
+            return GlyphResult(Outline(name), state.options, (), (str(error),))
 
     def _scale(self) -> float:
         """The font's curvature scale, from the source outlines of at most 60 glyphs."""
