@@ -20,6 +20,7 @@ from .fitting.convert_masters import MastersContourResult, MastersResult, conver
 from .fitting.options import Options
 from .fitting.results import ContourResult, GlyphResult, Measures
 from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
+from .layout.lay_out import layout
 from .notebook import plot
 from .outlines.masters import DesignAxis, MasterContour, Masters
 from .outlines.outline import Contour, FontMetrics, Outline
@@ -28,6 +29,7 @@ from .outlines.sampling import sample
 display.install()
 
 if TYPE_CHECKING:
+    from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
 _ON_DEMAND = {
     "Font": ".readers",
+    "Layout": ".layout.placed",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -78,6 +81,7 @@ __all__ = [
     "Interpolation",
     "Kink",
     "KinkReport",
+    "Layout",
     "MasterContour",
     "Masters",
     "MastersContourResult",
@@ -101,6 +105,7 @@ __all__ = [
     "interpolate_many",
     "interpolate_vertex",
     "kinks",
+    "layout",
     "open_font",
     "open_source",
     "plot",

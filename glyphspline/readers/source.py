@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, NamedTuple, TypeAlias, TypeVar, overload
+from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.masters import DesignAxis, Masters, alone
@@ -43,6 +43,7 @@ class Source(ABC):
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
         cmap: code point to glyph name.
+        shaper: HarfBuzz's font at the location, to shape text with; None for a source without tables for shaping.
         outer: the direction in which outer contours run by the rules of the format: 1 counter-clockwise (PostScript),
             -1 clockwise (TrueType), 0 if it has none.
     """
@@ -53,6 +54,7 @@ class Source(ABC):
     num_faces: int = 1
     location: Mapping[str, float] = MappingProxyType({})
     axes: tuple[DesignAxis, ...] = ()
+    shaper: Any = None
     outer: int = 0
     family: str
     style: str

@@ -38,6 +38,7 @@ class Face:
         instances: named instances, name to location.
         location: axis tag to user-space value, clamped to the axes' limits. Axes not in it are at their default.
         family, style: from the name table; by default the file's name and "Regular".
+        shaper: HarfBuzz's font at the location.
         metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
     """
 
@@ -68,6 +69,7 @@ class Face:
         self.family, self.style = names_of(tables, path)
         self.metrics = metrics_of(tables)
         self._tables, self._hb = tables, HarfBuzz(hb.Blob(plain), face_index, self.location)
+        self.shaper = self._hb.font
         if self.location:
             extents = self._hb.font.get_font_extents("ltr")
             self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))

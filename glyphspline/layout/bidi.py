@@ -1,0 +1,291 @@
+"""The Unicode bidirectional algorithm (UAX #9): embedding levels of a paragraph, and the visual order of a line.
+
+It is here because the Python packages for it return a reordered string: shaping needs the levels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from unicodedata import bidirectional, normalize
+
+DEEPEST = 125
+"""max_depth of UAX #9, BD2."""
+
+TURNING = frozenset({"R", "AL", "AN", "RLE", "RLO", "RLI", "LRE", "LRO", "LRI", "FSI"})
+"""The classes without which all of a paragraph that begins at level 0 is at level 0."""
+
+ISOLATES, EMBEDDINGS = frozenset({"LRI", "RLI", "FSI"}), frozenset({"LRE", "RLE", "LRO", "RLO"})
+REMOVED = EMBEDDINGS | {"PDF", "BN"}
+NEUTRAL = ISOLATES | {"B", "S", "WS", "ON", "PDI"}
+SPACES = ISOLATES | REMOVED | {"WS", "PDI"}
+
+BRACKETS = (
+    "()[]{}༺༻༼༽᚛᚜⁅⁆⁽⁾₍₎⌈⌉⌊⌋\u2329\u232a❨❩❪❫❬❭❮❯❰❱❲❳❴❵⟅⟆⟦⟧⟨⟩⟪⟫⟬⟭⟮⟯⦃⦄⦅⦆⦇⦈⦉⦊⦋⦌⦍⦐⦏⦎⦑⦒⦓⦔⦕⦖⦗⦘⧘⧙⧚⧛⧼⧽⸢⸣⸤⸥⸦⸧⸨⸩"
+    "\u2e55\u2e56\u2e57\u2e58\u2e59\u2e5a\u2e5b\u2e5c\u3008\u3009《》「」『』【】〔〕〖〗〘〙〚〛﹙﹚﹛﹜﹝﹞（）［］｛｝｟｠｢｣"
+)
+"""Bidi_Paired_Bracket: each opening bracket and the closing one after it."""
+
+CLOSING = {normalize("NFC", a): normalize("NFC", b) for a, b in zip(BRACKETS[::2], BRACKETS[1::2], strict=True)}
+"""Opening to closing bracket, canonical equivalents as one."""
+
+PAIRED = frozenset(BRACKETS)
+
+
+def paragraph_level(classes: Sequence[str]) -> int:
+    """Rules P2 and P3: 1 if the first strong character outside isolates runs from right to left, else 0."""
+    depth = 0
+    for kind in classes:
+        if kind in ISOLATES:
+            depth += 1
+        elif kind == "PDI":
+            depth = max(depth - 1, 0)
+        elif depth == 0 and kind in ("L", "R", "AL"):
+            return int(kind != "L")
+    return 0
+
+
+def embedding_levels(text: str, base: int | None = None) -> tuple[int, list[int]]:
+    """The level of a paragraph, and that of each of its characters, by all rules but L1, which is a line's.
+
+    Args:
+        text: without paragraph separators, but at its end. base: level of the paragraph; None: rules P2 and P3.
+
+    Returns:
+        The paragraph's level and n levels, odd where text runs from right to left. Characters that rule X9 removes have
+        the level of the one before.
+    """
+    by_character = {character: bidirectional(character) or "L" for character in set(text)}
+    if not base and TURNING.isdisjoint(by_character.values()):
+        return 0, [0] * len(text)
+    classes = [by_character[character] for character in text]
+    base = paragraph_level(classes) if base is None else base
+    matching = _isolates(classes)
+    levels, kinds = _explicit(classes, base, matching)
+    for sequence, sos, eos in _sequences(classes, levels, base, matching):
+        _weak(sequence, kinds, sos)
+        _neutral(sequence, kinds, levels, sos, eos, text, classes)
+        for i in sequence:  # rules I1 and I2
+            odd = levels[i] % 2
+            levels[i] += int(kinds[i] != "R") if odd else {"L": 0, "R": 1}.get(kinds[i], 2)
+    for i, kind in enumerate(classes):
+        if kind in REMOVED:
+            levels[i] = levels[i - 1] if i else base
+        elif kind == "B":
+            levels[i] = base
+    return base, levels
+
+
+def line_levels(text: str, levels: Sequence[int], base: int) -> list[int]:
+    """Rule L1: the levels of a line's characters, separators and the spaces before them and at the end at ``base``."""
+    found, space = list(levels), True
+    for i in range(len(text) - 1, -1, -1):
+        kind = bidirectional(text[i])
+        if kind in ("S", "B"):
+            space = True
+        elif kind not in SPACES:
+            space = False
+        if space:
+            found[i] = base
+    return found
+
+
+def visual_order(levels: Sequence[int]) -> list[int]:
+    """Rule L2: the numbers of a line's runs, or characters, from left to right."""
+    order = list(range(len(levels)))
+    odd = [level for level in levels if level % 2]
+    for level in range(max(levels, default=0), min(odd, default=DEEPEST + 2) - 1, -1):
+        done = 0
+        for high, group in groupby(order, lambda i: levels[i] >= level):
+            those = list(group)
+            if high:
+                order[done : done + len(those)] = those[::-1]
+            done += len(those)
+    return order
+
+
+def _isolates(classes: Sequence[str]) -> dict[int, int]:
+    """BD9: isolate initiator to its PDI."""
+    matching, open_ones = {}, []
+    for i, kind in enumerate(classes):
+        if kind in ISOLATES:
+            open_ones.append(i)
+        elif kind == "PDI" and open_ones:
+            matching[open_ones.pop()] = i
+    return matching
+
+
+def _explicit(classes: Sequence[str], base: int, matching: dict[int, int]) -> tuple[list[int], list[str]]:
+    """Rules X1 to X8: levels, and the classes after overrides."""
+    levels, kinds = [base] * len(classes), list(classes)
+    stack: list[tuple[int, str, bool]] = [(base, "", False)]  # level, override, isolate
+    isolates_over = embeddings_over = isolates = 0
+    for i, kind in enumerate(classes):
+        level, override, _ = stack[-1]
+        if kind in EMBEDDINGS or kind in ISOLATES:
+            if kind == "FSI":
+                inner = classes[i + 1 : matching.get(i, len(classes))]
+                kind = "RLI" if paragraph_level(inner) else "LRI"
+            isolate = kind in ISOLATES
+            levels[i] = level
+            if isolate and override:
+                kinds[i] = override
+            new = (level + 1) | 1 if kind[0] == "R" else (level + 2) & ~1
+            if new <= DEEPEST and not isolates_over and not embeddings_over:
+                isolates += isolate
+                stack.append((new, {"RLO": "R", "LRO": "L"}.get(kind, ""), isolate))
+            elif isolate:
+                isolates_over += 1
+            elif not isolates_over:
+                embeddings_over += 1
+        elif kind == "PDI":
+            if isolates_over:
+                isolates_over -= 1
+            elif isolates:
+                embeddings_over = 0
+                while not stack[-1][2]:
+                    stack.pop()
+                stack.pop()
+                isolates -= 1
+            level, override, _ = stack[-1]
+            levels[i] = level
+            kinds[i] = override or kind
+        elif kind == "PDF":
+            levels[i] = level
+            if not isolates_over:
+                if embeddings_over:
+                    embeddings_over -= 1
+                elif not stack[-1][2] and len(stack) > 1:
+                    stack.pop()
+        elif kind != "B":
+            levels[i] = level
+            if override and kind != "BN":
+                kinds[i] = override
+    return levels, kinds
+
+
+def _sequences(
+    classes: Sequence[str], levels: Sequence[int], base: int, matching: dict[int, int]
+) -> Iterator[tuple[list[int], str, str]]:
+    """BD13 and X10: isolating run sequences, each with sos and eos. Removed characters (X9) are in none.
+
+    All are found before the first is returned, as the caller changes the levels.
+    """
+    kept = [i for i, kind in enumerate(classes) if kind not in REMOVED and kind != "B"]
+    runs = [list(group) for _, group in groupby(kept, lambda i: levels[i])]
+    beginning = {run[0]: run for run in runs}
+    continued = {matching[run[-1]] for run in runs if run[-1] in matching}
+    place = {i: k for k, i in enumerate(kept)}
+    found = []
+    for run in runs:
+        if run[0] in continued:
+            continue
+        sequence = list(run)
+        while sequence[-1] in matching:
+            sequence += beginning[matching[sequence[-1]]]
+        first, last = sequence[0], sequence[-1]
+        level, k = levels[first], place[first]
+        before = levels[kept[k - 1]] if k else base
+        k = place[last] + 1
+        after = levels[kept[k]] if k < len(kept) and classes[last] not in ISOLATES else base
+        found.append((sequence, "LR"[max(level, before) % 2], "LR"[max(level, after) % 2]))
+    yield from found
+
+
+def _weak(sequence: Sequence[int], kinds: list[str], sos: str) -> None:
+    """Rules W1 to W7."""
+    before, strong = sos, sos
+    for i in sequence:  # W1, W2 and W3
+        if kinds[i] == "NSM":
+            kinds[i] = "ON" if before in ISOLATES or before == "PDI" else before
+        before = kinds[i]
+    for i in sequence:
+        if kinds[i] in ("L", "R", "AL"):
+            strong = kinds[i]
+        elif kinds[i] == "EN" and strong == "AL":
+            kinds[i] = "AN"
+    for i in sequence:
+        kinds[i] = "R" if kinds[i] == "AL" else kinds[i]
+    for a, i, b in zip(sequence, sequence[1:], sequence[2:], strict=False):  # W4
+        around = kinds[a]
+        if around == kinds[b] and ((kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")):
+            kinds[i] = around
+    for numbers, group in groupby(sequence, lambda i: kinds[i] in ("ET", "EN")):  # W5
+        those = list(group)
+        if numbers and any(kinds[i] == "EN" for i in those):
+            for i in those:
+                kinds[i] = "EN"
+    strong = sos
+    for i in sequence:
+        if kinds[i] in ("ES", "CS", "ET"):  # W6
+            kinds[i] = "ON"
+        elif kinds[i] in ("L", "R"):
+            strong = kinds[i]
+        elif kinds[i] == "EN" and strong == "L":  # W7
+            kinds[i] = "L"
+
+
+def _neutral(
+    sequence: Sequence[int],
+    kinds: list[str],
+    levels: Sequence[int],
+    sos: str,
+    eos: str,
+    text: str,
+    classes: Sequence[str],
+) -> None:
+    """Rules N0 to N2."""
+    along = "LR"[levels[sequence[0]] % 2]
+    for a, b in _bracket_pairs(sequence, kinds, text):  # N0
+        inside = {_strong(kinds[i]) for i in sequence[a + 1 : b]}
+        if along in inside:
+            found = along
+        elif inside - {""}:
+            before = next((kind for i in reversed(sequence[:a]) if (kind := _strong(kinds[i]))), sos)
+            found = before if before != along else along
+        else:
+            continue
+        for k in (a, b):
+            kinds[sequence[k]] = found
+            for i in sequence[k + 1 :]:
+                if classes[i] != "NSM":
+                    break
+                kinds[i] = found
+    before, k = sos, 0
+    for neutral, group in groupby(sequence, lambda i: kinds[i] in NEUTRAL):
+        those = list(group)
+        k += len(those)
+        if neutral:  # N1 and N2
+            after = _strong(kinds[sequence[k]]) if k < len(sequence) else eos
+            for i in those:
+                kinds[i] = before if before == after else along
+        else:
+            before = _strong(kinds[those[-1]])
+
+
+def _strong(kind: str) -> str:
+    """The direction of a class for the neutrals beside it, where numbers run from right to left; "" if it has none."""
+    return "L" if kind == "L" else "R" if kind in ("R", "EN", "AN") else ""
+
+
+def _bracket_pairs(sequence: Sequence[int], kinds: Sequence[str], text: str) -> list[tuple[int, int]]:
+    """BD16: places of matching brackets in the sequence, by the opening one."""
+    if PAIRED.isdisjoint(text):
+        return []
+    pairs, open_ones = [], []
+    for k, i in enumerate(sequence):
+        character = text[i]
+        if character not in PAIRED or kinds[i] != "ON":
+            continue
+        character = normalize("NFC", character)
+        if character in CLOSING:
+            if len(open_ones) == 63:
+                return []
+            open_ones.append((CLOSING[character], k))
+        else:
+            for depth in range(len(open_ones) - 1, -1, -1):
+                if open_ones[depth][0] == character:
+                    pairs.append((open_ones[depth][1], k))
+                    del open_ones[depth:]
+                    break
+    return sorted(pairs)

@@ -1,0 +1,206 @@
+"""A paragraph: cut into runs, shaped, and cut into lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..types import FloatArray, IntArray
+from .bidi import embedding_levels, visual_order
+from .boundaries import clusters, line_ends
+from .scripts import scripts_of, upright_in_columns
+from .setting import Setting
+from .shaping import HarfBuzzShaper, Run, Shaped, Shaper
+
+HANGING = frozenset(" \t\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2008\u2009\u200a\u200b\u205f\u3000")
+"""Spaces that a line broken at ``width`` leaves out at its end."""
+
+SOFT_HYPHEN, HYPHENS = "\u00ad", "\u2010-"
+"""A line that ends after the first shows the first of the others that its font has."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Glyphs of one run in a line."""
+
+    run: Run
+    glyphs: Shaped
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of a paragraph: characters ``start`` to ``stop``, and pieces in visual order."""
+
+    start: int
+    stop: int
+    pieces: tuple[Piece, ...]
+    last: bool
+
+
+class Paragraph:
+    """A paragraph of a text.
+
+    Attributes:
+        text: its characters. base: its level.
+        missing: characters without a glyph.
+    """
+
+    def __init__(self, text: str, shapers: Sequence[Shaper], setting: Setting, origin: int) -> None:
+        self.text, self._shapers, self._setting, self._origin = text, shapers, setting, origin
+        self.codes = np.frombuffer(text.encode("utf-32-le"), dtype=np.uint32).tolist()
+        if "\t" in text:
+            self.codes = [0x20 if code == 9 else code for code in self.codes]
+        self.missing: list[str] = []
+        self.runs = self._runs()
+        self.shaped = [self._shape(self.codes, run) for run in self.runs]
+
+    def lines(self, width: float | None) -> Iterator[Line]:
+        """The lines: one, or as many as are needed for lines of that width."""
+        if width is None or not self.text:
+            yield self._line(0, len(self.text), True)
+            return
+        at = 0
+        while at < len(self.text):
+            line, at = self._fitting(at, width)
+            yield line
+
+    def _runs(self) -> list[Run]:
+        text, setting = self.text, self._setting
+        base = {"ltr": 0, "rtl": 1}.get(setting.direction or "")
+        if setting.stacked:
+            self.base, levels = int(setting.direction == "btt"), [int(setting.direction == "btt")] * len(text)
+        else:
+            self.base, levels = embedding_levels(text, 0 if setting.vertical and base is None else base)
+        scripts = [setting.script] * len(text) if setting.script else scripts_of(text)
+        fonts = self._fonts()
+        if setting.stacked:
+            upright = [True] * len(text)
+        elif setting.vertical:
+            upright = upright_in_columns(text, self._clusters.tolist())
+        else:
+            upright = [False] * len(text)
+        runs, start = [], 0
+        traits = list(zip(fonts, scripts, levels, upright, strict=True))
+        for i in range(1, len(text) + 1):
+            if i == len(text) or traits[i] != traits[start]:
+                runs.append(Run(start, i, *traits[start]))
+                start = i
+        return runs
+
+    def _fonts(self) -> list[int]:
+        """Which font each character is of: by grapheme cluster, the first that has all of it, or has its beginning."""
+        shapers, text = self._shapers, self.text
+        if all(shapers[0].has(character) for character in set(text)):
+            return [0] * len(text)
+        found, known = [0] * len(text), dict[str, int]()
+        ends = self._clusters.tolist()
+        for a, b in zip(ends, ends[1:], strict=False):
+            cluster = text[a:b]
+            if cluster not in known:
+                whole = (k for k, shaper in enumerate(shapers) if shaper.has(cluster))
+                begun = (k for k, shaper in enumerate(shapers) if shaper.has(cluster[0]))
+                known[cluster] = k = next(whole, next(begun, 0))
+                self.missing += shapers[k].lacking(cluster)
+            found[a:b] = [known[cluster]] * (b - a)
+        return found
+
+    @cached_property
+    def _clusters(self) -> IntArray:
+        return clusters(self.text)
+
+    def _shape(self, codes: Sequence[int], run: Run) -> Shaped:
+        shaper = self._shapers[run.font]
+        if isinstance(shaper, HarfBuzzShaper):
+            shaper.origin = self._origin
+        backward = run.level % 2
+        if run.upright:
+            return shaper.shape(codes, run, "btt" if backward else "ttb")
+        glyphs = shaper.shape(codes, run, "rtl" if backward else "ltr")
+        if not self._setting.vertical:
+            return glyphs
+        # Turned clockwise, with the middle between ascender and descender of the first font on the column's centre.
+        metrics = self._shapers[0].source.metrics
+        turned = glyphs.offset[:, ::-1] * [1.0, -1.0] - [(metrics.ascender + metrics.descender) / 2, 0.0]
+        return replace(glyphs, advance=glyphs.advance[:, ::-1] * [1.0, -1.0], offset=turned)
+
+    def _along(self, advances: FloatArray) -> FloatArray:
+        """(n,) what advances (n, 2) are along a line."""
+        return -advances[:, 1] if self._setting.vertical else advances[:, 0]
+
+    def length(self, line: Line) -> float:
+        """The length of a line's glyphs."""
+        return float(sum(self._along(piece.glyphs.advance).sum() for piece in line.pieces))
+
+    @cached_property
+    def _ends(self) -> FloatArray:
+        """(n + 1,) length of the text before each character, where the whole paragraph is one line."""
+        by_character = np.zeros(len(self.text))
+        for glyphs in self.shaped:
+            np.add.at(by_character, glyphs.cluster, self._along(glyphs.advance))
+        return np.concatenate([[0.0], np.cumsum(by_character)])
+
+    @cached_property
+    def _breaks(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """(k,) where lines may end, where what is seen of them ends, and the length of the text before that."""
+        text, places = self.text, line_ends(self.text)
+        hanging = np.array([character in HANGING for character in text])
+        last_seen = np.maximum.accumulate(np.where(hanging, 0, np.arange(1, len(text) + 1)))
+        seen = np.concatenate([[0], last_seen])[places]
+        lengths = self._ends[seen]
+        if SOFT_HYPHEN in text:
+            soft = [k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)]
+            for k in soft:
+                alone = self._shape([self._hyphen(seen[k])], replace(self._run_of(seen[k] - 1), start=0, stop=1))
+                lengths[k] += self._along(alone.advance).sum()
+        return places, seen, np.maximum.accumulate(lengths)
+
+    def _fitting(self, at: int, width: float) -> tuple[Line, int]:
+        """The longest line from a place on that is not longer than ``width``, and where the next begins."""
+        places, seen, lengths = self._breaks
+        first = int(np.searchsorted(places, at, side="right"))
+        fits = width + self._ends[at] + 1e-6
+        for k in range(int(np.searchsorted(lengths, fits, side="right")) - 1, first - 1, -1):
+            line = self._line(at, max(int(seen[k]), at), k == len(places) - 1)
+            if self.length(line) <= width + 1e-6:
+                return line, int(places[k])
+        # No place to break: between grapheme clusters, at least one to a line.
+        ends = self._clusters[self._clusters > at]
+        ends = ends[ends <= places[first]]
+        count = max(int(np.searchsorted(self._ends[ends], fits, side="right")), 1)
+        while True:
+            stop = int(ends[count - 1])
+            line = self._line(at, min(stop, int(max(seen[first], at + 1))), stop == len(self.text))
+            if count == 1 or self.length(line) <= width + 1e-6:
+                return line, stop
+            count -= 1
+
+    def _line(self, start: int, stop: int, last: bool) -> Line:
+        """The characters from ``start`` up to ``stop`` as a line; what cutting changes is shaped again."""
+        inside = [k for k, run in enumerate(self.runs) if run.start < stop and run.stop > start]
+        codes = self.codes
+        if not last and stop > start and self.text[stop - 1] == SOFT_HYPHEN:
+            codes = [*self.codes[:start], *self.codes[start : stop - 1], self._hyphen(stop), *self.codes[stop:]]
+        order = visual_order([self.runs[k].level for k in inside])
+        pieces = []
+        for k in (inside[i] for i in order):
+            run, glyphs = self.runs[k], self.shaped[k]
+            part = replace(run, start=max(run.start, start), stop=min(run.stop, stop))
+            hyphenated = codes is not self.codes and part.stop == stop
+            cuts = [place for place in (part.start, part.stop) if run.start < place < run.stop]
+            if hyphenated or not all(glyphs.may_be_cut(place) for place in cuts):
+                glyphs = self._shape(codes, part)
+            elif cuts:
+                glyphs = glyphs.part(part.start, part.stop)
+            pieces.append(Piece(part, glyphs))
+        return Line(start, stop, tuple(pieces), last)
+
+    def _run_of(self, place: int) -> Run:
+        return next(run for run in self.runs if run.start <= place < run.stop)
+
+    def _hyphen(self, stop: int) -> int:
+        """The code point shown for the soft hyphen before ``stop``."""
+        shaper = self._shapers[self._run_of(stop - 1).font]
+        return ord(next((hyphen for hyphen in HYPHENS if shaper.has(hyphen)), SOFT_HYPHEN))

@@ -1,0 +1,188 @@
+"""A piece of text becomes glyphs: by HarfBuzz, or character by character where a source has no tables for that."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from unicodedata import category, normalize
+
+import numpy as np
+import uharfbuzz as hb
+
+from ..readers import Source
+from ..types import BoolArray, FloatArray, IntArray
+from .features import Feature, for_buffer
+
+CONTEXT = 8
+"""Characters before and after a run that HarfBuzz sees; it looks at five."""
+
+UNSAFE = int(hb.GlyphFlags.UNSAFE_TO_BREAK)
+
+SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
+"""What HarfBuzz makes of the space where a font lacks it."""
+
+DRAWN_FORMATS = frozenset("\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u0890\u0891\u08e2\U000110bd\U000110cd")
+"""Format characters that have a glyph."""
+
+IGNORED = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u180b\u180c\u180d\u180f\u3164\uffa0")
+"""Characters that are not drawn where a font lacks them, beside format characters and variation selectors."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Characters of a paragraph, ``start`` to ``stop``, that are shaped together.
+
+    Attributes:
+        font: which of the fonts. script: by ISO 15924. level: of embedding; odd where text runs from right to left.
+        upright: in a vertical line: not turned.
+    """
+
+    start: int
+    stop: int
+    font: int
+    script: str
+    level: int
+    upright: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Shaped:
+    """n glyphs in visual order, in units of the first font's em, as they stand on the page.
+
+    Attributes:
+        gid: (n,). cluster: (n,) number in the paragraph of the first character that a glyph stands for.
+        advance: (n, 2) by which a glyph moves the pen. offset: (n, 2) of its origin from the pen.
+        unsafe: (n,) whether text that is cut before the glyph's cluster has to be shaped again.
+    """
+
+    gid: IntArray
+    cluster: IntArray
+    advance: FloatArray
+    offset: FloatArray
+    unsafe: BoolArray
+
+    @cached_property
+    def rising(self) -> bool:
+        """Whether clusters rise from left to right."""
+        return len(self.cluster) < 2 or bool(self.cluster[0] <= self.cluster[-1])
+
+    def part(self, first: int, last: int) -> Shaped:
+        """The glyphs of the characters from ``first`` up to ``last``."""
+        if self.rising:
+            a, b = np.searchsorted(self.cluster, [first, last]).tolist()
+        else:
+            a, b = np.searchsorted(-self.cluster, [1 - last, 1 - first]).tolist()
+        return Shaped(self.gid[a:b], self.cluster[a:b], self.advance[a:b], self.offset[a:b], self.unsafe[a:b])
+
+    def may_be_cut(self, place: int) -> bool:
+        """Whether the glyphs before and after a character's place are those of both texts shaped by themselves."""
+        if self.rising:
+            a, b = np.searchsorted(self.cluster, [place, place + 1]).tolist()
+        else:
+            a, b = np.searchsorted(-self.cluster, [-place, 1 - place]).tolist()
+        return b > a and not bool(self.unsafe[a:b].any())
+
+
+class Shaper(ABC):
+    """A font that shapes text.
+
+    Attributes:
+        source: the font. scale: em of the first font per em of this.
+    """
+
+    def __init__(self, source: Source, scale: float) -> None:
+        self.source, self.scale = source, scale
+
+    @abstractmethod
+    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+        """Shape a run.
+
+        Args:
+            codes: of the paragraph. run: what of it. direction: "ltr", "rtl", "ttb" or "btt".
+
+        Returns:
+            Glyphs along a horizontal line, or, for "ttb" and "btt", a vertical one.
+        """
+
+    def has(self, cluster: str) -> bool:
+        """Whether the font has glyphs for all of a grapheme cluster, as it is, composed or decomposed."""
+        forms = (cluster, normalize("NFC", cluster), normalize("NFD", cluster))
+        return any(all(self._has(character) for character in form) for form in forms)
+
+    def lacking(self, cluster: str) -> list[str]:
+        """The characters of a grapheme cluster that have no glyph."""
+        return [] if self.has(cluster) else [character for character in cluster if not self.has(character)]
+
+    def _has(self, character: str) -> bool:
+        return ord(character) in self.source.cmap
+
+
+class HarfBuzzShaper(Shaper):
+    """A font file, shaped by HarfBuzz with its own font object at the font's location."""
+
+    def __init__(self, source: Source, scale: float, language: str | None, features: Sequence[Feature]) -> None:
+        super().__init__(source, scale)
+        self._language, self._features = language, features
+        self._buffer = hb.Buffer()
+
+    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+        first, last = max(run.start - CONTEXT, 0), min(run.stop + CONTEXT, len(codes))
+        buffer = self._buffer
+        buffer.reset()
+        buffer.add_codepoints(codes[first:last], run.start - first, run.stop - run.start)
+        buffer.direction, buffer.script = direction, run.script
+        if self._language:
+            buffer.language = self._language
+        flags = hb.BufferFlags.BOT if run.start == 0 else hb.BufferFlags.DEFAULT
+        buffer.flags = flags | hb.BufferFlags.EOT if run.stop == len(codes) else flags
+        hb.shape(self.source.shaper, buffer, for_buffer(self._features, self.origin + first))
+        infos, n = buffer.glyph_infos, len(buffer.glyph_infos)
+        numbers = np.array([(info.codepoint, info.cluster, info.flags) for info in infos], dtype=np.int64).reshape(n, 3)
+        positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(n, 4) * self.scale
+        unsafe: BoolArray = (numbers[:, 2] & UNSAFE) != 0
+        return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2], unsafe)
+
+    origin = 0
+    """Number in the text of the first character of the paragraph: ranges of features are in the text."""
+
+    def _has(self, character: str) -> bool:
+        return (
+            super()._has(character)
+            or (character in SPACES and 0x20 in self.source.cmap)
+            or (character == "\u2011" and 0x2010 in self.source.cmap)
+            or character in IGNORED
+            or 0xFE00 <= ord(character) < 0xFE10
+            or 0xE0000 <= ord(character) < 0xE1000
+            or (category(character) == "Cf" and character not in DRAWN_FORMATS)
+        )
+
+
+class PlainShaper(Shaper):
+    """A source without tables for shaping, such as a UFO: a glyph a character, one after the other."""
+
+    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+        own = [self._glyph(codes[i]) for i in range(run.start, run.stop)]
+        found = [(i, gid) for i, gid in enumerate(own, run.start) if gid >= 0]
+        placed = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
+        advance = np.zeros((len(placed), 2))
+        advance[:, 0] = [self._advances[gid] * self.scale for gid in placed[:, 1].tolist()]
+        return Shaped(placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_))
+
+    def prepare(self, text: str) -> None:
+        """Read the advances of all glyphs of a text."""
+        gids = sorted({self._glyph(ord(character)) for character in text} - {-1})
+        outlines = self.source.outlines(gids, errors="return")
+        self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
+
+    def _glyph(self, code: int) -> int:
+        name = self.source.cmap.get(code) or (self.source.cmap.get(0x20) if chr(code) in SPACES else None) or ".notdef"
+        return self._gids.get(name, -1)
+
+    def _has(self, character: str) -> bool:
+        return super()._has(character) or (character in SPACES and 0x20 in self.source.cmap)
+
+    @cached_property
+    def _gids(self) -> dict[str, int]:
+        return {name: gid for gid, name in enumerate(self.source.glyph_names)}
