@@ -62,9 +62,7 @@ def along(
         OptionError: an argument out of range.
 
     Example:
-        >>> from glyphspline.layout.path import Path
-        >>> path = Path.of([[0, 0], [3000, 3000]])
-        >>> # along(layout, path, align="center")
+        EXAMPLE
     """
     path, letters, start = laid(layout, path, offset, align, side)
     if not len(layout):
@@ -108,8 +106,7 @@ def laid(layout: Layout, path: Path, offset: float, align: Align, side: Side) ->
     ink = np.array([not layout.text[k : k + 1].isspace() for k in letters.character.tolist()])
     middle = letters.middle
     if path.closed:
-        first = middle[ink].min(initial=np.inf)
-        out = ink & (middle - first >= path.length * (1 + ROUNDING))
+        out = ink & (letters.right - letters.left[ink].min(initial=np.inf) > path.length * (1 + ROUNDING))
     else:
         out = ink & (np.abs(start + middle - path.length / 2) > path.length * (0.5 + ROUNDING))
     if out.any():

@@ -1,0 +1,452 @@
+"""Text bent along a path: its outlines deformed so that its baseline becomes the path, within a proven tolerance."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+
+from ..curves.bezier import cross, derivative_points, split
+from ..errors import GlyphsplineError, is_positive, require
+from ..outlines.outline import Contour, Outline
+from ..types import BoolArray, FloatArray, IntArray
+from .along_path import Align, Letters, Side, laid
+from .path import SMOOTH, Path
+from .placed import Layout
+
+SHARE = 0.1
+"""Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
+
+STEPS = 32
+"""Even steps of a segment's parameter between the places where the distance is measured."""
+
+ROUNDS = 5
+"""Least-squares fits of the two handles, each followed by new parameters of the nearest points."""
+
+ROUNDING_RADIUS = 4.0
+"""Small kinks of the path are rounded by a radius of so many heights of the text."""
+
+VISIBLE = 1e-4
+"""Radians by which a jump of the path's curvature may turn a line of the text without being kept as a joint."""
+
+MOST_PIECES = 512
+"""Pieces of one segment. Next to a fold the bound asks for more and more."""
+
+
+class Bounds(NamedTuple):
+    """Largest values over the parts of a path: of curvature, and of its derivative by arc length.
+
+    Attributes:
+        ends: (n + 1,) arc lengths between parts. tables: (levels, n, 2) the two maxima over 2^level parts.
+        joints: (j,) arc lengths of smooth joints. jumps, turns: (j + 1,) sums of the jumps of the curvature and of
+            the turns before each.
+    """
+
+    ends: FloatArray
+    tables: FloatArray
+    joints: FloatArray
+    jumps: FloatArray
+    turns: FloatArray
+
+    def over(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Curvature, its derivative, its jumps and the turns between pairs of arc lengths, each (k,)."""
+        n = len(self.ends) - 1
+        first = np.clip(np.searchsorted(self.ends, low, side="right") - 1, 0, n - 1)
+        last = np.clip(np.searchsorted(self.ends, high, side="left") - 1, first, n - 1)
+        level = np.frexp(last - first + 1)[1] - 1
+        most = np.maximum(self.tables[level, first], self.tables[level, last + 1 - (1 << level)])
+        a, b = np.searchsorted(self.joints, low, side="left"), np.searchsorted(self.joints, high, side="right")
+        return most[:, 0], most[:, 1], self.jumps[b] - self.jumps[a], self.turns[b] - self.turns[a]
+
+
+def bend(
+    layout: Layout,
+    path: Path,
+    tolerance: float,
+    *,
+    offset: float = 0.0,
+    align: Align = "start",
+    side: Side = "left",
+) -> Outline:
+    """Deform the outlines of a line of text so that its baseline becomes the path.
+
+    The point (x, y) of the line goes to P(s) + y N(s), where s is the arc length that x comes to, P the path and N its
+    normal to the left: vertical lines stay straight, horizontal ones run parallel to the path.
+
+    Each segment becomes one cubic or more. Their ends and tangents are exact, so smooth joints stay smooth and corners
+    stay corners; the handles are fitted by least squares. Small kinks of the path are rounded first, by
+    :meth:`.Path.rounded`. Where the path's curvature jumps, a slanted line gets a corner, as the map has it.
+
+    The distance to the deformed outline is bounded: at 33 places of a cubic it is measured, and between them it is
+    larger by no more than an eighth of the step's square times the largest second derivative, which follows from
+    bounds of the path's curvature and of its derivative.
+
+    Args:
+        layout: of one horizontal line. path: in font units. tolerance: two-sided distance allowed, in font units.
+        offset, align, side: as for :func:`.along`.
+
+    Returns:
+        The outline of the whole text, in the path's coordinates. ``snapped`` is the proven bound of its distance
+        from the deformed outline, so that :func:`.convert` keeps the rest of its tolerance for the fit.
+
+    Raises:
+        GlyphsplineError: as for :func:`.along`; the path has a corner under the text; or its radius is less than the
+            height of the text on its inner side, where outlines would fold over.
+        OptionError: an argument out of range.
+    """
+    require(is_positive(tolerance), "the tolerance of a bend is a positive distance", tolerance)
+    path, letters, start = laid(layout, path, offset, align, side)
+    flat = layout.outline()
+    cubics, degrees, contours = _segments(flat)
+    if not len(cubics):
+        return flat
+    height = float(np.abs(cubics[..., 1]).max())
+    smooth = path.rounded(ROUNDING_RADIUS * height) if height else path
+    line = _Line(smooth, layout.text, letters, start, smooth.length / path.length, cubics)
+    ends, turns, jumps = _joints(smooth, line.rounds)
+    corner = np.abs(turns) > SMOOTH
+    line.refuse_corners(ends[corner], turns[corner])
+    kept = corner | (np.abs(jumps) * height > VISIBLE)
+    bounds = _bounds(smooth, line.rounds, ends[~kept], turns[~kept], jumps[~kept])
+    cubics, parent = _cut(line.cubics, ends[kept])
+    pieces, order, bound = _fitted(line, cubics, bounds, np.sort(ends[kept]), tolerance)
+    parent = parent[order]
+    straight = (degrees[parent] == 1) & _straight(pieces)
+    found = []
+    for contour in np.unique(contours).tolist():
+        own = np.flatnonzero(contours[parent] == contour)
+        chosen = zip(pieces[own], straight[own].tolist(), strict=True)
+        found.append(Contour.from_segments([piece[[0, 3]] if is_line else piece for piece, is_line in chosen]))
+    notes = flat.notes
+    if smooth.moved > path.moved:
+        notes += (f"kinks of the path are rounded, which moves it by up to {smooth.moved - path.moved:.2g}",)
+    low, high = line.cubics[..., 0].min(), line.cubics[..., 0].max()
+    stretch = 1 + height * float(bounds.over(np.array([low]), np.array([high]))[0][0]) if flat.snapped else 1.0
+    bound += flat.snapped * stretch
+    return Outline(flat.name, flat.gid, flat.unicodes, flat.advance, found, flat.metrics, notes, bound)
+
+
+class _Line:
+    """A line of text on its path: its segments with x as arc length, and which letter is where.
+
+    Attributes:
+        path: without small kinks. cubics: (m, 4, 2) of all glyphs.
+        rounds: numbers of the periods of a closed path that the text lies on; (0,) for an open one.
+    """
+
+    def __init__(
+        self, path: Path, text: str, letters: Letters, start: float, scale: float, cubics: FloatArray
+    ) -> None:
+        self.path, self._text, self._letters = path, text, letters
+        self._start, self._scale = start, scale
+        self.cubics = cubics.copy()
+        self.cubics[..., 0] = (cubics[..., 0] + start) * scale
+        ends = np.array([self.cubics[..., 0].min(), self.cubics[..., 0].max()])
+        first, last = np.floor(ends / path.length).tolist()
+        self.rounds = np.arange(first, last + 1) if path.closed else np.zeros(1)
+
+    def letter(self, s: float) -> str:
+        """The letter at an arc length, for an error."""
+        k = int(np.abs(self._letters.middle - (s / self._scale - self._start)).argmin())
+        character = int(self._letters.character[k])
+        return repr(self._text[character : character + 1])
+
+    def refuse_corners(self, ends: FloatArray, turns: FloatArray) -> None:
+        """Raise a GlyphsplineError if an outline passes over one of the corners at these arc lengths."""
+        low, high = self.cubics[..., 0].min(axis=1), self.cubics[..., 0].max(axis=1)
+        for end, turn in zip(ends.tolist(), turns.tolist(), strict=True):
+            if ((low < end) & (high > end)).any():
+                raise GlyphsplineError(
+                    f"a corner of {np.degrees(abs(turn)):.3g} degrees at length {np.mod(end, self.path.length):.6g}, "
+                    f"under {self.letter(end)}; text bends along smooth paths only",
+                    font=self.path.name,
+                )
+
+    def fold(self, x: FloatArray, y: FloatArray, curvature: FloatArray) -> GlyphsplineError:
+        """The error of outlines that fold over at points (x, y) of the line, where the path bends too sharply."""
+        letters = dict.fromkeys([self.letter(s) for s in np.sort(x).tolist()])
+        worst = int((curvature * y).argmax())
+        where = np.mod(x[worst], self.path.length) if self.path.closed else x[worst]
+        return GlyphsplineError(
+            f"the path bends with a radius of {1 / abs(curvature[worst]):.4g} at length {where:.6g}, and the text "
+            f"reaches {abs(y[worst]):.4g} to that side: {', '.join(letters)} would fold over",
+            font=self.path.name,
+        )
+
+
+def _segments(flat: Outline) -> tuple[FloatArray, IntArray, IntArray]:
+    """The segments of some length as cubics (m, 4, 2), their degrees, and which contour each is of."""
+    from ..outlines.segments import all_cubics, lasting  # imports the compiler
+
+    cubics = all_cubics(flat.arrays)
+    kept = lasting(cubics)
+    contours = np.repeat(np.arange(flat.arrays.num_contours), np.diff(flat.arrays.offsets))
+    return cubics[kept], flat.arrays.degrees[kept], contours[kept]
+
+
+def _joints(path: Path, rounds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Joints of a path's segments in all rounds: arc lengths, turns of the tangent, jumps of the curvature.
+
+    The ends of an open path, where it goes on straight, are among them.
+    """
+    parts, turn, jump = path.joints
+    ends = path.table.ends[parts]
+    if not path.closed:
+        first, last = path.frame([0.0, path.length], [1, -1]).curvature.tolist()
+        ends, turn, jump = np.r_[0.0, ends, path.length], np.r_[0.0, turn, 0.0], np.r_[first, jump, -last]
+    n = len(rounds)
+    return (ends + path.length * rounds[:, None]).ravel(), np.tile(turn, n), np.tile(jump, n)
+
+
+def _bounds(path: Path, rounds: FloatArray, joints: FloatArray, turn: FloatArray, jump: FloatArray) -> Bounds:
+    """Bounds over all parts of the path's table, from the Bézier points of its derivatives p', q = p", r of orders 1-3.
+
+    With m ≤ |p'|: curvature is p' × q / |p'|³, and its derivative p' × r / |p'|⁴ - 3 (p' × q) (p' · q) / |p'|⁶.
+    """
+    cubics = path.table.cubics
+    d, e, third = derivative_points(cubics), derivative_points(cubics, 2), derivative_points(cubics, 3)
+    chord = cubics[:, 3] - cubics[:, 0]
+    chord = chord / np.hypot(*chord.T)[:, None]
+    least = np.maximum((d * chord[:, None]).sum(axis=2).min(axis=1), 0.0)
+    products = [  # Bézier coefficients of p' × q
+        cross(d[:, 0], e[:, 0]),
+        (cross(d[:, 0], e[:, 1]) + 2 * cross(d[:, 1], e[:, 0])) / 3,
+        (2 * cross(d[:, 1], e[:, 1]) + cross(d[:, 2], e[:, 0])) / 3,
+        cross(d[:, 2], e[:, 1]),
+    ]
+    turning = np.abs(products).max(axis=0)
+    second = np.hypot(e[..., 0], e[..., 1]).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        curvature = turning / least**3
+        slope = np.abs(cross(d, third)).max(axis=1) / least**4 + 3 * turning * second / least**5
+    most = np.where(least[:, None] > 0, np.stack([curvature, slope], axis=1), np.inf)
+    ends = path.table.ends
+    if path.closed:
+        most = np.tile(most, (len(rounds), 1))
+        ends = np.append((ends[:-1] + path.length * rounds[:, None]).ravel(), (rounds[-1] + 1) * path.length)
+    else:
+        most = np.concatenate([np.zeros((1, 2)), most, np.zeros((1, 2))])
+        ends = np.concatenate([[-np.inf], ends, [np.inf]])
+    tables = [most]
+    while 2 << (len(tables) - 1) <= len(most):
+        half, before = 1 << (len(tables) - 1), tables[-1]
+        tables.append(np.concatenate([np.maximum(before[:-half], before[half:]), before[-half:]]))
+    order = np.argsort(joints)
+    jumps, turns = (np.concatenate([[0.0], np.cumsum(np.abs(values[order]))]) for values in (jump, turn))
+    return Bounds(ends, np.array(tables), joints[order], jumps, turns)
+
+
+def _cut(cubics: FloatArray, places: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Cut cubics (m, 4, 2) where x is one of (k,) places; the parts in order, and which cubic each is of."""
+    low, high = cubics[..., 0].min(axis=1), cubics[..., 0].max(axis=1)
+    cuts: dict[int, list[float]] = {}
+    for place in places.tolist():
+        for k in np.flatnonzero((low < place) & (high > place)).tolist():
+            a, b, c, d = (cubics[k, :, 0] - place).tolist()
+            roots = np.roots([d - 3 * c + 3 * b - a, 3 * (c - 2 * b + a), 3 * (b - a), a])
+            real = roots.real[np.abs(roots.imag) < 1e-9]
+            cuts.setdefault(k, []).extend(real[(real > 1e-9) & (real < 1 - 1e-9)].tolist())
+    if not cuts:
+        return cubics, np.arange(len(cubics))
+    parent, first, last = [], [], []
+    for k in range(len(cubics)):
+        for a, b in pairwise([0.0, *sorted(cuts.get(k, ())), 1.0]):
+            if b - a > 1e-9:
+                parent.append(k)
+                first.append(a)
+                last.append(b)
+    of = np.array(parent)
+    return _sections(cubics[of], np.array(first), np.array(last)), of
+
+
+def _sections(cubics: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+    """The parts of cubics (k, 4, 2) between two parameters of each (k,)."""
+    right = split(cubics, first[:, None, None])[1]
+    return split(right, ((last - first) / (1 - first))[:, None, None])[0]
+
+
+def _fitted(
+    line: _Line, cubics: FloatArray, bounds: Bounds, breaks: FloatArray, tolerance: float
+) -> tuple[FloatArray, IntArray, float]:
+    """Cubics (k, 4, 2) within the tolerance of the deformed ones, which cubic each is of, and the largest bound.
+
+    A cubic is divided evenly into as few parts as will do.
+    """
+    middle = (cubics[..., 0].min(axis=1) + cubics[..., 0].max(axis=1)) / 2
+    between = np.searchsorted(breaks, middle)
+    walls = np.concatenate([[-np.inf], breaks, [np.inf]])
+    low, high = walls[between], walls[between + 1]
+    count, todo = np.ones(len(cubics), dtype=np.int64), np.arange(len(cubics))
+    pieces, parents, worst = [], [], 0.0
+    while len(todo):
+        of = np.repeat(todo, count[todo])
+        number = np.arange(len(of)) - np.repeat(np.cumsum(count[todo]) - count[todo], count[todo])
+        parts = _sections(cubics[of], number / count[of], (number + 1) / count[of])
+        fit, bound = _fit(line, parts, bounds, low[of], high[of])
+        most = np.zeros(len(cubics))
+        np.maximum.at(most, of, bound)
+        good = most[of] <= tolerance
+        pieces.append(fit[good])
+        parents.append(of[good])
+        worst = max(worst, float(bound[good].max(initial=0.0)))
+        todo = todo[most[todo] > tolerance]
+        more = np.minimum(0.9 * (most[todo] / tolerance) ** (1 / 6), 2.0) * count[todo]
+        count[todo] = np.maximum(np.ceil(more).astype(np.int64), count[todo] + 1)
+        if len(todo) and count[todo].max() > MOST_PIECES:
+            k = int(todo[count[todo].argmax()])
+            raise GlyphsplineError(
+                f"{line.letter(float(middle[k]))} cannot be bent within {tolerance:g}: "
+                "the path bends too sharply there, or the tolerance is too small",
+                font=line.path.name,
+            )
+    parent = np.concatenate(parents)
+    order = np.argsort(parent, kind="stable")
+    return np.concatenate(pieces)[order], parent[order], worst
+
+
+def _fit(
+    line: _Line, parts: FloatArray, bounds: Bounds, low: FloatArray, high: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """A cubic for each deformed one, (k, 4, 2), and a bound of their distance; infinite if it may fold over.
+
+    Args:
+        low, high: (k,) arc lengths between which a part lies, whatever its control points say.
+
+    Raises:
+        GlyphsplineError: one does fold over.
+    """
+    places = np.arange(2 * STEPS + 1) / (2 * STEPS)
+    d1, d2, d3 = derivative_points(parts), derivative_points(parts, 2), derivative_points(parts, 3)[:, 0]
+    x, y = np.moveaxis(_values(parts, places), -1, 0)
+    frame = line.path.frame(x)
+    T, kappa = frame.tangents, frame.curvature
+    N = np.stack([-T[..., 1], T[..., 0]], axis=-1)
+    shrink = 1 - kappa * y
+    if (shrink <= 0).any():
+        folded = shrink <= 0
+        raise line.fold(x[folded], y[folded], kappa[folded])
+    target = (frame.points + y[..., None] * N)[:, ::2]
+    pieces, at = _handles(target, _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3))
+
+    # Bounds over each part: of x, y and their derivatives, and of the path below it.
+    X1, Y1 = np.abs(d1).max(axis=1).T
+    X2, Y2 = np.abs(d2).max(axis=1).T
+    X3, Y3 = np.abs(d3).T
+    Y = np.abs(parts[..., 1]).max(axis=1)
+    left, right = np.maximum(parts[..., 0].min(axis=1), low), np.minimum(parts[..., 0].max(axis=1), high)
+    K0, K1, jumps, turns = bounds.over(left, right)
+    W, h = 1 + K0 * Y, 1 / STEPS
+    safe = shrink.min(axis=1) - h / 4 * (K1 * X1 * Y + K0 * Y1) - jumps * Y > 0
+
+    # The second derivative of the difference is A - κ' y x'² T: A at the middles, then the most that it changes.
+    middle = slice(1, None, 2)
+    x1, y1 = np.moveaxis(_values(d1, places[middle]), -1, 0)
+    x2, y2 = np.moveaxis(_values(d2, places[middle]), -1, 0)
+    Tm, Nm, km, wm = T[:, middle], N[:, middle], kappa[:, middle], shrink[:, middle]
+    rate, between = np.diff(at, axis=1) * STEPS, (at[:, 1:] + at[:, :-1]) / 2
+    c2, c3 = derivative_points(pieces, 2), derivative_points(pieces, 3)
+    A = (wm * x2 - 2 * km * x1 * y1)[..., None] * Tm + (y2 + wm * km * x1 * x1)[..., None] * Nm
+    A -= (c2[:, :1] + between[..., None] * c3) * (rate * rate)[..., None]
+    thirds = (wm * d3[:, None, 0])[..., None] * Tm + d3[:, None, 1:] * Nm - c3 * (rate**3)[..., None]
+    change = (K1 * X1 * Y + K0 * Y1) * (X2 + K0 * X1 * X1) + W * K0 * X1 * X2 + K0 * X1 * Y2
+    change += W * (K1 * X1**3 + 2 * K0 * X1 * X2 + K0 * K0 * X1**3)
+    change += 2 * (K1 * X1 * X1 * Y1 + K0 * (X2 * Y1 + X1 * Y2) + K0 * K0 * X1 * X1 * Y1)
+    change += h / 2 * ((K1 * X1 * Y + K0 * Y1 + W * K0 * X1) * X3 + K0 * X1 * Y3)
+    second = np.hypot(A[..., 0], A[..., 1]) + h / 2 * np.hypot(thirds[..., 0], thirds[..., 1])
+    bent = second.max(axis=1) + h / 2 * change + K1 * Y * X1 * X1
+    bent += jumps * ((1 + 2 * K0 * Y) * X1 * X1 + 2 * X1 * Y1 + Y * X2)
+    kinks = jumps * Y * X1 + turns * (W * X1 + Y1)
+    error = _pointwise(pieces, at) - target
+    bound = np.hypot(error[..., 0], error[..., 1]).max(axis=1) + h * h / 8 * bent + h / 4 * kinks + turns * Y
+    return pieces, np.where(safe & np.isfinite(bound), bound, np.inf)
+
+
+def _values(pieces: FloatArray, places: FloatArray) -> FloatArray:
+    """(k, p, 2) all pieces (k, degree + 1, 2) at the same places (p,)."""
+    d = pieces.shape[1] - 1
+    basis = np.stack([comb(d, j) * places**j * (1 - places) ** (d - j) for j in range(d + 1)])
+    return np.einsum("jp,kjc->kpc", basis, pieces)
+
+
+def _pointwise(pieces: FloatArray, at: FloatArray) -> FloatArray:
+    """(k, p, 2) each cubic at its own parameters (k, p)."""
+    z = 1 - at
+    basis = np.stack([z * z * z, 3 * z * z * at, 3 * z * at * at, at * at * at], axis=2)
+    return basis @ pieces
+
+
+def _mapped_arm(path: Path, parts: FloatArray, end: int) -> FloatArray:
+    """(k, 2) the first arm of each deformed cubic's control polygon, or the last: ``end`` is 0 or 3.
+
+    Where control points coincide with the end, it has the direction that the cubic has there.
+    """
+    here = parts[:, end]
+    arms = (parts - here[:, None])[:, [1, 2, 3] if end == 0 else [2, 1, 0]]
+    if end:
+        arms = -arms
+    long = np.abs(arms).max(axis=2) > 1e-9 * np.abs(arms).max(axis=(1, 2))[:, None]
+    arm = arms[np.arange(len(arms)), long.argmax(axis=1)]
+    forward = np.sign(arm[:, 0])
+    _, T, kappa = path.frame(here[:, 0], -forward if end else forward)
+    N = np.stack([-T[:, 1], T[:, 0]], axis=1)
+    return ((1 - kappa * here[:, 1]) * arm[:, 0])[:, None] * T + arm[:, 1:] * N
+
+
+def _handles(target: FloatArray, first: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Cubics (k, 4, 2) from the first to the last of (k, p, 2) points, near all by least squares.
+
+    Args:
+        first, last: (k, 2) the arms that the cubics have at first; only their lengths are changed.
+
+    Returns:
+        The cubics, and ascending parameters (k, p) of places near the points.
+    """
+    start, end = target[:, 0], target[:, -1]
+    at = np.tile(np.linspace(0, 1, target.shape[1]), (len(target), 1))
+    pieces = np.stack([start, start + first, end - last, end], axis=1)
+    best, best_at, least = pieces, at, _off(pieces, at, target)
+    for _ in range(ROUNDS):
+        z = 1 - at
+        b1, b2 = 3 * z * z * at, 3 * z * at * at
+        fixed = (z * z * z + b1)[..., None] * start[:, None] + (b2 + at * at * at)[..., None] * end[:, None]
+        u, v, rest = b1[..., None] * first[:, None], -b2[..., None] * last[:, None], target - fixed
+        uu, uv, vv, ur, vr = (
+            np.einsum("kpc,kpc->k", p, q) for p, q in ((u, u), (u, v), (v, v), (u, rest), (v, rest))
+        )
+        whole = uu * vv - uv * uv
+        good = whole > 1e-12 * uu * vv
+        whole = np.where(good, whole, 1.0)
+        alpha, beta = (ur * vv - vr * uv) / whole, (vr * uu - ur * uv) / whole
+        good &= (alpha > 0) & (beta > 0)
+        alpha, beta = np.where(good, alpha, 1.0)[:, None], np.where(good, beta, 1.0)[:, None]
+        pieces = np.stack([start, start + alpha * first, end - beta * last, end], axis=1)
+        d = derivative_points(pieces)
+        velocity = np.stack([z * z, 2 * z * at, at * at], axis=2) @ d
+        square = (velocity * velocity).sum(axis=2)
+        step = ((target - _pointwise(pieces, at)) * velocity).sum(axis=2) / np.where(square > 0, square, np.inf)
+        at = np.clip(at + step, 0.0, 1.0)
+        at[:, 0], at[:, -1] = 0.0, 1.0
+        at = np.maximum.accumulate(at, axis=1)
+        off = _off(pieces, at, target)
+        better = off < least
+        best = np.where(better[:, None, None], pieces, best)
+        best_at, least = np.where(better[:, None], at, best_at), np.where(better, off, least)
+    return best, best_at
+
+
+def _off(pieces: FloatArray, at: FloatArray, target: FloatArray) -> FloatArray:
+    """(k,) the square of the largest distance of each cubic at its parameters from the points."""
+    return ((_pointwise(pieces, at) - target) ** 2).sum(axis=2).max(axis=1)
+
+
+def _straight(pieces: FloatArray) -> BoolArray:
+    """(k,) whether all control points lie on the chord, in order."""
+    chord = pieces[:, 3] - pieces[:, 0]
+    arms = pieces[:, 1:3] - pieces[:, :1]
+    square = (chord * chord).sum(axis=1)
+    off = np.abs(cross(chord[:, None], arms)).max(axis=1)
+    share = (arms * chord[:, None]).sum(axis=2)
+    ordered = (share[:, 0] >= 0) & (share[:, 0] <= share[:, 1]) & (share[:, 1] <= square)
+    return (off <= 1e-9 * square) & ordered
