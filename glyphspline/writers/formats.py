@@ -218,6 +218,30 @@ def _curvature_pdf(result: GlyphResult, settings: Settings) -> bytes:
     return map_image(result, "pdf")
 
 
+def _json(result: GlyphResult, settings: Settings) -> str:
+    from .json_file import json_text
+
+    return json_text(result, settings)
+
+
+def _polyline(result: GlyphResult, settings: Settings) -> str:
+    from .polyline_files import polyline_json
+
+    return polyline_json(result, settings)
+
+
+def _polyline_csv(result: GlyphResult, settings: Settings) -> str:
+    from .polyline_files import polyline_csv
+
+    return polyline_csv(result, settings)
+
+
+def _polyline_scad(result: GlyphResult, settings: Settings) -> str:
+    from .polyline_files import polyline_scad
+
+    return polyline_scad(result, settings)
+
+
 OURS = _by_name([
     Format("source", ".svg", _source, fitted=False),
     Format("svg", ".svg", _svg),
@@ -226,5 +250,9 @@ OURS = _by_name([
     Format("pdf", ".pdf", _pdf),
     Format("curvature-png", ".png", _curvature_png),
     Format("curvature-pdf", ".pdf", _curvature_pdf),
+    Format("json", ".json", _json),
+    Format("polyline", ".json", _polyline),
+    Format("polyline-csv", ".csv", _polyline_csv),
+    Format("polyline-scad", ".scad", _polyline_scad),
 ])  # fmt: skip
 """Our formats by name, in the order in which a run writes and lists them."""
