@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
+    from .writers.dxf import to_dxf as to_dxf
     from .writers.font.font_file import write_font as write_font
     from .writers.parquet import write_table as write_table
     from .writers.svg.curvature_map import to_curvature_svg as to_curvature_svg
@@ -42,6 +43,7 @@ _ON_DEMAND = {
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
+    "to_dxf": ".writers.dxf",
     "to_svg": ".writers.svg.document",
     "write_font": ".writers.font.font_file",
     "write_table": ".writers.parquet",
@@ -106,6 +108,7 @@ __all__ = [
     "plot",
     "sample",
     "to_curvature_svg",
+    "to_dxf",
     "to_svg",
     "write_font",
     "write_table",
