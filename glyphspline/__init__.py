@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
+    from .writers.dxf import to_dxf as to_dxf
     from .writers.font.font_file import write_font as write_font
     from .writers.json_file import to_json as to_json
     from .writers.parquet import write_table as write_table
@@ -47,6 +48,7 @@ _ON_DEMAND = {
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
+    "to_dxf": ".writers.dxf",
     "to_json": ".writers.json_file",
     "to_polylines": ".writers.polyline_files",
     "to_svg": ".writers.svg.document",
@@ -115,6 +117,7 @@ __all__ = [
     "plot",
     "sample",
     "to_curvature_svg",
+    "to_dxf",
     "to_json",
     "to_polylines",
     "to_svg",

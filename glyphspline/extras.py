@@ -10,6 +10,7 @@ from .errors import GlyphsplineError
 
 EXTRAS = {
     "overlaps": ("removing overlaps", "pathops"),
+    "cad": ("DXF", "ezdxf"),
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),
     "cluster": ("--scheduler", "distributed"),

@@ -193,9 +193,9 @@ class Drawn:
             em = layout.fonts[0].metrics.units_per_em
             place["offset"] = length("offset", given["offset"], em, look) or 0.0
             if given["bend"]:
-                from ..layout.bent import bend, bent_tolerance
+                from ..layout.bent import SHARE, bend
 
-                self.bent = bend(layout, path, bent_tolerance(self.options.tolerance_for(em)), **place)
+                self.bent = bend(layout, path, SHARE * self.options.tolerance_for(em), **place)
             else:
                 from ..layout.along_path import along
 

@@ -189,6 +189,38 @@ class Spline:
             (pen.qCurveTo if self.degree == 2 else pen.curveTo)(*piece[1:])
         (pen.closePath if self.closed else pen.endPath)()
 
+    def clamped(self) -> Spline:
+        """The same curve as an open spline whose ends meet, as programs without periodic splines read it.
+
+        The first knot is inserted at both ends until it has multiplicity degree + 1 there: no point of the curve moves,
+        and all derivatives agree across the ends as before. Only ``degree - 1`` control points at either end are new.
+        An open spline is returned as it is.
+
+        Example:
+            >>> from glyphspline import Spline
+            >>> clamped = Spline([[0, 0], [1, 0], [1, 1], [0, 1]], [0, 1, 2, 3, 4]).clamped()
+            >>> clamped
+            <Spline: open, degree 3, 7 control points, t from 0 to 4>
+            >>> clamped.control_points[[0, -1]].round(3).tolist()  # both where t = 0
+            [[0.167, 0.167], [0.167, 0.167]]
+        """
+        if not self.closed:
+            return self
+        d, n = self.degree, len(self.control_points)
+        target, own = full_knots(self.knots, d, False), self.full_knots
+        index = np.arange(n + d)
+        span = np.minimum(index, n - 1)  # one of those that control point i has a share in
+        blossom = self.control_points[self.span_controls[span]]
+        for r in range(1, d + 1):
+            x = target[index + r]
+            for i in range(d, r - 1, -1):
+                left, right = own[span + i], own[span + i + d + 1 - r]
+                weight = ((x - left) / (right - left))[:, None]
+                blossom[:, i] = (1 - weight) * blossom[:, i - 1] + weight * blossom[:, i]
+        controls = blossom[:, d]
+        controls[-1] = controls[0]
+        return Spline(controls, self.knots, d, closed=False)
+
     def to_scipy(self) -> Any:
         """The same curve as a ``scipy.interpolate.BSpline``, periodic if closed."""
         from scipy.interpolate import BSpline

@@ -38,9 +38,7 @@ class Letters(NamedTuple):
         return (self.left + self.right) / 2
 
 
-def along(
-    layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "start", side: Side = "left"
-) -> Layout:
+def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "start", side: Side = "left") -> Layout:
     """Put a line of text on a path, as SVG's ``textPath`` does.
 
     The middle of a letter's advance comes to the path at its arc length, and the letter is turned by the path's tangent

@@ -208,7 +208,9 @@ def _weak(sequence: Sequence[int], kinds: list[str], sos: str) -> None:
         kinds[i] = "R" if kinds[i] == "AL" else kinds[i]
     for a, i, b in zip(sequence, sequence[1:], sequence[2:], strict=False):  # W4
         around = kinds[a]
-        if around == kinds[b] and ((kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")):
+        if around == kinds[b] and (
+            (kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")
+        ):
             kinds[i] = around
     for numbers, group in groupby(sequence, lambda i: kinds[i] in ("ET", "EN")):  # W5
         those = list(group)

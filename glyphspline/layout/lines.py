@@ -38,7 +38,16 @@ def placed(text: str, fonts: tuple[Source, ...], setting: Setting) -> Layout:
     columns: list[tuple[FloatArray, ...]] = []
     for k, (paragraph, start, line), length in zip(count(), set_lines, lengths, strict=False):
         columns += _columns(k, paragraph, start, line, length, measure, height, shapers, setting)
-    empty = (np.empty(0), np.empty(0), np.empty(0), np.empty(0), np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(0))
+    empty = (
+        np.empty(0),
+        np.empty(0),
+        np.empty(0),
+        np.empty(0),
+        np.empty((0, 2)),
+        np.empty(0),
+        np.empty(0),
+        np.empty(0),
+    )
     font, gid, cluster, number, origin, angle, advance, scale = (
         np.concatenate(column) for column in zip(*(columns or [empty]), strict=True)
     )
@@ -116,7 +125,5 @@ def _columns(
         origin = ends - advance + glyphs.offset
         pen = ends[-1] if n else pen
         same = (np.full(n, run.font), np.full(n, number), np.full(n, angle), np.full(n, shapers[run.font].scale))
-        found.append(
-            (same[0], glyphs.gid, glyphs.cluster + start, same[1], origin, same[2], advance @ along, same[3])
-        )
+        found.append((same[0], glyphs.gid, glyphs.cluster + start, same[1], origin, same[2], advance @ along, same[3]))
     return found

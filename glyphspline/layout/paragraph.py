@@ -151,7 +151,9 @@ class Paragraph:
         seen = np.concatenate([[0], last_seen])[places]
         lengths = self._ends[seen]
         if SOFT_HYPHEN in text:
-            soft = [k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)]
+            soft = [
+                k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)
+            ]
             for k in soft:
                 alone = self._shape([self._hyphen(seen[k])], replace(self._run_of(seen[k] - 1), start=0, stop=1))
                 lengths[k] += self._along(alone.advance).sum()

@@ -144,7 +144,7 @@ class Layout:
             failed = next((found for found in (outline, result) if isinstance(found, GlyphsplineError)), None)
             if failed is not None or not isinstance(result, GlyphResult):
                 notes = (f"{LEFT_OUT}: {failed}",)
-                result = GlyphResult(replace(source, contours=()), options, notes)
+                result = GlyphResult(replace(source, contours=()), options, (), notes)
             elif source.notes or result.notes:
                 said = [f"glyph {source.name!r}: {note}" for note in (*source.notes, *result.notes)]
                 result = replace(result, outline=replace(source, notes=()), notes=tuple(said))

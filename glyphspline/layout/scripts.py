@@ -24,6 +24,7 @@ AC00-D7FB E000-FAD9 FE10-FE19 FE30-FE48 FE50-FE57 FE59-FE62 FE68-FE6B FF01-FF0C 
 """
 """The code points whose Vertical_Orientation is not R, in Unicode 15; gaps that no character is in are closed."""
 
+
 @lru_cache(maxsize=4096)
 def _script(character: str) -> tuple[str, frozenset[str]]:
     """The script of a character, and the scripts it is used with; none for what is used with all."""

@@ -168,7 +168,9 @@ class PlainShaper(Shaper):
         placed = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
         advance = np.zeros((len(placed), 2))
         advance[:, 0] = [self._advances[gid] * self.scale for gid in placed[:, 1].tolist()]
-        return Shaped(placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_))
+        return Shaped(
+            placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_)
+        )
 
     def prepare(self, text: str) -> None:
         """Read the advances of all glyphs of a text."""
