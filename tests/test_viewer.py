@@ -221,6 +221,18 @@ def test_a_variable_glyph_is_sent_in_all_masters(variable: TestClient) -> None:
     assert words[words.index("--axis") + 1] == "wght"
 
 
+def test_a_line_of_text_is_drawn_with_the_options_of_the_glyph(client: TestClient) -> None:
+    found = client.post("/api/text", json=STATE | {"text": "gA龍x"}).json()
+    assert found["svg"].count("<use ") == 4
+    assert found["notes"] == ["no glyph for x"]
+    path = re.search(r'<path id="font-0-g\d+-A" d="([^"]*)"', found["svg"])
+    name = gs.open_font(FONTS / "kouzan-gyosho.ttf").cmap[ord("A")]
+    assert path
+    assert path[1] == client.post("/api/glyph", json=STATE | {"glyph": name}).json()["result"]
+    assert "error" in client.post("/api/text", json=STATE | {"text": "a" * 501}).json()
+    assert "at least one" in client.post("/api/text", json=STATE | {"text": ""}).json()["error"]
+
+
 def test_masters_are_of_variable_fonts(client: TestClient) -> None:
     answer = client.post("/api/masters", json=STATE | {"sampling": "tolerance", "amount": 1, "corners": "sharp"})
     assert answer.status_code == 400

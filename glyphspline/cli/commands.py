@@ -150,6 +150,8 @@ def text(
     corner_angle: opt.CornerAngle = Options.corner_angle,
     continuity: opt.Between = Options.continuity,
     tolerance: opt.Tolerance = Options.tolerance,
+    step: opt.Step = Options.step,
+    count: opt.Count = Options.count,
     effort: opt.HowHard = Options.effort,
     remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
     format_name: opt.FormatName = None,

@@ -303,3 +303,21 @@ def test_the_page_mixes_masters_as_the_font_does(along: Any) -> None:
         {"wght": 650, "wdth": 30},
     )
     assert distance < 0.1
+
+
+def test_a_text_is_drawn_and_its_glyphs_are_chosen(shown: Any) -> None:
+    shown.fill("#text", "gA龍")
+    uses = shown.locator("#text-line use")
+    expect(uses).to_have_count(3)
+    rests(shown)
+    before = shown.locator("#text-line").inner_html()
+    changes(shown, uses.nth(1).click)
+    assert shown.locator("#title").inner_text().startswith("A")
+    expect(shown.locator("#text-line use.chosen")).to_have_count(1)
+    changes(shown, lambda: shown.locator("#amount").fill("95"))
+    assert shown.locator("#text-line").inner_html() != before
+    with shown.expect_download() as saved:
+        shown.locator("#save-text").click()
+    assert saved.value.suggested_filename == "text.svg"
+    shown.fill("#text", "")
+    expect(shown.locator("#text-line")).to_be_hidden()
