@@ -14,7 +14,8 @@ import numpy as np
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import Masters
 from ..types import FloatArray
-from .axis_kinks import Glyphs, joint_controls, kinks, turns_of
+from .axis_kinks import Glyphs, joint_controls, kinks
+from .between_ticks import turns_of
 from .columns import Measured
 from .joints import CHANCE
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
