@@ -213,12 +213,16 @@ def kinks(
     """
     tags = tags_of(source, axis)
     require(is_positive(corner_angle, 180), "corner_angle is above 0 and up to 180 degrees", corner_angle)
-    chosen = [k for k, tag in enumerate(tags) if axis in (None, tag)]
+    return kinks_along(source, glyphs, [k for k, tag in enumerate(tags) if axis in (None, tag)], corner_angle)
+
+
+def kinks_along(source: Source, glyphs: Iterable[str] | None, chosen: Sequence[int], corner_angle: float) -> KinkReport:
+    """As :func:`kinks`, along the ``chosen`` of the source's axes, by their numbers."""
     parts: list[list[_Measured]] = [[] for _ in chosen]
     names: list[tuple[str, int]] = []
     failed: list[tuple[str, str]] = []
     axes: tuple[DesignAxis, ...] = source.axes
-    base: FloatArray = np.zeros(len(tags))
+    base: FloatArray = np.zeros(len(axes))
     for masters in _batches(source, source.glyph_names if glyphs is None else glyphs, failed):
         axes, base = masters[0].axes, masters[0].normalised(source.location)
         joints = [_Joints(item, corner_angle) for item in masters]

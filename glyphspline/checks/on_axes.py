@@ -14,7 +14,7 @@ import numpy as np
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import Masters
 from ..types import FloatArray
-from .axis_kinks import Glyphs, joint_controls, kinks
+from .axis_kinks import Glyphs, joint_controls, kinks_along
 from .between_ticks import turns_of
 from .columns import Measured
 from .joints import CHANCE
@@ -106,9 +106,7 @@ def _turns(
     """Turns of smooth joints that count, along axes and in masters off them; and which joints are smooth."""
     source, found, smooth = Glyphs(glyphs, location), list[_Turn](), set[tuple[int, int, int]]()
     controls = [[joint_controls(contour) for contour in masters.contours] for masters in glyphs]
-    along_axes = kinks(source, corner_angle=thresholds.corner_angle)
-    for axis in axes:
-        along = along_axes[axis]
+    for along in kinks_along(source, None, axes, thresholds.corner_angle):
         smooth.update(map(tuple, along.joints.tolist()))
         count = int((along.turns >= thresholds.kink).sum())
         for kink, (g, contour, joint) in zip(along[:count], along.joints[:count].tolist(), strict=True):
