@@ -215,7 +215,7 @@ def test_a_joint_that_is_a_corner_in_a_master_does_not_kink() -> None:
         glyph = Masters(
             "k", 0, axes=masters.axes, regions=np.array([[[0.0, 1.0, 1.0]]]), contours=[contour], advances=np.ones(2)
         )
-        rows = on_axes([glyph], {}, [masters.axes[0].tag], 4, Thresholds())
+        rows, _ = on_axes([glyph], {}, [masters.axes[0].tag], 4, Thresholds())
         assert ((rows.kinds == 0) & (rows.segments == 0)).sum() == number
 
 

@@ -18,6 +18,7 @@ from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
+from .axis_numbers import AxisNumbers
 from .between_ticks import largest_jumps, largest_turns, turns_of
 
 PROFILE = 96
@@ -149,6 +150,19 @@ class AxisKinks(Sequence[Kink]):
             float(self.turns[index]), self._location(x), (self.axis.user(x0), self.axis.user(x1)),
             tuple((self.axis.user(float(value)), float(turn)) for value, turn in zip(at, turns, strict=True)),
             float(self.made[index]), float(self.jumps[index]), self._location(jump_x),
+        )  # fmt: skip
+
+    def numbers_of(self, glyph: int) -> AxisNumbers:
+        """The joints of one glyph, by its number, in numbers."""
+        own = np.flatnonzero(self._rows[:, 0] == glyph)
+        at = [0.0, *(self._masters[own[0]][0].tolist() if len(own) else ())]
+        masters = tuple(sorted({self.axis.user(x) for x in at}))
+        if not len(own):
+            return AxisNumbers(self.axis.tag, 0, masters)
+        turns, made = self.turns[own], self.made[own]
+        return AxisNumbers(
+            self.axis.tag, len(own), masters, float(turns.max()), float(self.turns_at_masters[own].max()),
+            float(made.max()), int((turns > 1).sum()), int((made > 1).sum()), int((self.jumps[own] > 0.1).sum()),
         )  # fmt: skip
 
     def _location(self, x: float) -> dict[str, float]:

@@ -112,7 +112,7 @@ def face_facts(face: Face) -> dict[str, Any]:
         "glyphs": face.glyphs,
         "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
         "known": face.known,
-        "axes": face.axes,
+        "axes": [asdict(numbers) for numbers in face.axes],
         "findings": [asdict(finding) for finding in face.findings],
         "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
     }
