@@ -18,7 +18,7 @@ from .axis_kinks import AxisKinks, Glyphs, joint_controls, kinks_along
 from .axis_numbers import AxisNumbers
 from .between_ticks import turns_of
 from .columns import Measured
-from .joints import CHANCE
+from .joints import rounding_turn
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
 from .measured import measured
 
@@ -143,7 +143,7 @@ def is_of_lines(masters: Masters, turn: _Turn) -> bool:
 
 
 def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
-    """Degrees by which rounding may turn a joint: see :func:`.joints.least_kink`.
+    """Degrees by which rounding may turn a joint: see :func:`.joints.rounding_turn`.
 
     It is 0 where the default master is not in whole units.
 
@@ -157,10 +157,8 @@ def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
     here = np.tensordot(masters.weights_at(turn.at), controls, axes=1)
-    lengths = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
-    with np.errstate(divide="ignore"):
-        a, b = 1 / lengths
-        return float(np.degrees(CHANCE * np.sqrt(a * a + b * b + (a + b) ** 2)))
+    before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
+    return float(np.degrees(rounding_turn(before, behind)))
 
 
 def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:
