@@ -192,6 +192,22 @@ def test_a_kink_between_masters_is_told_once_where_it_is_worst(variable: Path) -
     assert of(found(variable, thresholds=Thresholds(kink=worst.turn + 0.01)), "kink") == []
 
 
+def test_numbers_of_glyphs_add_up_to_those_of_the_font(variable: Path) -> None:
+    """The same as of all joints at once; the square has no smooth joint."""
+    font = gs.open_font(variable)
+    (along,) = kinks(font)
+    of_k, of_s = (item.axes[0] for item in found(variable) if item.glyph in "ks")
+    total = of_s + of_k
+    assert (of_s.joints, of_s.largest_turn, of_s.masters) == (0, None, (400.0,))
+    assert (total.axis, total.joints, total.masters) == ("wght", len(along), along.positions)
+    assert total.largest_turn == along.turns.max()
+    assert total.largest_turn_at_masters == along.turns_at_masters.max()
+    assert total.largest_made == along.made.max()
+    assert total.turns_over_1 == (along.turns > 1).sum() == of_k.turns_over_1
+    assert (of_k + of_k).jumps_over_10_percent == 2 * (along.jumps > 0.1).sum()
+    assert all(item.axes == () for item in found(variable, axes=()))
+
+
 def test_other_findings_are_told_once_at_a_step(variable: Path) -> None:
     (item,) = of(found(variable, steps=8), "crossing")
     assert (item.glyph, item.contour, item.between) == ("s", 0, None)
@@ -215,7 +231,7 @@ def test_a_joint_that_is_a_corner_in_a_master_does_not_kink() -> None:
         glyph = Masters(
             "k", 0, axes=masters.axes, regions=np.array([[[0.0, 1.0, 1.0]]]), contours=[contour], advances=np.ones(2)
         )
-        rows = on_axes([glyph], {}, [masters.axes[0].tag], 4, Thresholds())
+        rows, _ = on_axes([glyph], {}, [masters.axes[0].tag], 4, Thresholds())
         assert ((rows.kinds == 0) & (rows.segments == 0)).sum() == number
 
 

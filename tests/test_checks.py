@@ -221,3 +221,36 @@ def test_the_end_of_a_neighbours_bend_is_no_inflection(way: float, told: bool) -
     before = [*start, *(start + 20 * along - 40 * side), *(-40 * along)]
     contour = closed([20, 21, 96, 68, 100, 100], [100, -300], [-300, -300], before[:2], [*before[2:], 0, 0])
     assert ("inflection" in kinds(contour)) == told
+
+
+@pytest.mark.parametrize(("way", "told"), [(1.0, False), (-1.0, True)])
+def test_one_handle_too_long_is_meant_where_the_neighbour_goes_on_bending(way: float, told: bool) -> None:
+    """A quarter whose first handle is 20 beyond where both meet: its end turns left, as the next curve does, or not."""
+    behind = [140, 100, 180, 100 + 20 * way, 200, 100 + 60 * way]
+    found = kinds(closed([0, 120, 80, 100, 100, 100], behind, [200, -300], [100, -333], [0, -280], [0, 0]))
+    assert ("handles" in found) == told
+    assert "inflection" not in found
+
+
+def pressed_in(depth: float, share: float, reverse: bool) -> Contour:
+    """A superelliptic o with its top pressed in: curvature has the other sign at that one point.
+
+    A quarter below is cut in three, and its handles there are of a share of their length.
+    """
+    quarter = 200 * np.array([[1, 0], [1, 0.65], [0.65, 1], [0, 1]])
+    turn = np.array([[0.0, 1], [-1, 0]])
+    right, left, below, last = [quarter @ np.linalg.matrix_power(turn, k) for k in range(4)]
+    right[1, 1] = left[2, 1] = 200 + depth
+    segments = [right, left, *squeezed(below, share, 0.4, 0.6), last]
+    return Contour.from_segments([segment[::-1] for segment in segments[::-1]] if reverse else segments)
+
+
+@pytest.mark.parametrize("reverse", [False, True], ids=["outer", "counter"])
+@pytest.mark.parametrize("depth", [5.0, 40.0], ids=["insignificant", "significant"])
+def test_a_bend_that_goes_all_the_way_round_has_its_four_maxima(depth: float, reverse: bool) -> None:
+    """From the only inflection to itself, or the whole contour where the inflection is none to speak of."""
+    assert lumps(pressed_in(depth, 1.0, reverse)) == []
+    (found,) = lumps(pressed_in(depth, 0.6, reverse))
+    assert found.value > 1
+    assert found.point[0] < -100
+    assert found.point[1] < -100

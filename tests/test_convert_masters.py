@@ -176,6 +176,31 @@ def test_a_cusp_in_between_is_not_called_regular() -> None:
     assert not result.contours[0].regular
 
 
+def stem(width: float, bow: float) -> FloatArray:
+    """An arc on three lines, all joints corners."""
+    return np.array([[0, 0], [0, 500], [width / 3, 500 + bow], [2 * width / 3, 500 + bow], [width, 500], [width, 0]])
+
+
+def test_smooth_masters_of_corners_keep_no_segment() -> None:
+    masters = masters_of(stem(100, 60), stem(220, 120), degrees=[1, 3, 1, 1])
+    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=1.0))
+    contour = result.contours[0]
+    assert (contour.kept, contour.within_tolerance, result.notes) == (0, True, ())
+    assert contour.inner.all()
+    for share in np.linspace(0, 1, 5):
+        assert np.abs(turns(contour.curve.mixed(np.array([1 - share, share])).cubics(), 1e-9)).max() < 1e-9
+
+
+def test_lines_that_stay_in_a_smooth_fit_are_counted_and_said() -> None:
+    """So closely no closed curve is certified, and the contour stays as it is: lines and corners too."""
+    masters = masters_of(stem(100, 60), stem(220, 120), degrees=[1, 3, 1, 1])
+    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=0.01))
+    for ours, own in zip(result.contours[0].curve.points, masters.contours[0].points, strict=True):
+        assert sorted(ours.round(6).tolist()) == sorted(own.round(6).tolist())
+    assert result.contours[0].kept == 4
+    assert "4 segments of contour 0 stay as the source has them" in result.notes
+
+
 def test_errors_say_what_is_wrong() -> None:
     with pytest.raises(gs.OptionError, match="by tolerance"):
         gs.convert_masters(OVALS, gs.Options(count=20))

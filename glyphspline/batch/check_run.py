@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks.axis_numbers import AxisNumbers
 from ..checks.check import THRESHOLDS, findings
 from ..checks.columns import Measured, nothing
 from ..checks.finding import Finding
@@ -46,12 +47,14 @@ class GlyphFindings(NamedTuple):
 
     Attributes:
         findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
+        axes: its kinks along each axis in numbers; () if it is not looked at along axes, or could not be checked.
     """
 
     glyph: str
     gid: int
     findings: list[Finding]
     error: str | None
+    axes: tuple[AxisNumbers, ...]
 
 
 class CheckJob(NamedTuple):
@@ -82,12 +85,13 @@ class Checked(NamedTuple):
     """What a worker found in some glyphs.
 
     Attributes:
-        tasks: those that were measured. rows: of them. shapes: (n,) of the row's contour, wherever it stands.
-        errors: why others were not.
+        tasks: those that were measured. rows: of them. axes: of each; see :class:`GlyphFindings`.
+        shapes: (n,) of the row's contour, wherever it stands. errors: why others were not.
     """
 
     tasks: list[Task]
     rows: Measured
+    axes: list[tuple[AxisNumbers, ...]]
     shapes: IntArray
     errors: dict[int, str]
 
@@ -172,9 +176,12 @@ def _values(
     if told is not None:
         rows = rows.chosen(np.flatnonzero(told.fresh(checked.shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
     found = findings([(task.name, task.gid) for task in checked.tasks], rows, tags)
-    of_gid = {task.gid: of_glyph for task, of_glyph in zip(checked.tasks, found, strict=True)}
+    of_gid = {task.gid: k for k, task in enumerate(checked.tasks)}
     for task in tasks:
-        yield GlyphFindings(task.name, task.gid, of_gid.get(task.gid, []), checked.errors.get(task.gid))
+        if (k := of_gid.get(task.gid)) is None:
+            yield GlyphFindings(task.name, task.gid, [], checked.errors.get(task.gid), ())
+        else:
+            yield GlyphFindings(task.name, task.gid, found[k], None, checked.axes[k])
 
 
 class _Told:
@@ -195,6 +202,14 @@ class _Told:
         return found
 
 
+class _Part(NamedTuple):
+    """Glyphs measured together; see :class:`Checked`."""
+
+    glyphs: Sequence[Outline | Masters]
+    rows: Measured
+    axes: list[tuple[AxisNumbers, ...]]
+
+
 def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
     """Check glyphs, in a worker. A glyph that fails costs only itself."""
     sign_of_life()
@@ -211,11 +226,12 @@ def check_tasks(job: CheckJob, tasks: Sequence[Task]) -> Checked:
         sign_of_life()
     if not parts:
         return _nothing(errors)
-    measured = [(Task(glyph.gid, glyph.name), glyph) for of_part, _ in parts for glyph in of_part]
-    starts = np.cumsum([0, *(len(of_part) for of_part, _ in parts)])
-    own = [rows._replace(glyphs=rows.glyphs + start) for (_, rows), start in zip(parts, starts, strict=False)]
+    glyphs = [glyph for part in parts for glyph in part.glyphs]
+    starts = np.cumsum([0, *(len(part.glyphs) for part in parts)])
+    own = [part.rows._replace(glyphs=part.rows.glyphs + start) for part, start in zip(parts, starts, strict=False)]
     rows = Measured._make([np.concatenate(columns) for columns in zip(*own, strict=True)])
-    return Checked([task for task, _ in measured], rows, _shapes([glyph for _, glyph in measured], rows), errors)
+    axes = [of_glyph for part in parts for of_glyph in part.axes]
+    return Checked([Task(glyph.gid, glyph.name) for glyph in glyphs], rows, axes, _shapes(glyphs, rows), errors)
 
 
 def _read(job: CheckJob, tasks: Sequence[Task]) -> Sequence[Outline | Masters | GlyphsplineError]:
@@ -235,9 +251,7 @@ def _read(job: CheckJob, tasks: Sequence[Task]) -> Sequence[Outline | Masters | 
     return source_of(*job.place).outlines([task.gid for task in tasks], errors="return")
 
 
-def _measured(
-    job: CheckJob, glyphs: Sequence[Outline | Masters], errors: dict[int, str]
-) -> list[tuple[Sequence[Outline | Masters], Measured]]:
+def _measured(job: CheckJob, glyphs: Sequence[Outline | Masters], errors: dict[int, str]) -> list[_Part]:
     """Measure glyphs together; after an unexpected error, one by one."""
     from ..checks.measured import measured
     from ..checks.on_axes import on_axes
@@ -245,11 +259,12 @@ def _measured(
     try:
         if job.axes:
             masters = [glyph for glyph in glyphs if isinstance(glyph, Masters)]
-            rows = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds, job.outer)
+            rows, axes = on_axes(masters, dict(job.place[2]), job.axes, job.steps, job.thresholds, job.outer)
         else:
             arrays = [glyph.arrays for glyph in glyphs if isinstance(glyph, Outline)]
             rows = measured(arrays, job.thresholds, glyphs[0].metrics.units_per_em, job.outer)
-        return [(glyphs, rows)]
+            axes = [()] * len(glyphs)
+        return [_Part(glyphs, rows, axes)]
     except Exception as error:
         if len(glyphs) > 1:
             return [part for glyph in glyphs for part in _measured(job, [glyph], errors)]
@@ -276,4 +291,4 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
 
 
 def _nothing(errors: dict[int, str]) -> Checked:
-    return Checked([], nothing(), np.zeros(0, dtype=np.int64), errors)
+    return Checked([], nothing(), [], np.zeros(0, dtype=np.int64), errors)

@@ -12,7 +12,8 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray
-from .axis_kinks import LEAST, AxisKinks, Glyphs, Kink, kinks
+from .axis_kinks import AxisKinks, Glyphs, Kink, kinks
+from .between_ticks import LEAST
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,7 @@
 """Kinks along the axes of a variable font: how far smooth joints turn between the masters.
 
 A joint that is smooth in every master need not be so between them: the tangents on its two sides are mixed, not their
-directions. Between two ticks of an axis, the starts, peaks and ends of regions, both are linear in the axis's value.
-The sine and cosine of the turn, times the tangents' lengths, are then quadratic polynomials, and the turn is stationary
-at the roots of another: its largest value is exact. The jump of curvature is sampled, and its maxima are refined.
+directions. An axis is measured from tick to tick; :mod:`.between_ticks` has the formulas.
 """
 
 from __future__ import annotations
@@ -20,22 +18,8 @@ from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
-
-LEAST = 1e-6
-"""Length in font units up to which a tangent has no direction; the next control point then gives one."""
-
-STRAIGHT = 1e-3
-"""Curvature, in 1/em, up to which both sides of a joint are straight, and none jumps against the other."""
-
-INSIDE = 1e-9
-"""Share of an interval that separates its inside from a tick, where a handle may have no length."""
-
-SAMPLES = 9
-"""Places between two ticks where the jump of curvature is sampled first."""
-
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-STEPS = 32
-"""Steps of golden section from two samples' distance: to 1e-7 of it."""
+from .axis_numbers import AxisNumbers
+from .between_ticks import largest_jumps, largest_turns, turns_of
 
 PROFILE = 96
 """Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
@@ -168,6 +152,19 @@ class AxisKinks(Sequence[Kink]):
             float(self.made[index]), float(self.jumps[index]), self._location(jump_x),
         )  # fmt: skip
 
+    def numbers_of(self, glyph: int) -> AxisNumbers:
+        """The joints of one glyph, by its number, in numbers."""
+        own = np.flatnonzero(self._rows[:, 0] == glyph)
+        at = [0.0, *(self._masters[own[0]][0].tolist() if len(own) else ())]
+        masters = tuple(sorted({self.axis.user(x) for x in at}))
+        if not len(own):
+            return AxisNumbers(self.axis.tag, 0, masters)
+        turns, made = self.turns[own], self.made[own]
+        return AxisNumbers(
+            self.axis.tag, len(own), masters, float(turns.max()), float(self.turns_at_masters[own].max()),
+            float(made.max()), int((turns > 1).sum()), int((made > 1).sum()), int((self.jumps[own] > 0.1).sum()),
+        )  # fmt: skip
+
     def _location(self, x: float) -> dict[str, float]:
         values = {axis.tag: axis.user(float(value)) for axis, value in zip(self.axes, self.base, strict=True)}
         return values | {self.axis.tag: self.axis.user(x)}
@@ -230,12 +227,16 @@ def kinks(
     """
     tags = tags_of(source, axis)
     require(is_positive(corner_angle, 180), "corner_angle is above 0 and up to 180 degrees", corner_angle)
-    chosen = [k for k, tag in enumerate(tags) if axis in (None, tag)]
+    return kinks_along(source, glyphs, [k for k, tag in enumerate(tags) if axis in (None, tag)], corner_angle)
+
+
+def kinks_along(source: Source, glyphs: Iterable[str] | None, chosen: Sequence[int], corner_angle: float) -> KinkReport:
+    """As :func:`kinks`, along the ``chosen`` of the source's axes, by their numbers."""
     parts: list[list[_Measured]] = [[] for _ in chosen]
     names: list[tuple[str, int]] = []
     failed: list[tuple[str, str]] = []
     axes: tuple[DesignAxis, ...] = source.axes
-    base: FloatArray = np.zeros(len(tags))
+    base: FloatArray = np.zeros(len(axes))
     for masters in _batches(source, source.glyph_names if glyphs is None else glyphs, failed):
         axes, base = masters[0].axes, masters[0].normalised(source.location)
         joints = [_Joints(item, corner_angle) for item in masters]
@@ -341,117 +342,6 @@ def masters_on(masters: Masters, axis: int, base: FloatArray, ticks: FloatArray)
     peaks = masters.regions[:, axis, 1]
     found: BoolArray = (acts & (peaks != 0) & (ticks[:, None] == peaks)).any(axis=1) | (ticks == 0)
     return found
-
-
-def turns_of(controls: FloatArray) -> FloatArray:
-    """(…,) turn in degrees, positive to the left, of joints (…, 2, 4, 2); NaN where a side has no direction."""
-    vectors = controls[..., 1:, :] - controls[..., :1, :]  # (…, 2, 3, 2) from the joint
-    long = np.abs(vectors).sum(axis=-1) > LEAST
-    first = long.argmax(axis=-1)
-    chosen = np.take_along_axis(vectors, first[..., None, None], axis=-2)[..., 0, :]
-    turns = _angle(-chosen[..., 0, :], chosen[..., 1, :])
-    turns[~long.any(axis=-1).all(axis=-1)] = np.nan
-    return turns
-
-
-def _angle(a: FloatArray, b: FloatArray) -> FloatArray:
-    """(…,) degrees from vectors a to vectors b (…, 2), positive to the left."""
-    return np.degrees(np.arctan2(_cross(a, b), (a * b).sum(axis=-1)))
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
-def jumps_of(controls: FloatArray, units_per_em: FloatArray) -> FloatArray:
-    """(…,) relative jump of curvature of joints (…, 2, 4, 2); 0 where both sides are straight or lack a handle."""
-    first, second = (controls[..., k, :] - controls[..., 0, :] for k in (1, 2))
-    length = np.hypot(first[..., 0], first[..., 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        curvature = 2 / 3 * _cross(first, second) / length**3
-        curvature[..., 0] *= -1  # the segment that arrives is reversed
-        most = np.abs(curvature).max(axis=-1)
-        jump = np.abs(curvature[..., 1] - curvature[..., 0]) / most
-    valid = (length > LEAST).all(axis=-1) & (most * units_per_em > STRAIGHT)
-    return np.where(valid, jump, 0.0)
-
-
-def largest_turns(start: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(N,) the largest turn of joints between two ticks, without sign, and at which share of the way.
-
-    Args:
-        start, end: (N, 2, 4, 2) control points at the ticks; they are linear between.
-    """
-    vectors = np.stack([start[..., 1:, :] - start[..., :1, :], end[..., 1:, :] - end[..., :1, :]])  # (2, N, 2, 3, 2)
-    long = (np.abs(vectors).sum(axis=-1) > LEAST).any(axis=0)  # a handle without length at one tick has it at no other
-    level = np.broadcast_to(long.argmax(axis=-1)[None, ..., None, None], (*vectors.shape[:3], 1, 1))
-    chosen = np.take_along_axis(vectors, level, axis=-2)[..., 0, :]
-    a, b = -chosen[0, :, 0], chosen[0, :, 1]
-    da, db = -chosen[1, :, 0] - a, chosen[1, :, 1] - b
-    sines = (_cross(a, b), _cross(a, db) + _cross(da, b), _cross(da, db))
-    cosines = ((a * b).sum(-1), (a * db + da * b).sum(-1), (da * db).sum(-1))
-    shares = np.full((len(a), 4), INSIDE)
-    shares[:, 1] = 1 - INSIDE
-    shares[:, 2], shares[:, 3] = _roots(
-        sines[2] * cosines[1] - sines[1] * cosines[2],
-        sines[2] * cosines[0] - sines[0] * cosines[2],
-        sines[1] * cosines[0] - sines[0] * cosines[1],
-    )
-    shares = np.where((shares > INSIDE) & (shares < 1 - INSIDE), shares, shares.clip(INSIDE, 1 - INSIDE))
-    shares = np.nan_to_num(shares, nan=INSIDE)
-    s = shares[..., None]
-    inside = np.abs(_angle(a[:, None] + s * da[:, None], b[:, None] + s * db[:, None]))
-    at_ticks = np.abs(np.stack([turns_of(start), turns_of(end)], axis=1))
-    turns = np.nan_to_num(np.concatenate([at_ticks + 1e-9, inside], axis=1), nan=0.0)  # of two alike, the tick
-    best = turns.argmax(axis=1)[:, None]
-    ways = np.concatenate([np.zeros((len(a), 1)), np.ones((len(a), 1)), shares], axis=1)
-    values = np.nan_to_num(np.concatenate([at_ticks, inside], axis=1), nan=0.0)
-    return np.take_along_axis(values, best, axis=1)[:, 0], np.take_along_axis(ways, best, axis=1)[:, 0]
-
-
-def _roots(a: FloatArray, half: FloatArray, c: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(N,) the roots of a s² + 2 half s + c; NaN or infinite where there are none."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        q = -(half + np.copysign(np.sqrt(half * half - a * c), half))
-        return q / a, c / q
-
-
-def largest_jumps(start: FloatArray, end: FloatArray, units_per_em: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(N,) the largest relative jump of curvature between two ticks, and at which share of the way.
-
-    Sampled evenly; each local maximum of the samples is refined by golden section.
-
-    Args:
-        start, end: (N, 2, 4, 2) control points at the ticks; they are linear between. units_per_em: (N,).
-    """
-    ways = np.linspace(0.0, 1.0, SAMPLES)
-    step = end - start
-    values = np.stack([jumps_of(start + way * step, units_per_em) for way in ways], axis=1)
-    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-1.0)
-    peaks = (values >= padded[:, :-2]) & (values > padded[:, 2:]) & (values > 0)
-    rows, columns = np.nonzero(peaks)
-    low, high = ways[np.maximum(columns - 1, 0)], ways[np.minimum(columns + 1, SAMPLES - 1)]
-    first, moves, em = start[rows], step[rows], units_per_em[rows]
-
-    def jump(at: FloatArray) -> FloatArray:
-        return jumps_of(first + at[:, None, None, None] * moves, em)
-
-    x0, x1 = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    f0, f1 = jump(x0), jump(x1)
-    for _ in range(STEPS if len(rows) else 0):
-        left = f0 > f1
-        low, high = np.where(left, low, x0), np.where(left, x1, high)
-        fresh = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        value = jump(fresh)
-        x0, x1 = np.where(left, fresh, x1), np.where(left, x0, fresh)
-        f0, f1 = np.where(left, value, f1), np.where(left, f0, value)
-    best_sample = values.argmax(axis=1)
-    best, where = values.max(axis=1), ways[best_sample]
-    order = np.argsort(np.maximum(f0, f1), kind="stable")  # the largest is written last
-    rows, refined, at = rows[order], np.maximum(f0, f1)[order], np.where(f0 > f1, x0, x1)[order]
-    better = refined > best[rows] + 1e-12
-    best[rows[better]], where[rows[better]] = refined[better], at[better]
-    return best, where
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,17 +61,7 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
                 values[i] = np.nan
         least = TURN / extent
         found = np.empty(n + 2, dtype=np.int64)
-        start = first_of(values, n)
-        whole = not np.isnan(values[start])
-        if whole:  # from an inflection, if there is one
-            sign = 0.0
-            for i in range(start, start + n):
-                value = values[i % n]
-                if abs(value) >= least:
-                    if value * sign < 0:
-                        start, whole = i, False
-                        break
-                    sign = value
+        start, whole = start_of(values, n, least)
         first, sign = start, 0.0
         for i in range(start, start + n + 1):
             value = values[i % n]
@@ -81,22 +71,9 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
                 behind = i if np.isnan(value) else i + 1
                 number = swings(values, n, before, behind, sign, share, least, found)
                 table, count = lumps_of(
-                    own,
-                    values,
-                    where,
-                    n,
-                    found,
-                    number,
-                    before,
-                    behind - 1,
-                    sign,
-                    whole,
-                    least,
-                    limits.lump_height,
-                    c,
-                    table,
-                    count,
-                )
+                    own, values, where, n, found, number, before, behind - 1, sign, whole, least, limits.lump_height, c,
+                    table, count,
+                )  # fmt: skip
             if ends:
                 first, sign = i, 0.0
             if np.isnan(value):
@@ -104,6 +81,25 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
             elif sign == 0.0 and abs(value) >= least:
                 sign = 1.0 if value > 0 else -1.0
     return table[:count]
+
+
+@compiled(internal=True)
+def start_of(values: FloatArray, n: int, least: float) -> tuple[int, bool]:
+    """Which of n curvatures comes first: one between bends, or else behind an inflection; and whether there is neither.
+
+    Args:
+        least: curvature that is significant: an inflection lies between two such of different signs.
+    """
+    start, sign = first_of(values, n), 0.0
+    if np.isnan(values[start]):
+        return start, False
+    for i in range(start, start + n):
+        value = values[i % n]
+        if abs(value) >= least:
+            if value * sign < 0:
+                return i, False
+            sign = value
+    return start, True
 
 
 @compiled(internal=True)

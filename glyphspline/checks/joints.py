@@ -88,14 +88,20 @@ def turn_of(ax: float, ay: float, bx: float, by: float) -> float:
 
 @compiled(internal=True)
 def least_kink(ax: float, ay: float, bx: float, by: float, limits: Limits) -> float:
-    """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make.
+    """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make."""
+    if not (is_whole(ax, ay) and is_whole(bx, by)):
+        return limits.kink
+    return max(limits.kink, rounding_turn(length(ax, ay), length(bx, by)))
+
+
+@compiled
+def rounding_turn(before: float, behind: float) -> float:
+    """Radians by which rounding to whole units may turn a joint of two handles of these lengths; infinite for one of 0.
 
     The joint and the two other ends of the handles are rounded each, and the joint moves both handles.
     """
-    if not (is_whole(ax, ay) and is_whole(bx, by)):
-        return limits.kink
-    first, second = 1 / length(ax, ay), 1 / length(bx, by)
-    return max(limits.kink, CHANCE * np.sqrt(first * first + second * second + (first + second) ** 2))
+    first, second = 1 / before, 1 / behind
+    return CHANCE * np.sqrt(first * first + second * second + (first + second) ** 2)
 
 
 @compiled(internal=True)

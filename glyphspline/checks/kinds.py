@@ -6,8 +6,10 @@ they mean is said here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Literal, NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from math import radians
+from typing import Any, Literal, NamedTuple
 
 from ..errors import is_positive, require
 
@@ -80,6 +82,15 @@ class Limits(NamedTuple):
     outer: int
 
 
+DEGREES, SHARE, PER_EM, THOUSANDTHS = "degrees", "share", "1/em", "em/1000"
+"""Units of thresholds."""
+
+
+def _in(unit: str, value: float) -> Any:
+    """A threshold's default in its unit, which :meth:`Thresholds.limits` converts."""
+    return field(default=value, metadata={"unit": unit})
+
+
 @dataclass(frozen=True)
 class Thresholds:
     """From which value on each kind counts.
@@ -101,23 +112,23 @@ class Thresholds:
         doubled: thousandths of an em for which a contour lies on itself or on another one.
     """
 
-    kink: float = 0.5
-    corner_angle: float = 12.0
-    line_angle: float = 3.0
-    jump: float = 1.0
-    relative_jump: float = 0.25
-    lump: float = 0.25
-    lump_height: float = 0.3
-    inflection: float = 1.0
-    straight: float = 0.5
-    straight_length: float = 20.0
-    slanted: float = 0.5
-    slanted_offset: float = 0.25
-    slanted_length: float = 100.0
-    extremum: float = 1.0
-    short: float = 3.0
-    handles: float = 0.01
-    doubled: float = 5.0
+    kink: float = _in(DEGREES, 0.5)
+    corner_angle: float = _in(DEGREES, 12.0)
+    line_angle: float = _in(DEGREES, 3.0)
+    jump: float = _in(PER_EM, 1.0)
+    relative_jump: float = _in(SHARE, 0.25)
+    lump: float = _in(SHARE, 0.25)
+    lump_height: float = _in(THOUSANDTHS, 0.3)
+    inflection: float = _in(DEGREES, 1.0)
+    straight: float = _in(THOUSANDTHS, 0.5)
+    straight_length: float = _in(THOUSANDTHS, 20.0)
+    slanted: float = _in(DEGREES, 0.5)
+    slanted_offset: float = _in(THOUSANDTHS, 0.25)
+    slanted_length: float = _in(THOUSANDTHS, 100.0)
+    extremum: float = _in(THOUSANDTHS, 1.0)
+    short: float = _in(THOUSANDTHS, 3.0)
+    handles: float = _in(SHARE, 0.01)
+    doubled: float = _in(THOUSANDTHS, 5.0)
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -126,12 +137,12 @@ class Thresholds:
 
     def limits(self, units_per_em: float, outer: int = 0) -> Limits:
         """In font units and radians, of a font whose outer contours have the direction ``outer``."""
-        from math import radians
-
         unit = units_per_em / 1000
-        return Limits(
-            radians(self.kink), radians(self.corner_angle), radians(self.line_angle), self.jump / units_per_em,
-            self.relative_jump, self.lump, self.lump_height * unit, radians(self.inflection), self.straight * unit,
-            self.straight_length * unit, radians(self.slanted), self.slanted_offset * unit, self.slanted_length * unit,
-            self.extremum * unit, self.short * unit, self.handles, self.doubled * unit, unit, outer,
-        )  # fmt: skip
+        of_unit: dict[str, Callable[[float], float]] = {
+            DEGREES: radians,
+            SHARE: float,
+            PER_EM: lambda value: value / units_per_em,
+            THOUSANDTHS: lambda value: value * unit,
+        }
+        own = {each.name: of_unit[each.metadata["unit"]](getattr(self, each.name)) for each in fields(self)}
+        return Limits(**own, unit=unit, outer=outer)

@@ -14,9 +14,11 @@ import numpy as np
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import Masters
 from ..types import FloatArray
-from .axis_kinks import Glyphs, joint_controls, kinks, turns_of
+from .axis_kinks import AxisKinks, Glyphs, joint_controls, kinks_along
+from .axis_numbers import AxisNumbers
+from .between_ticks import turns_of
 from .columns import Measured
-from .joints import CHANCE
+from .joints import rounding_turn
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
 from .measured import measured
 
@@ -42,8 +44,8 @@ class _Turn(NamedTuple):
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
     outer: int = 0,
-) -> Measured:  # fmt: skip
-    """Measure glyphs of a variable font, each finding at its worst place.
+) -> tuple[Measured, list[tuple[AxisNumbers, ...]]]:  # fmt: skip
+    """Measure glyphs of a variable font: each finding at its worst place, and each glyph's kinks in numbers.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
@@ -60,13 +62,15 @@ def on_axes(
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
-    turns, smooth = _turns(glyphs, location, chosen, thresholds)
+    along_axes = kinks_along(Glyphs(glyphs, location), None, chosen, thresholds.corner_angle)
+    turns, smooth = _turns(glyphs, location, chosen, along_axes, thresholds)
     of_joints = np.column_stack([rows.glyphs, rows.contours, rows.segments])
     known = np.array([tuple(row) in smooth for row in of_joints.tolist()], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
     worst = _worst(_with_turns(rows, glyphs, turns))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
-    return worst._replace(locations=np.array(users).reshape(-1, len(axes)))
+    numbers = [tuple(along.numbers_of(g) for along in along_axes) for g in range(len(glyphs))]
+    return worst._replace(locations=np.array(users).reshape(-1, len(axes))), numbers
 
 
 def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[int], steps: int) -> FloatArray:
@@ -100,14 +104,13 @@ def instances_of(masters: Masters, at: FloatArray) -> list[ContourArrays]:
 
 
 def _turns(
-    glyphs: Sequence[Masters], location: Mapping[str, float], axes: Sequence[int], thresholds: Thresholds
-) -> tuple[list[_Turn], set[tuple[int, int, int]]]:
+    glyphs: Sequence[Masters], location: Mapping[str, float], axes: Sequence[int], along_axes: Sequence[AxisKinks],
+    thresholds: Thresholds,
+) -> tuple[list[_Turn], set[tuple[int, int, int]]]:  # fmt: skip
     """Turns of smooth joints that count, along axes and in masters off them; and which joints are smooth."""
-    source, found, smooth = Glyphs(glyphs, location), list[_Turn](), set[tuple[int, int, int]]()
+    found, smooth = list[_Turn](), set[tuple[int, int, int]]()
     controls = [[joint_controls(contour) for contour in masters.contours] for masters in glyphs]
-    along_axes = kinks(source, corner_angle=thresholds.corner_angle)
-    for axis in axes:
-        along = along_axes[axis]
+    for along in along_axes:
         smooth.update(map(tuple, along.joints.tolist()))
         count = int((along.turns >= thresholds.kink).sum())
         for kink, (g, contour, joint) in zip(along[:count], along.joints[:count].tolist(), strict=True):
@@ -140,7 +143,7 @@ def is_of_lines(masters: Masters, turn: _Turn) -> bool:
 
 
 def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
-    """Degrees by which rounding may turn a joint: see :func:`.joints.least_kink`.
+    """Degrees by which rounding may turn a joint: see :func:`.joints.rounding_turn`.
 
     It is 0 where the default master is not in whole units.
 
@@ -154,10 +157,8 @@ def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
     here = np.tensordot(masters.weights_at(turn.at), controls, axes=1)
-    lengths = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
-    with np.errstate(divide="ignore"):
-        a, b = 1 / lengths
-        return float(np.degrees(CHANCE * np.sqrt(a * a + b * b + (a + b) ** 2)))
+    before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
+    return float(np.degrees(rounding_turn(before, behind)))
 
 
 def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
+from ..checks.axis_numbers import AxisNumbers
 from ..checks.baseline import Baseline
 from ..checks.finding import Finding, severity
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
@@ -21,7 +22,6 @@ from .progress import progress
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..checks.axis_kinks import AxisKinks, KinkReport
     from ..readers import Source
 
 POOL_FROM = 2000
@@ -44,7 +44,7 @@ class Face:
         findings: those that are kept, the worst first. counts: of all new ones, by kind. known: number of those that
             the baseline has. levels: those of new findings.
         glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
-        axes: kinks along each axis in numbers, if they are asked for. error: why the font could not be read.
+        axes: kinks along each axis in numbers, of all glyphs checked. error: why the font could not be read.
     """
 
     font: str
@@ -58,7 +58,7 @@ class Face:
     levels: set[Level] = field(default_factory=set)
     glyphs: int = 0
     failed: list[tuple[str, str]] = field(default_factory=list)
-    axes: list[dict[str, Any]] = field(default_factory=list)
+    axes: list[AxisNumbers] = field(default_factory=list)
     error: str | None = None
 
     @property
@@ -75,8 +75,7 @@ class Asked:
         kinds: names. kept: findings of this level or above are kept, others only counted.
         axis: tag of the only one, or None. steps: of :func:`glyphspline.batch.check_run.check_font`; None: its own.
         baseline: known findings, or None. written: where all findings are added, or None.
-        numbers: whether kinks along axes are wanted in numbers. plot: file of the diagram, or None.
-        drawn: whether sources are kept, for drawings.
+        plot: file of the diagram, or None. drawn: whether sources are kept, for drawings.
     """
 
     thresholds: Thresholds
@@ -86,7 +85,6 @@ class Asked:
     steps: int | None
     baseline: Baseline | None
     written: Baseline | None
-    numbers: bool
     plot: Path | None
     drawn: bool
 
@@ -151,7 +149,6 @@ def asked_of(given: Mapping[str, Any]) -> Asked:
         steps=given["steps"],
         baseline=None if given["baseline"] is None else Baseline.read(Path(given["baseline"])),
         written=None if given["write_baseline"] is None else Baseline(),
-        numbers=given["as_json"],
         plot=given["plot"],
         drawn=given["html"] is not None,
     )
@@ -204,6 +201,7 @@ def check_face(
         stop("none of the glyphs asked for is in the font")
     tags = tags_of(source, asked, alone)
     face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
+    face.axes = [AxisNumbers(axis.tag, 0, (axis.default,)) for axis in source.axes if axis.tag in tags]
     with progress(quiet) as observer:
         steps = STEPS if asked.steps is None else asked.steps
         rows = check_font(source, names, asked.thresholds, axes=tags, steps=steps, executor=pool, observer=observer)
@@ -211,13 +209,15 @@ def check_face(
             face.glyphs += row.error is None
             if row.error is not None:
                 face.failed.append((row.glyph, row.error))
+            if row.axes:
+                face.axes = [known + own for known, own in zip(face.axes, row.axes, strict=True)]
             keep(face, [item for item in row.findings if item.kind in asked.kinds], asked)
     if alone and face.failed and not face.glyphs:
         glyph, error = face.failed[0]
         stop(f"{name}, glyph {glyph!r}: {error}")
     face.findings.sort(key=severity)
-    if tags and (asked.numbers or asked.plot):
-        measure_axes(face, source, names, asked)
+    if tags and asked.plot is not None:
+        write_plot(asked.plot, source, names, asked)
     return face
 
 
@@ -254,35 +254,11 @@ def keep(face: Face, findings: list[Finding], asked: Asked) -> None:
     face.findings += [item for item in findings if level_number(item.level) >= least]
 
 
-def measure_axes(face: Face, source: Source, names: Sequence[str], asked: Asked) -> None:
-    """Add kinks along the axes in numbers, and draw them."""
+def write_plot(path: Path, source: Source, names: Sequence[str], asked: Asked) -> None:
+    """Draw the largest turn of any joint against the axes; see :func:`require_figure`."""
     from ..checks.axis_kinks import kinks
-
-    report = kinks(source, names, asked.axis, corner_angle=asked.thresholds.corner_angle)
-    face.axes = [axis_facts(of_axis) for of_axis in report]
-    if asked.plot is not None:
-        write_plot(asked.plot, source, report)
-
-
-def write_plot(path: Path, source: Source, report: KinkReport) -> None:
-    """Draw the report; see :func:`require_figure`."""
     from ..writers.figures.turns import turns_figure
 
     kind: Any = path.suffix[1:].lower()
+    report = kinks(source, names, asked.axis, corner_angle=asked.thresholds.corner_angle)
     path.write_bytes(turns_figure(source, report, kind))
-
-
-def axis_facts(found: AxisKinks) -> dict[str, Any]:
-    """An axis in numbers. Of no joints, turns are null."""
-    some = len(found) > 0
-    return {
-        "axis": found.axis.tag,
-        "joints": len(found),
-        "masters": list(found.positions),
-        "largest_turn": float(found.turns.max()) if some else None,
-        "largest_turn_at_masters": float(found.turns_at_masters.max()) if some else None,
-        "largest_made": float(found.made.max()) if some else None,
-        "turns_over_1": int((found.turns > 1).sum()),
-        "made_over_1": int((found.made > 1).sum()),
-        "jumps_over_10_percent": int((found.jumps > 0.1).sum()),
-    }

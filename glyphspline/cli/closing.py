@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .messages import printable
+from .text_table import plain
 
 if TYPE_CHECKING:
     from ..batch import Summary
-
-WIDE = 1000
-"""Columns of text within which no line of the table is broken; terminals break lines themselves."""
 
 FAILURES = 3
 """Glyphs of a font that are named below the table."""
@@ -47,26 +43,17 @@ class FontRun:
 
 def table(runs: Sequence[FontRun]) -> str:
     """All fonts with the numbers of their glyphs; those with failures come last, and why fonts failed."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    shown = Table("font", box=box.ASCII2, show_footer=True, show_edge=False)
     columns = [[count(run) for run in runs] for count in (glyphs, failed, outside)]
     seconds = [0.0 if run.summary is None else run.summary.seconds for run in runs]
-    shown.columns[0].footer = f"{len(runs)} in all"
-    for heading, numbers in zip(("glyphs", "failed", "outside tolerance"), columns, strict=True):
-        shown.add_column(heading, footer=str(sum(numbers)), justify="right")
-    shown.add_column("seconds", footer=f"{sum(seconds):.1f}", justify="right")
     order = sorted(range(len(runs)), key=lambda k: (runs[k].summary is None, runs[k].failed > 0))
+    rows = []
     for k in order:
         cells = ["-"] * 3 if runs[k].summary is None else [str(numbers[k]) for numbers in columns]
-        shown.add_row(Text(printable(runs[k].name)), *cells, f"{seconds[k]:.1f}")
-    text = StringIO()
-    Console(file=text, width=WIDE, color_system=None).print(shown)
-    lines = [line.rstrip() for line in text.getvalue().splitlines()]
-    return "\n".join([*lines, *(line for k in order for line in failures(runs[k]))])
+        rows.append([runs[k].name, *cells, f"{seconds[k]:.1f}"])
+    headings = ("font", "glyphs", "failed", "outside tolerance", "seconds")
+    footer = [f"{len(runs)} in all", *[str(sum(numbers)) for numbers in columns], f"{sum(seconds):.1f}"]
+    shown = plain(headings, rows, headings[1:], footer)
+    return "\n".join([shown, *(line for k in order for line in failures(runs[k]))])
 
 
 def failures(run: FontRun) -> Iterator[str]:

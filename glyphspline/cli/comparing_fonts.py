@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from io import StringIO
 from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,8 +11,7 @@ from ..comparing.difference import Difference
 from ..errors import GlyphsplineError
 from ..types import counted, rounded_up
 from . import arguments as opt
-from .closing import WIDE
-from .messages import printable
+from .text_table import plain
 
 if TYPE_CHECKING:
     from ..batch import FontDifference
@@ -70,26 +68,16 @@ def chosen_pairs(old: Source, new: Source, given: Mapping[str, Any]) -> Pairs:
 
 def table(found: Sequence[Difference], shown: int, tolerance: float) -> str:
     """Differences one a line; those beyond the tolerance have an asterisk."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    lines = Table(box=box.ASCII2, show_edge=False)
-    for heading in ("", "glyph", "distance", "at", "advance", "contours", "kinks"):
-        lines.add_column(heading, justify="right" if heading in ("distance", "at", "advance") else "left")
+    rows = []
     for each in found[:shown]:
         named = each.glyph if each.glyph == each.new_glyph else f"{each.glyph} = {each.new_glyph}"
         contours = changes(len(each.contours_gone), len(each.contours_new))
         kinks = changes(len(each.kinks_gone), len(each.kinks_new))
         at = "" if each.worst is None else "{:.0f}, {:.0f}".format(*each.worst.point)
-        lines.add_row(
-            "*" if each.is_beyond(tolerance) else "", Text(printable(named)), distance(each), at, advance(each),
-            contours, kinks,
-        )  # fmt: skip
-    text = StringIO()
-    Console(file=text, width=WIDE, color_system=None).print(lines)
-    return "\n".join([line.rstrip() for line in text.getvalue().splitlines()])
+        beyond = "*" if each.is_beyond(tolerance) else ""
+        rows.append([beyond, named, distance(each), at, advance(each), contours, kinks])
+    headings = ("", "glyph", "distance", "at", "advance", "contours", "kinks")
+    return plain(headings, rows, numbers=("distance", "at", "advance"))
 
 
 def distance(each: Difference) -> str:

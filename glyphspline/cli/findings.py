@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from ..checks.finding import place_on_axes, severity
 from ..checks.kinds import KINDS, Level
 from ..types import counted
-from .closing import WIDE
 from .messages import printable
+from .text_table import plain
 
 if TYPE_CHECKING:
     from ..checks.finding import Finding
@@ -45,25 +45,14 @@ def worst_first(faces: Sequence[Face]) -> list[tuple[Face, Finding]]:
 
 def table(found: Sequence[tuple[Face, Finding]], shown: int, several: bool) -> str:
     """The worst findings, one a line."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    lines = Table(box=box.ASCII2, show_edge=False)
     located = any(finding.location for _, finding in found[:shown])
-    for heading in ("font",) * several + ("glyph", "level", "contour", "segment", "point", "finding"):
-        lines.add_column(heading, justify="right" if heading in ("contour", "segment", "point") else "left")
-    if located:
-        lines.add_column("location")
+    headings = ("font",) * several + ("glyph", "level", "contour", "segment", "point", "finding")
+    rows = []
     for face, finding in found[:shown]:
         cells = [face.font] * several + [finding.glyph, finding.level, str(finding.contour), str(finding.segment)]
         cells += ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
-        cells += [place_on_axes(finding, face.home)] * located
-        lines.add_row(*[Text(printable(cell)) for cell in cells])
-    text = StringIO()
-    Console(file=text, width=WIDE, color_system=None).print(lines)
-    return "\n".join([line.rstrip() for line in text.getvalue().splitlines()])
+        rows.append(cells + [place_on_axes(finding, face.home)] * located)
+    return plain(headings + ("location",) * located, rows, numbers=("contour", "segment", "point"))
 
 
 def counts_words(counts: Mapping[str, int], level: Level | None = None) -> str:
@@ -112,7 +101,7 @@ def face_facts(face: Face) -> dict[str, Any]:
         "glyphs": face.glyphs,
         "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
         "known": face.known,
-        "axes": face.axes,
+        "axes": [asdict(numbers) for numbers in face.axes],
         "findings": [asdict(finding) for finding in face.findings],
         "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
     }

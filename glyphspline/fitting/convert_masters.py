@@ -215,9 +215,9 @@ class _Fits(NamedTuple):
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else self.numbers[which[error.contour]]
             raise
-        curves = zip(*(Contours(curve) for curve in fit.curves), strict=True)
+        curves, sharp = zip(*(Contours(curve) for curve in fit.curves), strict=True), self.options.corners == "sharp"
         return [
-            _contour_result(self.masters.contours[self.numbers[c]], k, fit, in_all, self.tolerance)
+            _contour_result(self.masters.contours[self.numbers[c]], k, fit, in_all, self.tolerance, sharp)
             for k, (c, in_all) in enumerate(zip(which, curves, strict=True))
         ]
 
@@ -270,9 +270,12 @@ def check_options(options: Options) -> None:
 
 
 def _contour_result(
-    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float
+    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float, sharp: bool
 ) -> MastersContourResult:
-    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured."""
+    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured.
+
+    Lines are meant to stay in a ``sharp`` fit only.
+    """
     from .sharp.pieces import CLOSED, SPANS
 
     assert fit.regular is not None  # it is a fit of masters
@@ -292,7 +295,7 @@ def _contour_result(
         rate_bound=max((arc.rate_bound for arc in arcs), default=None),
         deviation_bound=bound,
         within_tolerance=bound <= tolerance,
-        kept=int(((spans == 1) & (fit.pieces.errors[own] == 0.0)).sum()),
+        kept=int(((spans == 1 if sharp else spans <= 1) & (fit.pieces.errors[own] == 0.0)).sum()),
         regular=bool(fit.regular[own].all()),
     )
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isinf
-from string import Template
 
 from ..comparing.difference import Difference, Turn
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import rounded_up
 from ..writers.svg.markup import number, text, union, view_box_value
 from ..writers.svg.path_data import Box, curves_data
-from .pages import package_text
+from .pages import page_of
 
 PRECISION = 2
 """Decimals of the drawings."""
@@ -35,8 +34,8 @@ def comparison_page(heading: str, facts: Sequence[str], drawn: Sequence[Drawn], 
     Args:
         heading: its title. facts: sentences below it. drawn: glyphs in order. tolerance: in units of the old em.
     """
-    return Template(package_text("comparison.html")).substitute(
-        heading=text(heading), style=package_text("theme.css") + package_text("comparison.css"),
+    return page_of(
+        "comparison.html", ("theme.css", "comparison.css"), heading,
         facts="".join([f"<p>{text(line)}</p>" for line in facts]),
         cards="\n".join([card(*each, tolerance) for each in drawn]),
     )  # fmt: skip

@@ -77,7 +77,7 @@ def findings_page(fonts: Sequence[CheckedFont]) -> str:
     heading = f"{len(fonts)} fonts"
     if len(fonts) == 1:
         heading = f"{fonts[0].source.family} {fonts[0].source.style}"
-    return page_of("findings.html", ("theme.css", "findings.css"), SCRIPTS, setup, heading, kinds=switches)
+    return page_of("findings.html", ("theme.css", "findings.css"), heading, SCRIPTS, setup, kinds=switches)
 
 
 def home_of(source: Source) -> Mapping[str, float]:

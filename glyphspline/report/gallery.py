@@ -118,7 +118,7 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     """Write an ``index.html`` for one or several runs, whose galleries are in these folders below ``out_dir``."""
     setup = {"runs": list(runs), "measures": measures(), "palette": palette()}
     page = page_of(
-        "gallery.html", ("theme.css", "gallery.css"), SCRIPTS, setup, heading=heading, layers=layer_switches()
+        "gallery.html", ("theme.css", "gallery.css"), heading, SCRIPTS, setup, loads=True, layers=layer_switches()
     )
     _replace(out_dir / "index.html", page)
 

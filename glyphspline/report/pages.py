@@ -15,19 +15,35 @@ from .data import as_json
 
 
 def page_of(
-    template: str, styles: Sequence[str], scripts: Sequence[str], setup: Any, heading: str, **parts: str
+    template: str,
+    styles: Sequence[str],
+    heading: str,
+    scripts: Sequence[str] = (),
+    setup: Any = None,
+    *,
+    loads: bool = False,
+    **parts: str,
 ) -> str:
     """A page as HTML. Nothing runs in it but its scripts, by their hash.
 
     Args:
-        template, styles, scripts: files of this package, in the order of their dependencies.
-        setup: data that the scripts read from the element ``setup``.
-        heading: title of the page, as text. parts: what else the template has, as HTML.
+        template: file of this package with the page's body.
+        styles, scripts: files of this package, in the order of their dependencies.
+        heading: title of the page, as text. setup: data that the scripts read from the element ``setup``.
+        loads: whether it loads scripts and drawings that lie beside it. parts: what else the template has, as HTML.
     """
     script = "".join(package_text(name) for name in scripts)
-    return Template(package_text(template)).substitute(
-        heading=text(heading), style="".join(package_text(name) for name in styles), setup=as_json(setup),
-        script=script, digest=b64encode(sha256(("\n" + script).encode()).digest()).decode(), **parts,
+    beside = ["'self'", "file:"] * loads
+    allowed: dict[str, list[str]] = {"script-src": [], "style-src": ["'unsafe-inline'"], "img-src": beside}
+    run = ""
+    if script:
+        digest = b64encode(sha256(("\n" + script).encode()).digest()).decode()
+        allowed["script-src"] = [*beside, f"'sha256-{digest}'"]
+        run = f'<script type="application/json" id="setup">{as_json(setup)}</script>\n<script>\n{script}</script>\n'
+    return Template(package_text("page.html")).substitute(
+        policy="".join(f" {what} {' '.join(sources)};" for what, sources in allowed.items() if sources),
+        heading=text(heading), style="".join(package_text(name) for name in styles),
+        body=Template(package_text(template)).substitute(heading=text(heading), **parts), scripts=run,
     )  # fmt: skip
 
 
