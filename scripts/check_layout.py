@@ -14,8 +14,9 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,10 +40,11 @@ class Case(NamedTuple):
     font: Path
     text: str
     runs: Sequence[tuple[str, str]]
-    arguments: dict[str, Any] = {}  # noqa: RUF012: never changed
+    arguments: Mapping[str, Any] = MappingProxyType({})
 
 
 def alone(name: str, font: Path, text: str, direction: str, **arguments: Any) -> Case:
+    """A text that is one run."""
     return Case(name, font, text, [(text, direction)], arguments)
 
 
@@ -83,8 +85,8 @@ def by_hb_shape(case: Case) -> Placed:
         for glyph in json.loads(subprocess.run(command, capture_output=True, check=True).stdout):
             gids.append(glyph["g"])
             clusters.append(glyph["cl"] + at)
-            origins.append(pen + [glyph["dx"], glyph["dy"]])
-            pen = pen + [glyph["ax"], glyph["ay"]]
+            origins.append(np.add(pen, [glyph["dx"], glyph["dy"]]))
+            pen = np.add(pen, [glyph["ax"], glyph["ay"]])
     return Placed(gids, clusters, np.array(origins))
 
 
@@ -101,12 +103,14 @@ def by_hb_view(case: Case) -> np.ndarray[Any, Any] | None:
 
 
 def given(case: Case, text: str, direction: str) -> list[str]:
+    """Arguments of both programs."""
     options = [f"--{name}={value}" for name, value in case.arguments.items() if name in ("features", "language")]
     return [f"--direction={direction}", *options, f"--font-file={case.font}", f"--text={text}"]
 
 
 def by_layout(case: Case) -> Placed:
-    direction = "ttb" if case.runs[0][1] == "ttb" else None
+    """The glyphs of a case by this package."""
+    direction: Any = "ttb" if case.runs[0][1] == "ttb" else None
     found = gs.layout(gs.open_font(case.font), case.text, direction=direction, **case.arguments)
     if found.missing:
         raise SystemExit(f"{case.name}: the font lacks {found.missing}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Sequence
 from functools import cache, lru_cache
+from itertools import pairwise
 
 from fontTools.unicodedata import script, script_extension
 
@@ -23,6 +24,7 @@ AC00-D7FB E000-FAD9 FE10-FE19 FE30-FE48 FE50-FE57 FE59-FE62 FE68-FE6B FF01-FF0C 
 20000-3134A F0000-10FFFD
 """
 """The code points whose Vertical_Orientation is not R, in Unicode 15; gaps that no character is in are closed."""
+
 
 @lru_cache(maxsize=4096)
 def _script(character: str) -> tuple[str, frozenset[str]]:
@@ -68,7 +70,7 @@ def upright_in_columns(text: str, clusters: Sequence[int]) -> list[bool]:
     """
     stands = {character: _stands(character) for character in set(text)}
     found = [False] * len(text)
-    for a, b in zip(clusters, clusters[1:], strict=False):
+    for a, b in pairwise(clusters):
         found[a:b] = [stands[text[a]]] * (b - a)
     return found
 
