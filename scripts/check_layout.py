@@ -1,7 +1,8 @@
 """Compare layouts with HarfBuzz's programs: the glyphs and positions of hb-shape, and the places in the SVG of hb-view.
 
-    apt-get install libharfbuzz-bin fonts-dejavu-core fonts-hosny-amiri fonts-noto-core fonts-noto-cjk
-    python scripts/check_layout.py
+    apt-get install libharfbuzz-bin fonts-dejavu-core fonts-hosny-amiri fonts-noto-core fonts-noto-cjk unicode-data
+    python scripts/check_layout.py           # the table
+    python scripts/check_layout.py --page    # the time that a page of 10,000 characters takes
 
 HarfBuzz shapes single runs: a text of mixed directions is given to hb-shape run by run, each with the text around it as
 context, in the visual order that is written in the table below. Exits with 1 if anything differs.
@@ -16,12 +17,15 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import median
+from time import perf_counter
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import glyphspline as gs
+from glyphspline.layout.bidi import embedding_levels, line_levels, visual_order
 
 FONTS = Path("/usr/share/fonts")
 DEJAVU = FONTS / "truetype/dejavu/DejaVuSans.ttf"
@@ -31,6 +35,7 @@ NASTALIQ = FONTS / "truetype/noto/NotoNastaliqUrdu-Regular.ttf"
 HEBREW = FONTS / "truetype/noto/NotoSansHebrew-Regular.ttf"
 DEVANAGARI = FONTS / "truetype/noto/NotoSansDevanagari-Regular.ttf"
 CJK = FONTS / "opentype/noto/NotoSerifCJK-Regular.ttc"
+BIDI_TEST = Path("/usr/share/unicode/BidiCharacterTest.txt")
 
 
 class Case(NamedTuple):
@@ -117,8 +122,31 @@ def by_layout(case: Case) -> Placed:
     return Placed(found.gid.tolist(), found.cluster.tolist(), found.origin)
 
 
+def time_a_page() -> int:
+    """Print the time that each step takes for a page of 10,000 characters, warm: the median of seven."""
+    font = gs.open_font(DEJAVU)
+    text = " ".join(["The quick brown fox jumps over the lazy dog, and away it flows (office 12/34)."] * 130)[:10_000]
+    for options in (gs.Options(), gs.Options(corners="sharp")):
+        times: dict[str, list[float]] = {"layout": [], "convert": [], "to_svg": []}
+        for _ in range(8):
+            started = perf_counter()
+            found = gs.layout(font, text, width=100_000)
+            times["layout"].append(perf_counter() - started)
+            started = perf_counter()
+            result = found.convert(options)
+            times["convert"].append(perf_counter() - started)
+            started = perf_counter()
+            gs.to_svg(result)
+            times["to_svg"].append(perf_counter() - started)
+        said = ", ".join(f"{name} {median(values[1:]):.3f} s" for name, values in times.items())
+        print(f"{options.corners}, {len(found):,} glyphs in {int(found.line[-1]) + 1} lines: {said}")
+    return 0
+
+
 def main() -> int:
     """Print the table."""
+    if "--page" in sys.argv[1:]:
+        return time_a_page()
     for program in ("hb-shape", "hb-view"):
         if not shutil.which(program):
             raise SystemExit(f"{program} is not installed")
@@ -140,7 +168,28 @@ def main() -> int:
             from_view = f"{off:.2g}"
         good &= same and apart < 1e-9
         print(f"| {case.name} | {len(ours.gids)} | {'yes' if same else 'NO'} | {apart:.2g} | {from_view} |")
-    return 0 if good else 1
+    return 0 if levels_conform() and good else 1
+
+
+def levels_conform() -> bool:
+    """Compare levels and visual order with all cases of Unicode's BidiCharacterTest, and print how many agree."""
+    if not BIDI_TEST.exists():
+        print(f"{BIDI_TEST} is not there: levels are not compared")
+        return True
+    cases = agree = 0
+    for line in BIDI_TEST.read_text(encoding="utf-8").splitlines():
+        if not line or line.startswith("#"):
+            continue
+        codes, direction, level, expected, order = line.split(";")
+        text = "".join(chr(int(code, 16)) for code in codes.split())
+        base, levels = embedding_levels(text, {"0": 0, "1": 1}.get(direction))
+        levels, wanted = line_levels(text, levels, base), expected.split()
+        seen = [i for i in visual_order(levels) if wanted[i] != "x"]
+        same = all(want in ("x", str(value)) for want, value in zip(wanted, levels, strict=True))
+        cases += 1
+        agree += base == int(level) and same and seen == [int(i) for i in order.split()]
+    print(f"BidiCharacterTest: {agree:,} of {cases:,} cases agree")
+    return agree == cases
 
 
 if __name__ == "__main__":

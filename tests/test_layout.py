@@ -170,6 +170,7 @@ def test_scripts_of_neighbours() -> None:
     assert scripts_of("a (b)!") == ["Latn"] * 6
     assert scripts_of("1, 2") == ["Zyyy"] * 4
     assert scripts_of("a (\u03b1) b") == ["Latn"] * 3 + ["Grek", "Latn", "Latn", "Latn"]
+    assert scripts_of("a «\u0628»\u0628") == ["Latn"] * 3 + ["Arab", "Latn", "Arab"]
     assert scripts_of("\u6f22\u30fc\u30ab") == ["Hani", "Kana", "Kana"]
     assert scripts_of("a\u0301\u03b1") == ["Latn", "Latn", "Grek"]
 

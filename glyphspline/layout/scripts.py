@@ -14,6 +14,9 @@ from .bidi import CLOSING
 COMMON = frozenset({"Zyyy", "Zinh", "Zzzz"})
 """Common, inherited and unknown: such characters take the script of their neighbours."""
 
+PAIRS = {**CLOSING, "«": "»", "‹": "›", "“": "”", "‘": "’"}
+"""Opening to closing bracket or quotation mark."""
+
 UPRIGHT = """
 A7 A9 AE B1 BC-BE D7 F7 2EA-2EB 1100-11FF 1401-167F 18B0-18F5 2016 2020-2021 2030-2031 203B-203C 2042 2047-2049 2051
 20DD-20E0 20E2-20E4 2100-2101 2103-2109 210F 2113-2114 2116-2117 211E-2123 2125 2127 2129 212E 2135-213F 2145-214A
@@ -36,7 +39,7 @@ def scripts_of(text: str) -> list[str]:
     """The script of each character, by ISO 15924.
 
     Characters common to several scripts take that of the characters before them, or of those after them at the
-    beginning, if they are used with it. A closing bracket takes that of the opening one.
+    beginning, if they are used with it. A closing bracket or quotation mark takes that of the opening one.
     """
     known = {character: _script(character) for character in set(text)}
     strong = {own for own, _ in known.values()} - COMMON
@@ -53,8 +56,8 @@ def scripts_of(text: str) -> list[str]:
             later = (known[other][0] for other in text[i + 1 : i + 32])
             after = next((other for other in later if other not in COMMON), "")
             current = after if after in with_ else min(with_)
-        elif character in CLOSING:
-            brackets.append((CLOSING[character], current))
+        elif character in PAIRS:
+            brackets.append((PAIRS[character], current))
         elif any(character == closing for closing, _ in brackets[-8:]):
             while brackets[-1][0] != character:
                 brackets.pop()
