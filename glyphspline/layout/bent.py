@@ -136,9 +136,7 @@ class _Line:
         rounds: numbers of the periods of a closed path that the text lies on; (0,) for an open one.
     """
 
-    def __init__(
-        self, path: Path, text: str, letters: Letters, start: float, scale: float, cubics: FloatArray
-    ) -> None:
+    def __init__(self, path: Path, text: str, letters: Letters, start: float, scale: float, cubics: FloatArray) -> None:
         self.path, self._text, self._letters = path, text, letters
         self._start, self._scale = start, scale
         self.cubics = cubics.copy()
@@ -412,9 +410,7 @@ def _handles(target: FloatArray, first: FloatArray, last: FloatArray) -> tuple[F
         b1, b2 = 3 * z * z * at, 3 * z * at * at
         fixed = (z * z * z + b1)[..., None] * start[:, None] + (b2 + at * at * at)[..., None] * end[:, None]
         u, v, rest = b1[..., None] * first[:, None], -b2[..., None] * last[:, None], target - fixed
-        uu, uv, vv, ur, vr = (
-            np.einsum("kpc,kpc->k", p, q) for p, q in ((u, u), (u, v), (v, v), (u, rest), (v, rest))
-        )
+        uu, uv, vv, ur, vr = (np.einsum("kpc,kpc->k", p, q) for p, q in ((u, u), (u, v), (v, v), (u, rest), (v, rest)))
         whole = uu * vv - uv * uv
         good = whole > 1e-12 * uu * vv
         whole = np.where(good, whole, 1.0)

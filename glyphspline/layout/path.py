@@ -46,8 +46,9 @@ class Table(NamedTuple):
     """Parts of the path, in order: short enough that chord and control polygon are of almost one length.
 
     Attributes:
-        cubics: (n, 4, 2). velocities: (n, 3, 2) coefficients of 1, x and x² in the first derivative. segment: (n,) that a part is of. first, width: (n,) where it begins there, and how far it
-            goes, in the segment's parameter.
+        cubics: (n, 4, 2). velocities: (n, 3, 2) coefficients of 1, x and x² in the first derivative.
+        segment: (n,) that a part is of. first, width: (n,) where it begins there and how far it goes, in the segment's
+            parameter.
         ends: (n + 1,) arc length where each part begins, and the length of the path.
         error: bound of the error of any arc length.
     """
@@ -139,6 +140,8 @@ class Path:
                 return cls(cubic_approximation(pieces, COINCIDENT * extent or 1.0), curve.closed, name)
             return cls(np.array([as_cubic(piece) for piece in pieces]), curve.closed, name)
         array = np.asarray(curve, dtype=np.float64)
+        if not np.isfinite(array).all():
+            raise GlyphsplineError("coordinates of the path are not finite", font=name)
         if array.ndim == 2 and array.shape[1] == 2 and len(array):
             if closed and (array[0] != array[-1]).any():
                 array = np.concatenate([array, array[:1]])
@@ -148,7 +151,7 @@ class Path:
         if array.ndim != 3 or array.shape[1:] != (4, 2):
             raise GlyphsplineError(f"a path is a polyline (n, 2) or cubics (m, 4, 2), not {array.shape}", font=name)
         if closed is None:
-            closed = bool(len(array)) and meets(array)
+            closed = bool(len(array)) and _meets(array)
         return cls(array, closed, name)
 
     def __repr__(self) -> str:
@@ -357,7 +360,7 @@ def _spread(*cubics: FloatArray) -> float:
     return float(np.ptp(heights))
 
 
-def meets(cubics: FloatArray) -> bool:
+def _meets(cubics: FloatArray) -> bool:
     """Whether a chain of cubics ends where it begins."""
     extent = float(np.ptp(cubics.reshape(-1, 2), axis=0).max())
     return bool(np.abs(cubics[-1, 3] - cubics[0, 0]).max() <= COINCIDENT * extent)
