@@ -302,13 +302,18 @@ class Path:
         first, last = np.where(reach > 0, first, 0.0), np.where(after > 0, last, 1.0)
         left, kept = split(self.cubics, first[:, None, None])
         kept, right = split(kept, ((last - first) / (1 - first))[:, None, None])
+        arriving = self.frame(starts[:-1] + reach, 1).tangents  # of the cubics between
+        leaving = self.frame(starts[1:] - after, -1).tangents
         chain, moved = [], 0.0
         for j in range(m):
             if reach[j] > 0:
-                cubic = _joined(kept[j - 1], kept[j])
+                cubic = _joined(kept[j - 1][3], kept[j][0], leaving[j - 1], arriving[j])
                 moved = max(moved, _spread(cubic, right[j - 1], left[j]))
                 chain.append(cubic)
             chain.append(kept[j])
+        if reach[0] > 0:  # the path begins, as before, in the middle of its first joint
+            before, after = split(chain[0])
+            chain = [after, *chain[1:], before]
         return Path(np.array(chain), self.closed, self.name, self.moved + moved)
 
     def _parameters(self, s: FloatArray, side: int) -> FloatArray:
@@ -342,12 +347,11 @@ def _norm(a: FloatArray, b: FloatArray, c: FloatArray, x: FloatArray) -> FloatAr
     return np.sqrt(u * u + v * v)
 
 
-def _joined(before: FloatArray, after: FloatArray) -> FloatArray:
-    """(4, 2) the cubic from the end of one cubic to the start of another, of their tangents, near an arc."""
-    first, last = (cubic / np.hypot(*cubic) for cubic in (before[3] - before[2], after[1] - after[0]))
+def _joined(start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+    """(4, 2) the cubic between two points with these unit tangents, near an arc."""
     angle = np.arctan2(cross(first, last), first @ last)
-    handle = np.hypot(*(after[0] - before[3])) / 3 / np.cos(angle / 4) ** 2
-    return np.array([before[3], before[3] + handle * first, after[0] - handle * last, after[0]])
+    handle = np.hypot(*(end - start)) / 3 / np.cos(angle / 4) ** 2
+    return np.array([start, start + handle * first, end - handle * last, end])
 
 
 def _spread(*cubics: FloatArray) -> float:
