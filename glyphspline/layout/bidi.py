@@ -96,12 +96,17 @@ def visual_order(levels: Sequence[int]) -> list[int]:
     odd = [level for level in levels if level % 2]
     for level in range(max(levels, default=0), min(odd, default=DEEPEST + 2) - 1, -1):
         done = 0
-        for high, group in groupby(order, lambda i: levels[i] >= level):
-            those = list(group)
+        for high, those in _stretches(order, [levels[i] >= level for i in order]):
             if high:
                 order[done : done + len(those)] = those[::-1]
             done += len(those)
     return order
+
+
+def _stretches(items: Sequence[int], kinds: Sequence[bool]) -> list[tuple[bool, list[int]]]:
+    """Items in stretches of one kind."""
+    pairs = zip(kinds, items, strict=True)
+    return [(kind, [item for _, item in group]) for kind, group in groupby(pairs, lambda pair: pair[0])]
 
 
 def _isolates(classes: Sequence[str]) -> dict[int, int]:
@@ -208,7 +213,9 @@ def _weak(sequence: Sequence[int], kinds: list[str], sos: str) -> None:
         kinds[i] = "R" if kinds[i] == "AL" else kinds[i]
     for a, i, b in zip(sequence, sequence[1:], sequence[2:], strict=False):  # W4
         around = kinds[a]
-        if around == kinds[b] and ((kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")):
+        if around == kinds[b] and (
+            (kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")
+        ):
             kinds[i] = around
     for numbers, group in groupby(sequence, lambda i: kinds[i] in ("ET", "EN")):  # W5
         those = list(group)
@@ -272,7 +279,7 @@ def _bracket_pairs(sequence: Sequence[int], kinds: Sequence[str], text: str) -> 
     """BD16: places of matching brackets in the sequence, by the opening one."""
     if PAIRED.isdisjoint(text):
         return []
-    pairs, open_ones = [], []
+    pairs, open_ones = [], list[tuple[str, int]]()
     for k, i in enumerate(sequence):
         character = text[i]
         if character not in PAIRED or kinds[i] != "ON":

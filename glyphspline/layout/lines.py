@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import count
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import OptionError
 from ..readers import Source
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .features import check
 from .paragraph import Line, Paragraph
 from .placed import Layout
 from .setting import Setting, paragraphs
-from .shaping import HarfBuzzShaper, PlainShaper, Shaper
+from .shaping import HarfBuzzShaper, PlainShaper, Run, Shaped, Shaper
 
 WIDENED = frozenset(" \t\u00a0\u3000")
 """Spaces that justified lines widen."""
@@ -23,8 +24,8 @@ WIDENED = frozenset(" \t\u00a0\u3000")
 
 def placed(text: str, fonts: tuple[Source, ...], setting: Setting) -> Layout:
     """A text as :func:`.lay_out.layout` returns it."""
-    check(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     shapers, notes = _shapers(text, fonts, setting)
+    check(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     set_lines: list[tuple[Paragraph, int, Line]] = []
     missing: dict[str, None] = {}
     for start, stop in paragraphs(text):
@@ -35,20 +36,42 @@ def placed(text: str, fonts: tuple[Source, ...], setting: Setting) -> Layout:
     measure = max(lengths) if setting.width is None else max(setting.width, *lengths)
     ascender, descender, gap = _extents(fonts[0], setting)
     height = setting.line_height or ascender - descender + gap
-    columns: list[tuple[FloatArray, ...]] = []
-    for k, (paragraph, start, line), length in zip(count(), set_lines, lengths, strict=False):
-        columns += _columns(k, paragraph, start, line, length, measure, height, shapers, setting)
-    empty = (np.empty(0), np.empty(0), np.empty(0), np.empty(0), np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(0))
-    font, gid, cluster, number, origin, angle, advance, scale = (
-        np.concatenate(column) for column in zip(*(columns or [empty]), strict=True)
-    )
+    found = [
+        piece
+        for k, (paragraph, start, line), length in zip(count(), set_lines, lengths, strict=False)
+        for piece in _pieces(k, paragraph, start, line, measure - length, height, setting)
+    ]
+    font = _whole([np.full(len(piece.glyphs.gid), piece.run.font) for piece in found])
+    number = _whole([np.full(len(piece.glyphs.gid), piece.line) for piece in found])
+    origin = np.concatenate([np.empty((0, 2)), *(piece.origin for piece in found)])
+    turned = [setting.vertical and not piece.run.upright for piece in found]
+    angle = np.repeat(np.array(turned, dtype=np.float64) * (-pi / 2), [len(piece.glyphs.gid) for piece in found])
+    advance = np.concatenate([np.empty(0), *(piece.advance for piece in found)])
+    scale = np.array([shaper.scale for shaper in shapers])[font]
     below = (len(set_lines) - 1) * height
     if setting.vertical:
         box = (-below + descender, -measure, ascender, 0.0)
     else:
         box = (0.0, -below + descender, measure, ascender)
-    whole = (column.astype(np.int64) for column in (font, gid, cluster, number))
-    return Layout(text, fonts, *whole, origin + 0.0, angle, advance, box, tuple(missing), scale, tuple(notes))
+    gid, cluster = _whole([piece.glyphs.gid for piece in found]), _whole([piece.cluster for piece in found])
+    columns = font, gid, cluster, number, origin + 0.0, angle + 0.0, advance
+    return Layout(text, fonts, *columns, box, tuple(missing), scale, tuple(notes))
+
+
+class PlacedPiece(NamedTuple):
+    """Glyphs of one run in a line, with what is said of them in :class:`Layout`."""
+
+    run: Run
+    glyphs: Shaped
+    line: int
+    cluster: IntArray
+    origin: FloatArray
+    advance: FloatArray
+
+
+def _whole(parts: Sequence[IntArray]) -> IntArray:
+    """Integers end to end."""
+    return np.concatenate([np.empty(0, dtype=np.int64), *parts])
 
 
 def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
@@ -80,43 +103,27 @@ def _extents(font: Source, setting: Setting) -> tuple[float, float, float]:
     return ascender, descender, gap
 
 
-def _columns(
-    number: int,
-    paragraph: Paragraph,
-    start: int,
-    line: Line,
-    length: float,
-    measure: float,
-    height: float,
-    shapers: Sequence[Shaper],
-    setting: Setting,
-) -> list[tuple[FloatArray, ...]]:
-    """The columns of :class:`Layout` for the pieces of a line: font, glyph, cluster, line, origin, angle, advance, scale."""
+def _pieces(
+    number: int, paragraph: Paragraph, start: int, line: Line, room: float, height: float, setting: Setting
+) -> Iterator[PlacedPiece]:
+    """The pieces of a line in place.
+
+    Args:
+        number: of the line. start: of the paragraph in the text. room: by how much the line is shorter than all lines
+            may be. height: distance of baselines.
+    """
     along = np.array([0.0, -1.0]) if setting.vertical else np.array([1.0, 0.0])
-    align = "end" if paragraph.base % 2 and setting.align in ("start", "justify") else setting.align
-    align = "start" if paragraph.base % 2 and setting.align == "end" else align
-    room, extra = measure - length, 0.0
+    backward, text, extra = paragraph.base % 2, paragraph.text, 0.0
+    before = {"center": 0.5, "end": 1.0 - backward}.get(setting.align, backward) * room
     if setting.align == "justify" and not line.last:
-        text = paragraph.text
         spaces = sum(text[c] in WIDENED for piece in line.pieces for c in piece.glyphs.cluster.tolist())
-        extra = room / spaces if spaces else 0.0
-        room = 0.0 if spaces else room
-    pen = along * {"center": room / 2, "end": room}.get(align, 0.0)
-    pen += [-number * height, 0.0] if setting.vertical else [0.0, -number * height]
-    found = []
-    for piece in line.pieces:
-        glyphs, run = piece.glyphs, piece.run
+        extra, before = (room / spaces, 0.0) if spaces else (0.0, before)
+    pen = along * before - ([number * height, 0.0] if setting.vertical else [0.0, number * height])
+    for run, glyphs in line.pieces:
         advance = glyphs.advance
         if extra:
-            widened = [paragraph.text[c] in WIDENED for c in glyphs.cluster.tolist()]
-            advance = advance + np.outer(widened, along * extra)
+            advance = advance + np.outer([text[c] in WIDENED for c in glyphs.cluster.tolist()], along * extra)
         ends = pen + np.cumsum(advance, axis=0)
-        n = len(glyphs.gid)
-        angle = -pi / 2 if setting.vertical and not run.upright else 0.0
         origin = ends - advance + glyphs.offset
-        pen = ends[-1] if n else pen
-        same = (np.full(n, run.font), np.full(n, number), np.full(n, angle), np.full(n, shapers[run.font].scale))
-        found.append(
-            (same[0], glyphs.gid, glyphs.cluster + start, same[1], origin, same[2], advance @ along, same[3])
-        )
-    return found
+        pen = ends[-1] if len(ends) else pen
+        yield PlacedPiece(run, glyphs, number, glyphs.cluster + start, origin, advance @ along)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect, bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,12 +21,14 @@ from .shaping import HarfBuzzShaper, Run, Shaped, Shaper
 HANGING = frozenset(" \t\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2008\u2009\u200a\u200b\u205f\u3000")
 """Spaces that a line broken at ``width`` leaves out at its end."""
 
+LONGEST_RUN = 20_000
+"""Characters that are shaped at once. HarfBuzz gives up on longer texts: the more lookups a font has, the sooner."""
+
 SOFT_HYPHEN, HYPHENS = "\u00ad", "\u2010-"
 """A line that ends after the first shows the first of the others that its font has."""
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(NamedTuple):
     """Glyphs of one run in a line."""
 
     run: Run
@@ -55,6 +60,7 @@ class Paragraph:
             self.codes = [0x20 if code == 9 else code for code in self.codes]
         self.missing: list[str] = []
         self.runs = self._runs()
+        self._starts = [run.start for run in self.runs]
         self.shaped = [self._shape(self.codes, run) for run in self.runs]
 
     def lines(self, width: float | None) -> Iterator[Line]:
@@ -86,9 +92,19 @@ class Paragraph:
         traits = list(zip(fonts, scripts, levels, upright, strict=True))
         for i in range(1, len(text) + 1):
             if i == len(text) or traits[i] != traits[start]:
-                runs.append(Run(start, i, *traits[start]))
+                runs += [Run(a, b, *traits[start]) for a, b in self._cut(start, i)]
                 start = i
         return runs
+
+    def _cut(self, start: int, stop: int) -> Iterator[tuple[int, int]]:
+        """A run in parts that HarfBuzz has memory for, after a space if there is one, or between grapheme clusters."""
+        while stop - start > LONGEST_RUN:
+            cut = self.text.rfind(" ", start + LONGEST_RUN // 2, start + LONGEST_RUN) + 1
+            cut = cut or int(self._clusters[np.searchsorted(self._clusters, start + LONGEST_RUN, side="right") - 1])
+            cut = cut if cut > start else start + LONGEST_RUN  # a cluster longer than that
+            yield start, cut
+            start = cut
+        yield start, stop
 
     def _fonts(self) -> list[int]:
         """Which font each character is of: by grapheme cluster, the first that has all of it, or has its beginning."""
@@ -97,7 +113,7 @@ class Paragraph:
             return [0] * len(text)
         found, known = [0] * len(text), dict[str, int]()
         ends = self._clusters.tolist()
-        for a, b in zip(ends, ends[1:], strict=False):
+        for a, b in pairwise(ends):
             cluster = text[a:b]
             if cluster not in known:
                 whole = (k for k, shaper in enumerate(shapers) if shaper.has(cluster))
@@ -137,9 +153,9 @@ class Paragraph:
     @cached_property
     def _ends(self) -> FloatArray:
         """(n + 1,) length of the text before each character, where the whole paragraph is one line."""
-        by_character = np.zeros(len(self.text))
-        for glyphs in self.shaped:
-            np.add.at(by_character, glyphs.cluster, self._along(glyphs.advance))
+        clusters = np.concatenate([glyphs.cluster for glyphs in self.shaped])
+        advances = np.concatenate([self._along(glyphs.advance) for glyphs in self.shaped])
+        by_character = np.bincount(clusters, advances, len(self.text))
         return np.concatenate([[0.0], np.cumsum(by_character)])
 
     @cached_property
@@ -151,10 +167,15 @@ class Paragraph:
         seen = np.concatenate([[0], last_seen])[places]
         lengths = self._ends[seen]
         if SOFT_HYPHEN in text:
-            soft = [k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)]
+            soft = [
+                k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)
+            ]
+            hyphens: dict[Run, float] = {}
             for k in soft:
-                alone = self._shape([self._hyphen(seen[k])], replace(self._run_of(seen[k] - 1), start=0, stop=1))
-                lengths[k] += self._along(alone.advance).sum()
+                run = replace(self._run_of(int(seen[k]) - 1), start=0, stop=1)
+                if run not in hyphens:
+                    hyphens[run] = float(self._along(self._shape([self._hyphen(int(seen[k]))], run).advance).sum())
+                lengths[k] += hyphens[run]
         return places, seen, np.maximum.accumulate(lengths)
 
     def _fitting(self, at: int, width: float) -> tuple[Line, int]:
@@ -167,8 +188,7 @@ class Paragraph:
             if self.length(line) <= width + 1e-6:
                 return line, int(places[k])
         # No place to break: between grapheme clusters, at least one to a line.
-        ends = self._clusters[self._clusters > at]
-        ends = ends[ends <= places[first]]
+        ends = self._clusters[slice(*np.searchsorted(self._clusters, [at, places[first]], side="right"))]
         count = max(int(np.searchsorted(self._ends[ends], fits, side="right")), 1)
         while True:
             stop = int(ends[count - 1])
@@ -179,26 +199,27 @@ class Paragraph:
 
     def _line(self, start: int, stop: int, last: bool) -> Line:
         """The characters from ``start`` up to ``stop`` as a line; what cutting changes is shaped again."""
-        inside = [k for k, run in enumerate(self.runs) if run.start < stop and run.stop > start]
-        codes = self.codes
-        if not last and stop > start and self.text[stop - 1] == SOFT_HYPHEN:
-            codes = [*self.codes[:start], *self.codes[start : stop - 1], self._hyphen(stop), *self.codes[stop:]]
+        inside = range(bisect(self._starts, start) - 1, bisect_left(self._starts, stop)) if stop > start else ()
+        hyphen = None if last or not inside or self.text[stop - 1] != SOFT_HYPHEN else self._hyphen(stop)
         order = visual_order([self.runs[k].level for k in inside])
         pieces = []
         for k in (inside[i] for i in order):
             run, glyphs = self.runs[k], self.shaped[k]
             part = replace(run, start=max(run.start, start), stop=min(run.stop, stop))
-            hyphenated = codes is not self.codes and part.stop == stop
             cuts = [place for place in (part.start, part.stop) if run.start < place < run.stop]
-            if hyphenated or not all(glyphs.may_be_cut(place) for place in cuts):
-                glyphs = self._shape(codes, part)
+            if hyphen and part.stop == stop:
+                self.codes[stop - 1] = hyphen
+                glyphs = self._shape(self.codes, part)
+                self.codes[stop - 1] = ord(SOFT_HYPHEN)
+            elif not all(glyphs.may_be_cut(place) for place in cuts):
+                glyphs = self._shape(self.codes, part)
             elif cuts:
                 glyphs = glyphs.part(part.start, part.stop)
             pieces.append(Piece(part, glyphs))
         return Line(start, stop, tuple(pieces), last)
 
     def _run_of(self, place: int) -> Run:
-        return next(run for run in self.runs if run.start <= place < run.stop)
+        return self.runs[bisect(self._starts, place) - 1]
 
     def _hyphen(self, stop: int) -> int:
         """The code point shown for the soft hyphen before ``stop``."""

@@ -142,7 +142,9 @@ class Layout:
         which, motion = self._contours(ends)
         left, bottom, right, top = self.box
         metrics = FontMetrics(self.fonts[0].metrics.units_per_em, top, bottom)
-        return Outline(NAME, advance=right - left, contours=Contours(moved_contours(contours, which, motion)), metrics=metrics)
+        return Outline(
+            NAME, advance=right - left, contours=Contours(moved_contours(contours, which, motion)), metrics=metrics
+        )
 
     def _rounded_anew(self, precision: int) -> bool:
         """Whether coordinates with so many decimals are not such any more where glyphs are put."""

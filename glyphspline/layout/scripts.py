@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Sequence
 from functools import cache, lru_cache
+from itertools import pairwise
 
 from fontTools.unicodedata import script, script_extension
 
@@ -12,6 +13,9 @@ from .bidi import CLOSING
 
 COMMON = frozenset({"Zyyy", "Zinh", "Zzzz"})
 """Common, inherited and unknown: such characters take the script of their neighbours."""
+
+PAIRS = {**CLOSING, "«": "»", "‹": "›", "“": "”", "‘": "’"}
+"""Opening to closing bracket or quotation mark."""
 
 UPRIGHT = """
 A7 A9 AE B1 BC-BE D7 F7 2EA-2EB 1100-11FF 1401-167F 18B0-18F5 2016 2020-2021 2030-2031 203B-203C 2042 2047-2049 2051
@@ -24,6 +28,7 @@ AC00-D7FB E000-FAD9 FE10-FE19 FE30-FE48 FE50-FE57 FE59-FE62 FE68-FE6B FF01-FF0C 
 """
 """The code points whose Vertical_Orientation is not R, in Unicode 15; gaps that no character is in are closed."""
 
+
 @lru_cache(maxsize=4096)
 def _script(character: str) -> tuple[str, frozenset[str]]:
     """The script of a character, and the scripts it is used with; none for what is used with all."""
@@ -34,7 +39,7 @@ def scripts_of(text: str) -> list[str]:
     """The script of each character, by ISO 15924.
 
     Characters common to several scripts take that of the characters before them, or of those after them at the
-    beginning, if they are used with it. A closing bracket takes that of the opening one.
+    beginning, if they are used with it. A closing bracket or quotation mark takes that of the opening one.
     """
     known = {character: _script(character) for character in set(text)}
     strong = {own for own, _ in known.values()} - COMMON
@@ -51,8 +56,8 @@ def scripts_of(text: str) -> list[str]:
             later = (known[other][0] for other in text[i + 1 : i + 32])
             after = next((other for other in later if other not in COMMON), "")
             current = after if after in with_ else min(with_)
-        elif character in CLOSING:
-            brackets.append((CLOSING[character], current))
+        elif character in PAIRS:
+            brackets.append((PAIRS[character], current))
         elif any(character == closing for closing, _ in brackets[-8:]):
             while brackets[-1][0] != character:
                 brackets.pop()
@@ -68,7 +73,7 @@ def upright_in_columns(text: str, clusters: Sequence[int]) -> list[bool]:
     """
     stands = {character: _stands(character) for character in set(text)}
     found = [False] * len(text)
-    for a, b in zip(clusters, clusters[1:], strict=False):
+    for a, b in pairwise(clusters):
         found[a:b] = [stands[text[a]]] * (b - a)
     return found
 

@@ -11,6 +11,7 @@ from unicodedata import category, normalize
 import numpy as np
 import uharfbuzz as hb
 
+from ..errors import GlyphsplineError
 from ..readers import Source
 from ..types import BoolArray, FloatArray, IntArray
 from .features import Feature, for_buffer
@@ -128,6 +129,7 @@ class HarfBuzzShaper(Shaper):
         self._buffer = hb.Buffer()
 
     def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+        """See :meth:`Shaper.shape`."""
         first, last = max(run.start - CONTEXT, 0), min(run.stop + CONTEXT, len(codes))
         buffer = self._buffer
         buffer.reset()
@@ -137,7 +139,12 @@ class HarfBuzzShaper(Shaper):
             buffer.language = self._language
         flags = hb.BufferFlags.BOT if run.start == 0 else hb.BufferFlags.DEFAULT
         buffer.flags = flags | hb.BufferFlags.EOT if run.stop == len(codes) else flags
-        hb.shape(self.source.shaper, buffer, for_buffer(self._features, self.origin + first))
+        try:
+            hb.shape(self.source.shaper, buffer, for_buffer(self._features, self.origin + first))
+        except MemoryError as error:
+            raise GlyphsplineError(
+                "HarfBuzz gives up on the text: its tables grow it beyond measure", font=str(self.source.path)
+            ) from error
         infos, n = buffer.glyph_infos, len(buffer.glyph_infos)
         numbers = np.array([(info.codepoint, info.cluster, info.flags) for info in infos], dtype=np.int64).reshape(n, 3)
         positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(n, 4) * self.scale
@@ -163,12 +170,15 @@ class PlainShaper(Shaper):
     """A source without tables for shaping, such as a UFO: a glyph a character, one after the other."""
 
     def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+        """See :meth:`Shaper.shape`."""
         own = [self._glyph(codes[i]) for i in range(run.start, run.stop)]
         found = [(i, gid) for i, gid in enumerate(own, run.start) if gid >= 0]
         placed = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
         advance = np.zeros((len(placed), 2))
         advance[:, 0] = [self._advances[gid] * self.scale for gid in placed[:, 1].tolist()]
-        return Shaped(placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_))
+        return Shaped(
+            placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_)
+        )
 
     def prepare(self, text: str) -> None:
         """Read the advances of all glyphs of a text."""
