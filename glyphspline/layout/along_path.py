@@ -19,6 +19,10 @@ ROUNDING = 1e-9
 """Share of the path's length by which a text may be too long."""
 
 
+MOST_NAMED = 12
+"""Letters that an error names."""
+
+
 class Letters(NamedTuple):
     """The letters of a line, in visual order: glyphs that are turned together.
 
@@ -60,7 +64,13 @@ def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "st
         OptionError: an argument out of range.
 
     Example:
-        EXAMPLE
+        >>> import glyphspline as gs
+        >>> from glyphspline.layout.along_path import along
+        >>> from glyphspline.layout.path import Path
+        >>> font = gs.open_font("fonts_test/kouzan-gyosho.ttf")
+        >>> upwards = along(gs.layout(font, "龍好"), Path.of([[0, 0], [0, 3000]]))
+        >>> upwards.origin.round(6).tolist()
+        [[0.0, 0.0], [0.0, 1024.0]]
     """
     path, letters, start = laid(layout, path, offset, align, side)
     if not len(layout):
@@ -93,6 +103,8 @@ def laid(layout: Layout, path: Path, offset: float, align: Align, side: Side) ->
     lines = len(np.unique(layout.line))
     if lines > 1:
         raise GlyphsplineError(f"a text of {lines} lines; on a path there is one", font=path.name)
+    if _columns(layout):
+        raise GlyphsplineError("a text set in columns; on a path it is horizontal", font=path.name)
     if side == "right":
         path = path.reversed()
     letters = letters_of(layout)
@@ -110,11 +122,11 @@ def laid(layout: Layout, path: Path, offset: float, align: Align, side: Side) ->
     if out.any():
         number = int(out.sum())
         place = "" if offset == 0 or path.closed else f", and begins at {offset:.6g},"
-        text = layout.text[letters.character[out].min() :].split()[0][:12]
+        named = "".join([layout.text[k] for k in np.sort(letters.character[out]).tolist()])
+        named = named if number <= MOST_NAMED else f"{named[:MOST_NAMED]}…"
         raise GlyphsplineError(
             f"the text is {right - left:.6g} units long{place} and the path {path.length:.6g}: "
-            f"{number} of {counted(int(ink.sum()), 'letter')} {'does' if number == 1 else 'do'} not fit, "
-            f"from {text!r} on",
+            f"{number} of {counted(int(ink.sum()), 'letter')} {'does' if number == 1 else 'do'} not fit, {named!r}",
             font=path.name,
         )
     return path, letters, start
@@ -155,6 +167,16 @@ def letters_of(layout: Layout) -> Letters:
     np.minimum.at(left, of[counts], np.minimum(pens, ends)[counts])
     np.maximum.at(right, of[counts], np.maximum(pens, ends)[counts])
     return Letters(of, left + begin, right + begin, character[kept])
+
+
+def _columns(layout: Layout) -> bool:
+    """Whether the pen goes up or down: glyphs stand nearer to where their advances add up to in y than in x."""
+    wide = layout.advance != 0
+    (x, y), ends = layout.origin[wide].T, np.cumsum(layout.advance)[wide]
+    starts = ends - layout.advance[wide]
+    if len(x) < 2:
+        return False
+    return bool(min(np.ptp(y + starts), np.ptp(y + ends), np.ptp(y - starts), np.ptp(y - ends)) < np.ptp(x - starts))
 
 
 def _turned(arms: FloatArray, tangents: FloatArray) -> FloatArray:

@@ -12,18 +12,21 @@ from ..curves.bezier import cross, derivative_points, split
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
 from ..types import BoolArray, FloatArray, IntArray
-from .along_path import Align, Letters, Side, laid
+from .along_path import MOST_NAMED, Align, Letters, Side, laid
 from .path import SMOOTH, Path
 from .placed import Layout
 
 SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
 
-STEPS = 32
+STEPS = 16
 """Even steps of a segment's parameter between the places where the distance is measured."""
 
 ROUNDS = 5
 """Least-squares fits of the two handles, each followed by new parameters of the nearest points."""
+
+ENOUGH = 0.25
+"""Share of the tolerance below which a cubic's handles are not fitted any more."""
 
 ROUNDING_RADIUS = 4.0
 """Small kinks of the path are rounded by a radius of so many heights of the text."""
@@ -33,6 +36,10 @@ VISIBLE = 1e-4
 
 MOST_PIECES = 512
 """Pieces of one segment. Next to a fold the bound asks for more and more."""
+
+
+AT_ONCE = 4096
+"""Cubics fitted at once: some 50 MB."""
 
 
 class Bounds(NamedTuple):
@@ -79,7 +86,7 @@ def bend(
     stay corners; the handles are fitted by least squares. Small kinks of the path are rounded first, by
     :meth:`.Path.rounded`. Where the path's curvature jumps, a slanted line gets a corner, as the map has it.
 
-    The distance to the deformed outline is bounded: at 33 places of a cubic it is measured, and between them it is
+    The distance to the deformed outline is bounded: at 17 places of a cubic it is measured, and between them it is
     larger by no more than an eighth of the step's square times the largest second derivative, which follows from
     bounds of the path's curvature and of its derivative.
 
@@ -164,7 +171,8 @@ class _Line:
 
     def fold(self, x: FloatArray, y: FloatArray, curvature: FloatArray) -> GlyphsplineError:
         """The error of outlines that fold over at points (x, y) of the line, where the path bends too sharply."""
-        letters = dict.fromkeys([self.letter(s) for s in np.sort(x).tolist()])
+        letters = list(dict.fromkeys([self.letter(s) for s in np.sort(x).tolist()]))
+        letters = letters if len(letters) <= MOST_NAMED else [*letters[:MOST_NAMED], "…"]
         worst = int((curvature * y).argmax())
         where = np.mod(x[worst], self.path.length) if self.path.closed else x[worst]
         return GlyphsplineError(
@@ -282,7 +290,9 @@ def _fitted(
         of = np.repeat(todo, count[todo])
         number = np.arange(len(of)) - np.repeat(np.cumsum(count[todo]) - count[todo], count[todo])
         parts = _sections(cubics[of], number / count[of], (number + 1) / count[of])
-        fit, bound = _fit(line, parts, bounds, low[of], high[of])
+        chunks = [slice(k, k + AT_ONCE) for k in range(0, len(of), AT_ONCE)]
+        found = [_fit(line, parts[k], bounds, low[of[k]], high[of[k]], tolerance) for k in chunks]
+        fit, bound = (np.concatenate(column) for column in zip(*found, strict=True))
         most = np.zeros(len(cubics))
         np.maximum.at(most, of, bound)
         good = most[of] <= tolerance
@@ -305,7 +315,7 @@ def _fitted(
 
 
 def _fit(
-    line: _Line, parts: FloatArray, bounds: Bounds, low: FloatArray, high: FloatArray
+    line: _Line, parts: FloatArray, bounds: Bounds, low: FloatArray, high: FloatArray, tolerance: float
 ) -> tuple[FloatArray, FloatArray]:
     """A cubic for each deformed one, (k, 4, 2), and a bound of their distance; infinite if it may fold over.
 
@@ -326,7 +336,8 @@ def _fit(
         folded = shrink <= 0
         raise line.fold(x[folded], y[folded], kappa[folded])
     target = (frame.points + y[..., None] * N)[:, ::2]
-    pieces, at = _handles(target, _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3))
+    arms = _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3)
+    pieces, at = _handles(target, *arms, ENOUGH * tolerance)
 
     # Bounds over each part: of x, y and their derivatives, and of the path below it.
     X1, Y1 = np.abs(d1).max(axis=1).T
@@ -392,20 +403,23 @@ def _mapped_arm(path: Path, parts: FloatArray, end: int) -> FloatArray:
     return ((1 - kappa * here[:, 1]) * arm[:, 0])[:, None] * T + arm[:, 1:] * N
 
 
-def _handles(target: FloatArray, first: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _handles(target: FloatArray, first: FloatArray, last: FloatArray, enough: float) -> tuple[FloatArray, FloatArray]:
     """Cubics (k, 4, 2) from the first to the last of (k, p, 2) points, near all by least squares.
 
     Args:
         first, last: (k, 2) the arms that the cubics have at first; only their lengths are changed.
+        enough: distance from the points below which cubics stay as they are.
 
     Returns:
         The cubics, and ascending parameters (k, p) of places near the points.
     """
+    best = np.stack([target[:, 0], target[:, 0] + first, target[:, -1] - last, target[:, -1]], axis=1)
+    best_at = np.tile(np.linspace(0, 1, target.shape[1]), (len(target), 1))
+    least = _off(best, best_at, target)
+    todo = np.flatnonzero(least > enough * enough)
+    at, target, first, last = best_at[todo], target[todo], first[todo], last[todo]
     start, end = target[:, 0], target[:, -1]
-    at = np.tile(np.linspace(0, 1, target.shape[1]), (len(target), 1))
-    pieces = np.stack([start, start + first, end - last, end], axis=1)
-    best, best_at, least = pieces, at, _off(pieces, at, target)
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if len(todo) else 0):
         z = 1 - at
         b1, b2 = 3 * z * z * at, 3 * z * at * at
         fixed = (z * z * z + b1)[..., None] * start[:, None] + (b2 + at * at * at)[..., None] * end[:, None]
@@ -426,9 +440,8 @@ def _handles(target: FloatArray, first: FloatArray, last: FloatArray) -> tuple[F
         at[:, 0], at[:, -1] = 0.0, 1.0
         at = np.maximum.accumulate(at, axis=1)
         off = _off(pieces, at, target)
-        better = off < least
-        best = np.where(better[:, None, None], pieces, best)
-        best_at, least = np.where(better[:, None], at, best_at), np.where(better, off, least)
+        better = off < least[todo]
+        best[todo[better]], best_at[todo[better]], least[todo[better]] = pieces[better], at[better], off[better]
     return best, best_at
 
 

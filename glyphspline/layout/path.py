@@ -46,8 +46,9 @@ class Table(NamedTuple):
     """Parts of the path, in order: short enough that chord and control polygon are of almost one length.
 
     Attributes:
-        cubics: (n, 4, 2). velocities: (n, 3, 2) coefficients of 1, x and x² in the first derivative. segment: (n,) that a part is of. first, width: (n,) where it begins there, and how far it
-            goes, in the segment's parameter.
+        cubics: (n, 4, 2). velocities: (n, 3, 2) coefficients of 1, x and x² in the first derivative.
+        segment: (n,) that a part is of. first, width: (n,) where it begins there and how far it goes, in the segment's
+            parameter.
         ends: (n + 1,) arc length where each part begins, and the length of the path.
         error: bound of the error of any arc length.
     """
@@ -139,6 +140,8 @@ class Path:
                 return cls(cubic_approximation(pieces, COINCIDENT * extent or 1.0), curve.closed, name)
             return cls(np.array([as_cubic(piece) for piece in pieces]), curve.closed, name)
         array = np.asarray(curve, dtype=np.float64)
+        if not np.isfinite(array).all():
+            raise GlyphsplineError("coordinates of the path are not finite", font=name)
         if array.ndim == 2 and array.shape[1] == 2 and len(array):
             if closed and (array[0] != array[-1]).any():
                 array = np.concatenate([array, array[:1]])
@@ -148,7 +151,7 @@ class Path:
         if array.ndim != 3 or array.shape[1:] != (4, 2):
             raise GlyphsplineError(f"a path is a polyline (n, 2) or cubics (m, 4, 2), not {array.shape}", font=name)
         if closed is None:
-            closed = bool(len(array)) and meets(array)
+            closed = bool(len(array)) and _meets(array)
         return cls(array, closed, name)
 
     def __repr__(self) -> str:
@@ -299,13 +302,18 @@ class Path:
         first, last = np.where(reach > 0, first, 0.0), np.where(after > 0, last, 1.0)
         left, kept = split(self.cubics, first[:, None, None])
         kept, right = split(kept, ((last - first) / (1 - first))[:, None, None])
+        arriving = self.frame(starts[:-1] + reach, 1).tangents  # of the cubics between
+        leaving = self.frame(starts[1:] - after, -1).tangents
         chain, moved = [], 0.0
         for j in range(m):
             if reach[j] > 0:
-                cubic = _joined(kept[j - 1], kept[j])
+                cubic = _joined(kept[j - 1][3], kept[j][0], leaving[j - 1], arriving[j])
                 moved = max(moved, _spread(cubic, right[j - 1], left[j]))
                 chain.append(cubic)
             chain.append(kept[j])
+        if reach[0] > 0:  # the path begins, as before, in the middle of its first joint
+            before, after = split(chain[0])
+            chain = [after, *chain[1:], before]
         return Path(np.array(chain), self.closed, self.name, self.moved + moved)
 
     def _parameters(self, s: FloatArray, side: int) -> FloatArray:
@@ -339,12 +347,11 @@ def _norm(a: FloatArray, b: FloatArray, c: FloatArray, x: FloatArray) -> FloatAr
     return np.sqrt(u * u + v * v)
 
 
-def _joined(before: FloatArray, after: FloatArray) -> FloatArray:
-    """(4, 2) the cubic from the end of one cubic to the start of another, of their tangents, near an arc."""
-    first, last = (cubic / np.hypot(*cubic) for cubic in (before[3] - before[2], after[1] - after[0]))
+def _joined(start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+    """(4, 2) the cubic between two points with these unit tangents, near an arc."""
     angle = np.arctan2(cross(first, last), first @ last)
-    handle = np.hypot(*(after[0] - before[3])) / 3 / np.cos(angle / 4) ** 2
-    return np.array([before[3], before[3] + handle * first, after[0] - handle * last, after[0]])
+    handle = np.hypot(*(end - start)) / 3 / np.cos(angle / 4) ** 2
+    return np.array([start, start + handle * first, end - handle * last, end])
 
 
 def _spread(*cubics: FloatArray) -> float:
@@ -357,7 +364,7 @@ def _spread(*cubics: FloatArray) -> float:
     return float(np.ptp(heights))
 
 
-def meets(cubics: FloatArray) -> bool:
+def _meets(cubics: FloatArray) -> bool:
     """Whether a chain of cubics ends where it begins."""
     extent = float(np.ptp(cubics.reshape(-1, 2), axis=0).max())
     return bool(np.abs(cubics[-1, 3] - cubics[0, 0]).max() <= COINCIDENT * extent)

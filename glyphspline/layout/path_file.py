@@ -1,5 +1,8 @@
 """A path from an SVG file: one of its shapes, by its id."""
 
+# The names of a pen's methods are fontTools' own.
+# ruff: noqa: N802, N815
+
 from __future__ import annotations
 
 from collections import Counter
@@ -13,7 +16,7 @@ from ..errors import GlyphsplineError
 from ..readers.source import opening, reason
 from ..readers.svg_drawings import svg_root
 from ..types import FloatArray
-from .path import Path, meets
+from .path import Path
 
 ARC = 15.0
 """Degrees of an elliptic arc that become one cubic, with an error of 6e-9 of the radius."""
@@ -69,14 +72,11 @@ def open_path(given: str | FilePath) -> Path:
     if len(pieces) > 1:
         raise GlyphsplineError(f"the path is of {len(pieces)} pieces; text runs along one", font=place)
     cubics = pieces[0] if pieces else np.empty((0, 4, 2))
-    return Path(cubics, bool(len(cubics)) and np.isfinite(cubics).all() and meets(cubics), place)
+    return Path.of(cubics, name=place)
 
 
 class PathPen:
     """Collects the segments of subpaths as cubics, those of a line that closes one too."""
-
-    # The names of a pen's methods are fontTools' own.
-    # ruff: noqa: N802
 
     def __init__(self) -> None:
         self.pieces: list[list[FloatArray]] = []
