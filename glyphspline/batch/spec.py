@@ -7,6 +7,7 @@ import math
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,7 +136,7 @@ class RunSpec:
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))
 
-    @property
+    @cached_property
     def look(self) -> Appearance:
         """How drawings look."""
         return Appearance(self.view_box, self.size, self.fill, self.stroke)
@@ -144,12 +145,12 @@ class RunSpec:
         """What writers of glyphs of a font with these metrics are told."""
         return settings_for(self.look, metrics, self.flatness, self.dxf)
 
-    @property
+    @cached_property
     def is_fitted(self) -> bool:
         """Whether anything is fitted: any of the formats shows more than outlines as the font has them."""
         return needs_fit(self.formats)
 
-    @property
+    @cached_property
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)

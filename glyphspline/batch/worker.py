@@ -36,7 +36,7 @@ from .job import Done, Job, Task, failed
 from .pool import sign_of_life
 from .spec import POLYGON, RESULTS, Limits, suffix_of
 from .store import to_text
-from .summary import Facts, facts_of
+from .summary import NO_FACTS, Facts, facts_of
 
 Location = tuple[tuple[str, float], ...]
 
@@ -205,14 +205,14 @@ class Glyph(NamedTuple):
     Attributes:
         path: of the result. source: of the source; None if no format shows it.
         polygons: None without a gallery.
-        measures: of the contours, as JSON without the brackets. facts: of these, for the summary.
+        measures: of the contours, as JSON without the brackets; None if nothing is fitted. facts: for the summary.
     """
 
     result: GlyphResult
     path: PathData
     source: PathData | None
     polygons: PolygonData | None
-    measures: str
+    measures: str | None
     facts: Facts
 
 
@@ -222,13 +222,14 @@ def drawn(job: Job, results: Sequence[GlyphResult]) -> list[Glyph]:
         return []
     spec = job.spec
     arrays, offsets = end_to_end(results)
-    measures = arrays.measures if spec.is_fitted else {}
     paths = curves_data(arrays.curves, spec.options.precision, offsets)
     nothing = [None] * len(results)
-    sources = (source_data(results) if spec.is_fitted else paths) if {"source", GALLERY} & {*spec.formats} else nothing
+    if not spec.is_fitted:
+        return list(map(Glyph, results, paths, paths, nothing, nothing, [NO_FACTS] * len(results)))
+    sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
     polygons = polygon_data(results) if GALLERY in spec.formats else nothing
-    facts = [facts_of(measures, a, b) for a, b in pairwise(offsets.tolist())]
-    return list(map(Glyph, results, paths, sources, polygons, contour_texts(measures, offsets), facts))
+    facts = [facts_of(arrays.measures, a, b) for a, b in pairwise(offsets.tolist())]
+    return list(map(Glyph, results, paths, sources, polygons, contour_texts(arrays.measures, offsets), facts))
 
 
 def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seconds: float) -> Done:
@@ -300,6 +301,7 @@ def _map(job: Job, glyph: Glyph, kind: ImageKind) -> bytes:
 def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
     assert glyph.polygons is not None
+    assert glyph.measures is not None
     polygon, control = (part.text for part in glyph.polygons)
     shown = {"source": glyph.source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
     return glyph_text(shown, files, glyph.measures)

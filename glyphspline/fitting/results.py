@@ -294,6 +294,7 @@ def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> li
 
     Polygons have the points where segments meet; there are no interpolations, and no measures but the three counts.
     """
+    options = options or Options()
     given = joined([outline.arrays for outline in outlines])
     ends = offsets_of([outline.arrays.num_contours for outline in outlines])
     kept = np.diff(given.offsets) > 0
@@ -306,7 +307,7 @@ def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> li
     no_arcs = np.zeros(len(given.offsets), dtype=np.int64)
     found = ConvertedContours(given, given, polygons, (), NO_POLYLINES, no_arcs, counts)
     return [
-        GlyphResult(outline, options or Options(), ContourResults(found, first, last))
+        GlyphResult(outline, options, ContourResults(found, first, last))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
 
