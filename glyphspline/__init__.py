@@ -29,6 +29,8 @@ from .outlines.sampling import sample
 display.install()
 
 if TYPE_CHECKING:
+    from .dataset.dataset_run import dataset as dataset
+    from .dataset.spec import DatasetSpec as DatasetSpec
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -43,8 +45,10 @@ if TYPE_CHECKING:
     from .writers.ufo_folder import write_ufo as write_ufo
 
 _ON_DEMAND = {
+    "DatasetSpec": ".dataset.spec",
     "Font": ".readers",
     "Layout": ".layout.placed",
+    "dataset": ".dataset.dataset_run",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -76,6 +80,7 @@ __all__ = [
     "AxisKinks",
     "Contour",
     "ContourResult",
+    "DatasetSpec",
     "DesignAxis",
     "Difference",
     "Finding",
@@ -107,6 +112,7 @@ __all__ = [
     "convert",
     "convert_many",
     "convert_masters",
+    "dataset",
     "interpolate",
     "interpolate_many",
     "interpolate_vertex",

@@ -1,0 +1,176 @@
+"""What a run over fonts makes: fonts in a fixed order, their glyphs packed into shards."""
+
+from __future__ import annotations
+
+import json
+import platform
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .._version import __version__
+from .scan import SPLITS, FontFacts
+from .spec import DatasetSpec
+
+SHARD = 10_000
+"""Glyphs in a shard, at most: some 100 MB with 64 points a contour."""
+
+CHUNK = 100
+"""Glyphs that a worker makes rows of at a time."""
+
+LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
+"""Those whose versions decide the bytes of shards."""
+
+
+class Task(NamedTuple):
+    """A glyph: its number in the run, its font, and its place among the glyphs of the font that are asked for."""
+
+    number: int
+    font: FontFacts
+    at: int
+
+
+class Piece(NamedTuple):
+    """Glyphs of a font in a shard: those asked for from ``first`` up to ``last``; ``font`` is its number."""
+
+    font: int
+    first: int
+    last: int
+
+
+class Shard(NamedTuple):
+    """A file of the data set: its name, and its glyphs, of which the first has the number ``start`` in the run."""
+
+    name: str
+    split: str
+    start: int
+    pieces: tuple[Piece, ...]
+
+    @property
+    def glyphs(self) -> int:
+        """Number of its glyphs."""
+        return sum(piece.last - piece.first for piece in self.pieces)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A data set before it is made.
+
+    Attributes:
+        spec: what it holds. fonts: all faces, in the order of rows first, by split, hash and face; then the others.
+    """
+
+    spec: DatasetSpec
+    fonts: tuple[FontFacts, ...]
+
+    @cached_property
+    def shards(self) -> tuple[Shard, ...]:
+        """The files, in order."""
+        found: list[Shard] = []
+        start = 0
+        for split in SPLITS:
+            packs = list(_packs([(k, font) for k, font in enumerate(self.fonts) if font.split == split]))
+            for k, pieces in enumerate(packs):
+                shard = Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, start, pieces)
+                found.append(shard)
+                start += shard.glyphs
+        return tuple(found)
+
+    @property
+    def glyphs(self) -> int:
+        """Number of glyphs of all shards."""
+        return sum(shard.glyphs for shard in self.shards)
+
+    def chunks(self, shard: Shard) -> Iterator[list[Task]]:
+        """The tasks of a shard in order, in chunks of one font each."""
+        number = shard.start
+        for piece in shard.pieces:
+            for first in range(piece.first, piece.last, CHUNK):
+                last = min(first + CHUNK, piece.last)
+                yield [Task(number + k - first, self.fonts[piece.font], k) for k in range(first, last)]
+                number += last - first
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The content of ``dataset.json``, from which a run with other options or fonts is told apart."""
+        options = None if self.spec.options is None else asdict(self.spec.options)
+        fonts = [[f.sha256, f.face, f.file, f.status] for f in self.fonts]
+        return {
+            "glyphspline": __version__,
+            "versions": versions(),
+            "spec": asdict(self.spec) | {"options": options},
+            "fonts": {"count": len(fonts), "sha256": _digest(fonts)},
+            "shards": len(self.shards),
+        }
+
+    @cached_property
+    def digest(self) -> str:
+        """A hash of the record: shards of one run have the same."""
+        return _digest(self.record)
+
+
+def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]]:
+    """The glyphs of a split's fonts in packs of ``SHARD``."""
+    pack: list[Piece] = []
+    room = SHARD
+    for number, font in fonts:
+        first = 0
+        while first < font.taken:
+            last = min(font.taken, first + room)
+            pack.append(Piece(number, first, last))
+            room -= last - first
+            first = last
+            if not room:
+                yield tuple(pack)
+                pack, room = [], SHARD
+    if pack:
+        yield tuple(pack)
+
+
+def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
+    """The plan for fonts that were scanned, in any order. Fonts of the same bytes are taken once."""
+    fonts: list[FontFacts] = []
+    by_hash: dict[tuple[str, int], FontFacts] = {}
+    by_name: dict[tuple[str, str, str], FontFacts] = {}
+    for font in sorted(found, key=lambda f: (f.sha256 or "", f.face, f.file, str(f.path))):
+        if font.sha256 is None or font.status == "failed":
+            fonts.append(font)
+            continue
+        first = by_hash.setdefault((font.sha256, font.face), font)
+        if first is not font:
+            reason = "has the same bytes as another file"
+            font = replace(font, status="duplicate", reason=reason, same_as=first.sha256, split=None, taken=0)
+        elif font.postscript_name and font.version:
+            name = (font.postscript_name, font.version, font.style or "")
+            same = by_name.setdefault(name, font)
+            font = font if same is font else replace(font, same_as=same.sha256)
+        fonts.append(font)
+    order = {split: k for k, split in enumerate(SPLITS)}
+    fonts.sort(key=lambda f: (order.get(f.split or "", len(order)), f.sha256 or "", f.face, f.file))
+    return Plan(spec, tuple(fonts))
+
+
+def versions() -> dict[str, str]:
+    """Versions of what decides the bytes of a data set, besides the processor."""
+    found = {"python": platform.python_version()}
+    found |= {name: version(name) for name in LIBRARIES}
+    return found | {"unicode": unicodedata.unidata_version}
+
+
+def _digest(value: Any) -> str:
+    return sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def record_text(plan: Plan) -> bytes:
+    """``dataset.json``."""
+    return (json.dumps(plan.record, indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def named(paths: Sequence[Path]) -> list[Path]:
+    """Font files by absolute path, each once."""
+    return sorted({path.absolute() for path in paths})
