@@ -109,15 +109,27 @@ def asked(url: str, action: Callable[[], Value], kind: type[GlyphsplineError] = 
         pause = min(2 * pause, LONGEST_PAUSE)
 
 
+def check_whole(url: str) -> None:
+    """Refuse to write where others could see half a file.
+
+    Raises:
+        OutputError: the URL is not that of an object store.
+    """
+    if (scheme := urlsplit(url).scheme.lower()) not in WHOLE:
+        those = ", ".join(sorted(WHOLE))
+        raise OutputError(
+            f"{scheme} may hold half a file; what is written goes to a folder, or {those}", font=shown(url)
+        )
+
+
 def put(url: str, content: bytes | Path) -> None:
     """Write bytes or a copy of a file, in one put.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
+    check_whole(url)
     system, path = file_system(url)
-    if urlsplit(url).scheme.lower() not in WHOLE:
-        raise OutputError(f"only {', '.join(sorted(WHOLE))} have files whole or not at all", font=shown(url))
     try:
         if isinstance(content, bytes):
             asked(url, lambda: system.pipe_file(path, content))
@@ -273,7 +285,11 @@ def _fetched(url: str, system: Any, path: str, folder: Path) -> Path:
 
 def file_name(path: str) -> str:
     """The name of a file behind a URL, such as any system has it."""
-    last = unquote(urlsplit(path).path if path.startswith(("http://", "https://")) else path).rstrip("/").rpartition("/")[2]
+    last = (
+        unquote(urlsplit(path).path if path.startswith(("http://", "https://")) else path)
+        .rstrip("/")
+        .rpartition("/")[2]
+    )
     name = re.sub(r'[\\/:*?"<>|\x00-\x1f]', "_", last)[-100:]
     return name if name.strip(".") else "font"
 
