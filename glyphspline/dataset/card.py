@@ -138,8 +138,8 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
                 f"| {name} | {s.families} | {s.fonts} | {s.glyphs} | {s.rows} | {s.duplicates} | {s.bytes / 1e6:.1f} |"
             )
     yield ""
-    yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape that"
-    yield "was trained on, or that stands twice in the split itself."
+    yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape"
+    yield "that was trained on, or that stands twice in the split itself."
     yield ""
     yield "## Licences"
     yield ""
