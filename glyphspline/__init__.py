@@ -29,6 +29,8 @@ from .outlines.sampling import sample
 display.install()
 
 if TYPE_CHECKING:
+    from .dataset.loading import Loaded as Loaded
+    from .dataset.loading import load as load
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -45,6 +47,8 @@ if TYPE_CHECKING:
 _ON_DEMAND = {
     "Font": ".readers",
     "Layout": ".layout.placed",
+    "Loaded": ".dataset.loading",
+    "load": ".dataset.loading",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -88,6 +92,7 @@ __all__ = [
     "Kink",
     "KinkReport",
     "Layout",
+    "Loaded",
     "MasterContour",
     "Masters",
     "MastersContourResult",
@@ -112,6 +117,7 @@ __all__ = [
     "interpolate_vertex",
     "kinks",
     "layout",
+    "load",
     "open_font",
     "open_source",
     "plot",

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..fitting.measures import check_coordinates
 from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
 from ..outlines.canonical_outlines import canonical_outlines
 from ..outlines.outline import Outline
@@ -23,19 +24,20 @@ SHAPE_STEPS = 10_000
 """Steps an em to which coordinates are rounded before outlines are compared."""
 
 
-def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult] | None, spec: DatasetSpec) -> Any:
+def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] | None, spec: DatasetSpec) -> Any:
     """Rows of the glyphs of one font, or of some of them, with the columns of :mod:`.schema`.
 
     Args:
-        outlines: as their font has them where nothing is fitted; else those that were fitted.
-        results: the fit of ``canonical_outlines(outlines)``, for each outline one result; None where nothing is fitted.
+        outlines: as their font has them where nothing is fitted; else as :func:`.canonical_outlines` has them.
+        results: the fit of the canonical outlines, one for each; None, or None for each, where nothing is fitted.
         spec: what the rows hold; its filters and split are not looked at.
 
     Returns:
         A ``pyarrow.Table``: a row for each outline, or for each of their contours, in order.
 
     Raises:
-        GlyphsplineError: pyarrow, of the extra ``parquet``, is not installed.
+        GlyphsplineError: a coordinate is not finite or far too large; or pyarrow, of the extra ``parquet``, is not
+            installed.
 
     Example:
         >>> from glyphspline import open_font
@@ -45,14 +47,18 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult] | None,
         2
     """
     pa, layout = arrow(), schema(spec)
-    glyphs = as_glyphs(canonical_outlines(outlines)) if results is None else list(results)
+    fitted = [result for result in results or () if result is not None]
+    glyphs = fitted or as_glyphs(canonical_outlines(outlines))
+    if len(glyphs) != len(outlines):
+        raise ValueError(f"{len(fitted)} results for {len(outlines)} outlines")
     found, offsets = end_to_end(glyphs)
+    check_coordinates(found.source)
     ems = np.array([glyph.outline.metrics.units_per_em for glyph in glyphs], dtype=np.float64)
     scales = ems if spec.normalise == "em" else np.ones(len(glyphs))
     owner = np.repeat(np.arange(len(glyphs)), np.diff(offsets))
     factors = 1.0 / scales[owner]
-    columns = _point_columns(found, factors, results is not None, spec) | source_columns(found, factors)
-    if results is not None:
+    columns = _point_columns(found, factors, bool(fitted), spec) | source_columns(found, factors)
+    if fitted:
         columns |= fit_columns(found, factors) | measure_columns(found, factors)
     of_glyph = _glyph_columns([glyph.outline for glyph in glyphs], scales)
     hashed = offsets if spec.rows == "glyph" else np.arange(len(found) + 1)
@@ -116,24 +122,13 @@ def _point_columns(found: ConvertedContours, factors: FloatArray, fitted: bool, 
 
 def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str, Any]:
     """What a glyph is called, and its metrics."""
-    from fontTools.unicodedata import category, script
-
     pa = arrow()
-    first = [chr(outline.unicodes[0]) if outline.unicodes else None for outline in outlines]
-    metrics = [(outline.advance, outline.metrics.ascender, outline.metrics.descender) for outline in outlines]
-    lengths = np.array(metrics, dtype=np.float64).reshape(-1, 3) / scales[:, None]
-    ems = [outline.metrics.units_per_em for outline in outlines]
     return {
         "schema_version": pa.array(np.full(len(outlines), SCHEMA_VERSION, dtype=np.uint16)),
         "glyph": pa.array([outline.name for outline in outlines], pa.string()),
         "gid": pa.array([outline.gid for outline in outlines], pa.uint32()),
         "codepoints": pa.array([outline.unicodes for outline in outlines], pa.list_(pa.uint32())),
         "characters": pa.array(["".join(map(chr, outline.unicodes)) for outline in outlines], pa.string()),
-        "script": pa.array([None if char is None else script(char) for char in first], pa.string()),
-        "category": pa.array([None if char is None else category(char) for char in first], pa.string()),
-        "advance": pa.array(lengths[:, 0]),
-        "ascender": pa.array(lengths[:, 1]),
-        "descender": pa.array(lengths[:, 2]),
-        "units_per_em": pa.array(ems, pa.float64()),
+        "advance": pa.array(np.array([outline.advance for outline in outlines], dtype=np.float64) / scales),
         "scale": pa.array(scales),
     }

@@ -1,46 +1,45 @@
 """The columns of a data set's rows, without those of their fonts: schema version 1.
 
-With ``rows="glyph"`` each column marked * is a list with an item for each contour; with ``rows="contour"`` it is that item.
-Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever way the font has them. Lengths are in em
-or in font units (*normalise*), y up; the metadata of each field says its unit.
+With ``rows="glyph"`` each column marked * is a list with an item for each contour; with ``rows="contour"`` it is that
+item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever way the font has them. Lengths
+are in em or in font units (*normalise*), y up; the metadata of each field says its unit.
 
-==================== ============================== =================================================================
-schema_version       uint16                         of the row
-glyph, gid           string, uint32                 glyph name and index
-codepoints           list<uint32>                   its characters, ascending
-characters           string                         the same as text
-script, category     string                         of the first: ISO 15924, Unicode's general category; null if none
-advance              double
-units_per_em         double                         font units
-ascender, descender  double
-scale                double                         font units of the row's unit: units_per_em, or 1
-shape                string                         hash of the outline in em, to 1/10,000 em: equal shapes have one;
-                                                    null where there is no contour
-contour              uint32                         with rows="contour": which of the glyph, from 0
-points *             list<point>                    ``points`` of them at equal arc lengths of the exact curve, from its
-                                                    point with the least x + y on; of the fit if there is one. Or, with
-                                                    ``points=None``, the vertices of the polygon, or the points where
-                                                    segments meet, from that with the least x + y on
-tangents *           list<point>                    of length 1, at the points; at a corner, of what follows it
-curvature *          list<float>                    signed, at the points, positive where the contour turns left, as an
-                                                    outer contour does where it is convex; null at a cusp
-corner *             list<bool>                     whether the point is the nearest, along the contour, of a corner
-source_degrees *,    list<uint8>, list<point>       the outline: degrees of its Bézier segments, and their points, each
-source_points *                                     shared end once
-polygon *,           as in :mod:`..writers.parquet` the fit; null where nothing is fitted
-closed *, degree *,
-knots *,
-control_points *,
-footpoints *,
-bezier_degrees *,
-bezier_points *
-vertices * …         as in :class:`.Measures`       null where nothing is fitted, or it was not computed
+================== ======================== ============================================================================
+schema_version     uint16                   of the row
+glyph, gid         string, uint32           glyph name and index
+codepoints         list<uint32>             its characters, ascending
+characters         string                   the same as text
+advance            double
+scale              double                   font units of the row's unit of length: units per em, or 1
+shape              string                   hash of the outline in em, rounded to 1/10,000 em: equal shapes have equal
+                                            ones; null where there is no contour
+contour            uint32                   with rows="contour": which of the glyph, from 0
+points *           list<point>              at equal arc lengths of the exact curve, from its point with the least x + y
+                                            on; the curve is the fit, if there is one, or else the outline. Or, with
+                                            ``points=None``, the vertices of the polygon, or the points where segments
+                                            meet, from that with the least x + y on
+tangents *         list<point>              of length 1, at the points; at a corner, of what follows it
+curvature *        list<float>              signed, at the points: positive where the contour turns left, as an outer
+                                            contour does where it is convex; null at a cusp
+corner *           list<bool>               whether the point is the nearest, along the contour, of a corner
+source_degrees *   list<uint8>              of the Bézier segments of the outline
+source_points *    list<point>              their points, each shared end once
+polygon *          list<point>              of the fit, as in :mod:`..writers.parquet`; null where nothing is fitted,
+                                            like all that follow but the raster
+closed *           list<bool>
+degree *           list<uint8>
+knots *            list<list<double>>
+control_points *   list<list<point>>
+footpoints *       list<list<double>>
+bezier_degrees *   list<uint8>
+bezier_points *    list<point>
+vertices *, …,     as in :class:`.Measures` null where it was not computed
 source_kept *
-raster               list<list<uint8>>              grey picture of the outline, first row on top: 255 is ink all over
-==================== ============================== =================================================================
+raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers the pixel
+================== ======================== ============================================================================
 
-A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points, and the
-rows of a raster, have a fixed size in the schema too.
+A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points, and
+the rows of a raster, have a fixed size in the schema too.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ SCHEMA_VERSION = 1
 """Of the rows. A program reads the rows of its own version and of all before."""
 
 LENGTHS = (
-    "advance", "ascender", "descender", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
+    "advance", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
     "bezier_points",
 )  # fmt: skip
 """Columns in the unit of length, beside the measures."""
@@ -64,7 +63,7 @@ def schema(spec: DatasetSpec) -> Any:
     """The columns of this module's table as an Arrow schema, with units as metadata of the fields."""
     pa = arrow()
     powers = dict.fromkeys(LENGTHS, 1) | POWERS | {"curvature": -1}
-    units = {"units_per_em": "font unit", "scale": "font unit"}
+    units = {"scale": "font unit"}
     unit = "em" if spec.normalise == "em" else "font unit"
     units |= {name: {1: unit, 2: f"{unit}^2", -1: f"1/{unit}"}[power] for name, power in powers.items()}
 
@@ -93,12 +92,7 @@ def glyph_types() -> dict[str, Any]:
         "gid": pa.uint32(),
         "codepoints": pa.list_(pa.uint32()),
         "characters": pa.string(),
-        "script": pa.string(),
-        "category": pa.string(),
         "advance": pa.float64(),
-        "units_per_em": pa.float64(),
-        "ascender": pa.float64(),
-        "descender": pa.float64(),
         "scale": pa.float64(),
         "shape": pa.string(),
     }

@@ -1,7 +1,7 @@
 """Outlines as they are whatever way a font stores them: start points, directions and order of contours by rule.
 
-Two fonts may store one shape with other start points, the other way round (TrueType and PostScript do), or with contours
-in another order. Here all of these become one outline, number for number:
+Two fonts may store one shape with other start points, the other way round (TrueType and PostScript do), or with
+contours in another order. Here all of these become one outline, number for number:
 
 - The ink is to the left: outer contours run counter-clockwise, holes clockwise, under the non-zero rule. A contour that
   encloses as much to its left as to its right runs the way in which its list of points is lexicographically less.
