@@ -29,8 +29,8 @@ from .outlines.sampling import sample
 display.install()
 
 if TYPE_CHECKING:
-    from .dataset.dataset_run import dataset as dataset
-    from .dataset.spec import DatasetSpec as DatasetSpec
+    from .dataset.loading import Loaded as Loaded
+    from .dataset.loading import load as load
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -48,7 +48,8 @@ _ON_DEMAND = {
     "DatasetSpec": ".dataset.spec",
     "Font": ".readers",
     "Layout": ".layout.placed",
-    "dataset": ".dataset.dataset_run",
+    "Loaded": ".dataset.loading",
+    "load": ".dataset.loading",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -93,6 +94,7 @@ __all__ = [
     "Kink",
     "KinkReport",
     "Layout",
+    "Loaded",
     "MasterContour",
     "Masters",
     "MastersContourResult",
@@ -118,6 +120,7 @@ __all__ = [
     "interpolate_vertex",
     "kinks",
     "layout",
+    "load",
     "open_font",
     "open_source",
     "plot",
