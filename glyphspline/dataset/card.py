@@ -153,7 +153,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield ""
     yield "## Fonts"
     yield ""
-    counts = ", ".join([f"{count} {status}" for status, count in sorted(summary.fonts.items())])
+    counts = ", ".join([f"{count} {status}" for status, count in summary.fonts.items() if count])
     failed = f"{counted(summary.failed, 'glyph')} failed"
     yield f"`fonts.parquet` (the configuration `fonts`) has a row for each face: {counts}; {failed}."
     yield "Fonts that share name, style and version with an earlier one name it in `same_as`."
@@ -171,7 +171,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield "## Columns"
     yield ""
     metadata = schema.metadata or {}
-    if (version := metadata.get(b"glyphspline.schema")) is not None:
+    if (version := metadata.get(b"glyphspline.dataset.schema")) is not None:
         yield f"Schema version {version.decode()}."
         yield ""
     yield "| column | type | unit |"
