@@ -168,6 +168,11 @@ class WorkerPool(Executor):
         self._thread = threading.Thread(target=self._manage, daemon=True)
         self._thread.start()
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether it takes no more calls: it was closed, or its processes could not start."""
+        return self._closing
+
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call of a function that can be pickled."""
         if kwargs or self._closing:

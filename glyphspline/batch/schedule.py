@@ -54,6 +54,7 @@ def workers(
     expected: int = 0,
     masters: bool = False,
     also: Sequence[str] = (),
+    scheduler: str | None = None,
 ) -> Executor:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
@@ -62,10 +63,18 @@ def workers(
         options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
         also: names of modules of :mod:`.warm`, whose code is needed without options.
+        scheduler: address of a dask cluster, whose workers are used instead.
+
+    Raises:
+        GlyphsplineError: nothing answers at the address.
     """
+    preload = [*modules_for(options, formats, masters), *module_names(also)]
+    if scheduler is not None:
+        from .cluster import ClusterExecutor
+
+        return ClusterExecutor(scheduler, seconds, preload)
     if jobs == 0:
         return InProcess()
-    preload = [*modules_for(options, formats, masters), *module_names(also)]
     return WorkerPool(jobs or os.cpu_count() or 1, seconds, preload, expected)
 
 

@@ -38,7 +38,7 @@ method_option = partial(typer.Option, rich_help_panel="The method, in the paper'
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
 FONTS_HELP = (
-    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, or @file "
+    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, URLs, or @file "
     "with one a line."
 )
 
