@@ -35,6 +35,10 @@ TEXT_COLUMNS = (
 )  # fmt: skip
 
 
+LISTED = 100
+"""Characters that a command in the card has as they are; ``dataset.json`` has them all."""
+
+
 def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
     """``fonts.parquet``: a row for each face, with what failed and why."""
     pa = need("parquet")
@@ -75,6 +79,8 @@ def command(spec: DatasetSpec) -> str:
         if field.name == "options" or value == getattr(plain, field.name):
             continue
         name = {"scripts": "script", "licences": "licence"}.get(field.name, field.name)
+        if field.name == "characters" and not (len(value) <= LISTED and value.isprintable() and "`" not in value):
+            name, value = "text-file", "CHARACTERS.txt"
         if isinstance(value, tuple):
             value = ",".join(value)
         words += [f"--{name}", "polygon" if value is None else str(value)]

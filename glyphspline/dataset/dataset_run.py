@@ -82,7 +82,7 @@ def dataset(
     folder = str(Path(out).absolute())
     with locked(Path(folder)):
         options = spec.options
-        unfitted = ["unfitted"] if options is None else []
+        unfitted = ["points", "unfitted"] if options is None else ["points"]
         limits = Limits()
         pool = executor or workers(jobs, limits.seconds, options, expected=len(found), also=unfitted)
         with nullcontext() if executor else pool:
