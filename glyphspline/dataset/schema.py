@@ -35,11 +35,11 @@ bezier_degrees *   list<uint8>
 bezier_points *    list<point>
 vertices *, …,     as in :class:`.Measures` null where it was not computed
 source_kept *
-raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers the pixel
+raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers a pixel
 ================== ======================== ============================================================================
 
-A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points, and
-the rows of a raster, have a fixed size in the schema too.
+A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points,
+and the rows of a raster, have a fixed size in the schema too.
 """
 
 from __future__ import annotations
