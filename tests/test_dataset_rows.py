@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import replace
 from io import BytesIO
@@ -211,6 +212,7 @@ def test_rows_are_read_back(
     for got, again, (source, its) in zip(loaded, by_pandas, expected, strict=True):
         assert (got.outline.name, got.outline.gid, got.outline.unicodes) == (source.name, source.gid, source.unicodes)
         assert got.outline.advance * scale == pytest.approx(source.advance)
+        assert got.outline.metrics.units_per_em * scale == source.metrics.units_per_em
         assert len(got.outline.contours) == len(got.points) == len(its)
         for contour, other, one in zip(got.outline.contours, again.outline.contours, its, strict=True):
             np.testing.assert_array_equal(contour.points * scale, one.source.points)
@@ -320,3 +322,20 @@ def test_pictures_are_filled_by_the_non_zero_rule_and_antialiased() -> None:
     assert picture(ring, hole.reversed()).sum() * 400 == pytest.approx(np.pi * 200**2, rel=0.01)
     grey = picture(ring)
     assert ((grey > 0) & (grey < 1)).sum() > 40
+
+
+def test_the_notebook_runs_and_keeps_no_outputs() -> None:
+    import nbclient
+    import nbformat
+
+    path = FONTS.parent / "scripts" / "notebooks" / "dataset.ipynb"
+    notebook: Any = nbformat.read(path, as_version=4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs or cell.execution_count for cell in code)
+    os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(path.parent)}}).execute()
+    said = "".join(output.get("text", "") for cell in code for output in cell.outputs)
+    assert "o of DejaVuSans \u2192" in said
+    assert "<Outline 'g'" in said
+    shown = [kind for cell in code for output in cell.outputs for kind in output.get("data", {})]
+    assert shown.count("image/png") == 2
