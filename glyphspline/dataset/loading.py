@@ -69,8 +69,7 @@ def _loaded(row: Mapping[str, Any]) -> Loaded:
         Contour(_points(points), np.array(list(degrees), dtype=np.int64))
         for points, degrees in zip(each("source_points"), each("source_degrees"), strict=True)
     ]
-    scale = float(row["scale"])
-    em = float(row.get("units_per_em", scale)) / scale
+    em = float(row["em"])
     ascender, descender = (row.get(name) for name in ("ascender", "descender"))
     if ascender is None or descender is None:
         metrics = FontMetrics(em, 0.8 * em, -0.2 * em)

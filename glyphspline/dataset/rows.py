@@ -16,7 +16,7 @@ from ..outlines.resampling import Resampled, at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
-from .raster import rasters
+from .grey_pictures import rasters
 from .schema import SCHEMA_VERSION, schema
 from .spec import DatasetSpec
 
@@ -130,5 +130,5 @@ def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str,
         "codepoints": pa.array([outline.unicodes for outline in outlines], pa.list_(pa.uint32())),
         "characters": pa.array(["".join(map(chr, outline.unicodes)) for outline in outlines], pa.string()),
         "advance": pa.array(np.array([outline.advance for outline in outlines], dtype=np.float64) / scales),
-        "scale": pa.array(scales),
+        "em": pa.array(np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales),
     }

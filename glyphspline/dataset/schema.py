@@ -10,7 +10,7 @@ glyph, gid         string, uint32           glyph name and index
 codepoints         list<uint32>             its characters, ascending
 characters         string                   the same as text
 advance            double
-scale              double                   font units of the row's unit of length: units per em, or 1
+em                 double                   in the row's unit of length: 1, or units per em
 shape              string                   hash of the outline in em, rounded to 1/10,000 em: equal shapes have equal
                                             ones; null where there is no contour
 contour            uint32                   with rows="contour": which of the glyph, from 0
@@ -35,11 +35,11 @@ bezier_degrees *   list<uint8>
 bezier_points *    list<point>
 vertices *, …,     as in :class:`.Measures` null where it was not computed
 source_kept *
-raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers the pixel
+raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers a pixel
 ================== ======================== ============================================================================
 
-A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points, and
-the rows of a raster, have a fixed size in the schema too.
+A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points,
+and the rows of a raster, have a fixed size in the schema too.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ SCHEMA_VERSION = 1
 """Of the rows. A program reads the rows of its own version and of all before."""
 
 LENGTHS = (
-    "advance", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
+    "advance", "em", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
     "bezier_points",
 )  # fmt: skip
 """Columns in the unit of length, beside the measures."""
@@ -63,9 +63,8 @@ def schema(spec: DatasetSpec) -> Any:
     """The columns of this module's table as an Arrow schema, with units as metadata of the fields."""
     pa = arrow()
     powers = dict.fromkeys(LENGTHS, 1) | POWERS | {"curvature": -1}
-    units = {"scale": "font unit"}
     unit = "em" if spec.normalise == "em" else "font unit"
-    units |= {name: {1: unit, 2: f"{unit}^2", -1: f"1/{unit}"}[power] for name, power in powers.items()}
+    units = {name: {1: unit, 2: f"{unit}^2", -1: f"1/{unit}"}[power] for name, power in powers.items()}
 
     def field(name: str, kind: Any) -> Any:
         return pa.field(name, kind, metadata={"unit": units[name]} if name in units else None)
@@ -93,7 +92,7 @@ def glyph_types() -> dict[str, Any]:
         "codepoints": pa.list_(pa.uint32()),
         "characters": pa.string(),
         "advance": pa.float64(),
-        "scale": pa.float64(),
+        "em": pa.float64(),
         "shape": pa.string(),
     }
 

@@ -82,7 +82,9 @@ def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resam
                 s = np.searchsorted(firsts, k, side="right") - 1
                 end = places[k + 1] if k + 1 < firsts[s + 1] else 1.0
                 x = _place(cubics, s, places[k], end, along - table[k], table[k + 1] - table[k])
-            _frame(cubics, s, x, points[at + i], tangents[at + i], curvature[at + i : at + i + 1])
+            curvature[at + i] = _frame(cubics, s, x, points[at + i], tangents[at + i])
+            if contours.degrees[contours.offsets[c] + s] == 1:
+                curvature[at + i] = 0.0  # a line raised to a cubic has a rounding there
         turned = turns(cubics, 0.0)
         for j in range(m):
             if abs(turned[j]) >= corner_angle:
@@ -125,7 +127,9 @@ def at_vertices(contours: ContourArrays, polygons: Polylines, corner_angle: floa
                 place = nearest_place(cubics, 0.0, float(m), x, y)
                 s = min(int(place), m - 1)
                 at = place - s
-            _frame(cubics, s, at, near, tangents[a + i], curvature[a + i : a + i + 1])
+            curvature[a + i] = _frame(cubics, s, at, near, tangents[a + i])
+            if contours.degrees[contours.offsets[c] + s] == 1:
+                curvature[a + i] = 0.0
             points[a + i, 0], points[a + i, 1] = x, y
         turned = turns(cubics, 0.0)
         for j in range(m):
@@ -233,17 +237,15 @@ def _place(cubics: FloatArray, s: int, a: float, b: float, along: float, length:
 
 
 @compiled(internal=True)
-def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: FloatArray, curvature: FloatArray) -> None:
-    """Point, unit tangent and curvature at a parameter of segment s."""
+def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: FloatArray) -> float:
+    """Put down point and unit tangent at a parameter of segment s; returns the curvature."""
     point[0], point[1], dx, dy, ex, ey = jet(cubics, s, x)
     speed, scale = np.sqrt(dx * dx + dy * dy), 0.0
     for k in range(3):
         scale += abs(cubics[s, k + 1, 0] - cubics[s, k, 0]) + abs(cubics[s, k + 1, 1] - cubics[s, k, 1])
     if speed > STILL * scale:
         tangent[0], tangent[1] = dx / speed, dy / speed
-        curvature[0] = (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
-        return
-    curvature[0] = np.nan
+        return (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
     ax, ay, bx, by = directions(cubics, s, 0.0)
     if x < 0.5 and x > 1e-6:
         ax, ay = ex, ey  # a cusp inside: what follows it goes where the second derivative points
@@ -251,3 +253,4 @@ def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: Flo
         ax, ay = (bx, by) if x > 1.0 - 1e-6 else (ex, ey)
     size = np.sqrt(ax * ax + ay * ay)
     tangent[0], tangent[1] = ax / size, ay / size
+    return np.nan
