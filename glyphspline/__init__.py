@@ -14,6 +14,7 @@ from .checks.kinds import Thresholds
 from .comparing.compare import compare
 from .comparing.difference import Apart, Difference, Turn
 from .curves.bspline import Spline
+from .dataset.spec import DatasetSpec
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
 from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
@@ -27,10 +28,12 @@ from .outlines.outline import Contour, FontMetrics, Outline
 from .outlines.sampling import sample
 
 display.install()
+globals().pop("dataset")  # the package of that name: the attribute is the function, imported on demand
 
 if TYPE_CHECKING:
     from .dataset.dataset_run import dataset as dataset
-    from .dataset.spec import DatasetSpec as DatasetSpec
+    from .dataset.loading import Loaded as Loaded
+    from .dataset.loading import load as load
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -45,10 +48,11 @@ if TYPE_CHECKING:
     from .writers.ufo_folder import write_ufo as write_ufo
 
 _ON_DEMAND = {
-    "DatasetSpec": ".dataset.spec",
     "Font": ".readers",
     "Layout": ".layout.placed",
+    "Loaded": ".dataset.loading",
     "dataset": ".dataset.dataset_run",
+    "load": ".dataset.loading",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -93,6 +97,7 @@ __all__ = [
     "Kink",
     "KinkReport",
     "Layout",
+    "Loaded",
     "MasterContour",
     "Masters",
     "MastersContourResult",
@@ -118,6 +123,7 @@ __all__ = [
     "interpolate_vertex",
     "kinks",
     "layout",
+    "load",
     "open_font",
     "open_source",
     "plot",

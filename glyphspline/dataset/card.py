@@ -35,6 +35,10 @@ TEXT_COLUMNS = (
 )  # fmt: skip
 
 
+LISTED = 100
+"""Characters that a command in the card has as they are; ``dataset.json`` has them all."""
+
+
 def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
     """``fonts.parquet``: a row for each face, with what failed and why."""
     pa = need("parquet")
@@ -75,6 +79,8 @@ def command(spec: DatasetSpec) -> str:
         if field.name == "options" or value == getattr(plain, field.name):
             continue
         name = {"scripts": "script", "licences": "licence"}.get(field.name, field.name)
+        if field.name == "characters" and not (len(value) <= LISTED and value.isprintable() and "`" not in value):
+            name, value = "text-file", "CHARACTERS.txt"
         if isinstance(value, tuple):
             value = ",".join(value)
         words += [f"--{name}", "polygon" if value is None else str(value)]
@@ -138,8 +144,8 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
                 f"| {name} | {s.families} | {s.fonts} | {s.glyphs} | {s.rows} | {s.duplicates} | {s.bytes / 1e6:.1f} |"
             )
     yield ""
-    yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape that"
-    yield "was trained on, or that stands twice in the split itself."
+    yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape"
+    yield "that was trained on, or that stands twice in the split itself."
     yield ""
     yield "## Licences"
     yield ""
@@ -153,7 +159,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield ""
     yield "## Fonts"
     yield ""
-    counts = ", ".join([f"{count} {status}" for status, count in sorted(summary.fonts.items())])
+    counts = ", ".join([f"{count} {status}" for status, count in summary.fonts.items() if count])
     failed = f"{counted(summary.failed, 'glyph')} failed"
     yield f"`fonts.parquet` (the configuration `fonts`) has a row for each face: {counts}; {failed}."
     yield "Fonts that share name, style and version with an earlier one name it in `same_as`."
@@ -171,7 +177,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield "## Columns"
     yield ""
     metadata = schema.metadata or {}
-    if (version := metadata.get(b"glyphspline.schema")) is not None:
+    if (version := metadata.get(b"glyphspline.dataset.schema")) is not None:
         yield f"Schema version {version.decode()}."
         yield ""
     yield "| column | type | unit |"

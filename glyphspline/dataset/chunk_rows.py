@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
-from itertools import groupby
 from typing import Any, NamedTuple
 
 from ..batch.job import Place
@@ -76,31 +75,30 @@ def _selected(place: Place, spec: DatasetSpec) -> list[int]:
 
 def _tables(
     spec: DatasetSpec, font: FontFacts, glyphs: Sequence[tuple[Task, Outline]], failed: dict[int, tuple[str, str]]
-) -> Iterator[Any]:
+) -> list[Any]:
     """Tables of a batch's rows; after an unexpected error, glyph by glyph."""
     from ..batch.worker import reason
     from ..fitting.convert import convert_many
+    from ..outlines.canonical_outlines import canonical_outlines
     from .rows import table_of
 
     outlines = [outline for _, outline in glyphs]
     try:
         results: list[Any] = [None] * len(outlines)
         if spec.options is not None:
+            outlines = canonical_outlines(outlines)
             results = convert_many(outlines, spec.options, errors="return")
-        pairs = list(zip(glyphs, results, strict=True))
-        for good, part in groupby(pairs, lambda pair: not isinstance(pair[1], GlyphsplineError)):
-            if good:
-                those, found = zip(*part, strict=True)
-                own = [outline for _, outline in those]
-                yield with_font(table_of(own, found, spec), own, font, spec)
-            else:
-                failed |= {task.number: (outline.name, reason(error)) for (task, outline), error in part}
+        good = [k for k, result in enumerate(results) if not isinstance(result, GlyphsplineError)]
+        own = [outlines[k] for k in good]
+        table = with_font(table_of(own, [results[k] for k in good], spec), own, font, spec)
+        bad = {k: results[k] for k in {*range(len(glyphs))}.difference(good)}
+        failed |= {glyphs[k][0].number: (outlines[k].name, reason(error)) for k, error in bad.items()}
+        return [table]
     except Exception as error:
         if len(glyphs) == 1:
             failed[glyphs[0][0].number] = outlines[0].name, reason(error)
-        else:
-            for glyph in glyphs:
-                yield from _tables(spec, font, [glyph], failed)
+            return []
+        return [table for glyph in glyphs for table in _tables(spec, font, [glyph], failed)]
 
 
 def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:

@@ -83,7 +83,7 @@ def dataset(
         raise OptionError("no fonts found")
     with store.alone(folder):
         options = spec.options
-        unfitted = ["unfitted"] if options is None else []
+        unfitted = ["points", "unfitted"] if options is None else ["points"]
         limits = Limits()
         pool = executor or workers(
             jobs, limits.seconds, options, expected=len(found), also=unfitted, scheduler=scheduler
@@ -130,7 +130,9 @@ def _prepare(out: str, plan: Plan, restart: bool) -> None:
 def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Observer | None) -> Summary:
     """Write the shards that are not finished, then the table of fonts and the card."""
     paths = {shard: f"{out}/{shard.name}" for shard in plan.shards}
-    held = {shard: found for shard, path in paths.items() if (found := finished(path, plan.digest)) is not None}
+    held = {
+        shard: found for shard, path in paths.items() if (found := finished(path, mark_of(shard, plan))) is not None
+    }
     left = [shard for shard in plan.shards if shard not in held]
     totals: dict[int, OfFont] = {}
     done = sum(shard.glyphs for shard in held)
@@ -154,7 +156,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     for shard in plan.shards:
         fonts = held.get(shard)
         if fonts is None:
-            fonts = write_shard(paths[shard], of_shard(shard), shapes, plan.digest, schema)
+            fonts = write_shard(paths[shard], of_shard(shard), shapes, mark_of(shard, plan), schema)
         elif left and shard.start < left[-1].start:
             add_shapes(paths[shard], shapes)
         for number, of_font in fonts.items():
@@ -164,6 +166,11 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     store.put(f"{out}/{FONTS}", fonts_file(plan, totals))
     store.put(f"{out}/{CARD}", card(plan, summary, schema).encode())
     return summary
+
+
+def mark_of(shard: Shard, plan: Plan) -> str:
+    """What a finished shard has in its footer, and no other file."""
+    return f"{plan.digest} {shard.name}"
 
 
 def in_order(pool: Executor, job: RowsJob, chunks: Iterable[Sequence[Task]]) -> Iterator[tuple[Sequence[Task], Made]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -12,6 +11,9 @@ from .licences import UNKNOWN
 from .plan import Plan, Shard
 from .scan import SPLITS
 from .shards import OfFont
+
+STATUSES = ("taken", "left out", "duplicate", "failed")
+"""Of fonts."""
 
 SHOWN = 5
 """Fonts that failed and are named."""
@@ -40,7 +42,7 @@ class Summary:
     """
 
     splits: dict[str, OfSplit] = field(default_factory=dict)
-    fonts: Counter[str] = field(default_factory=Counter)
+    fonts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(STATUSES, 0))
     licences: dict[str, tuple[int, int]] = field(default_factory=dict)
     failed: int = 0
     failures: list[tuple[str, str, str]] = field(default_factory=list)
@@ -95,7 +97,7 @@ class Summary:
 
     def lines(self) -> Iterator[str]:
         """What is said of it."""
-        rest = [f"{count} {status}" for status, count in sorted(self.fonts.items()) if status != "taken"]
+        rest = [f"{count} {status}" for status, count in sorted(self.fonts.items()) if count and status != "taken"]
         more = f" ({', '.join(rest)})" if rest else ""
         size = f"{self.bytes / 1e6:.1f} MB"
         yield (

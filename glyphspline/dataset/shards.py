@@ -19,7 +19,7 @@ ROW_GROUP = 1000
 NAMED = 3
 """Glyphs of a font that failed and are named, in each shard."""
 
-FACTS, RUN = b"glyphspline.shard", b"glyphspline.run"
+FACTS, MARK = b"glyphspline.shard", b"glyphspline.run"
 """Keys of the metadata in a shard's footer: what it holds, and of which run it is."""
 
 Held: TypeAlias = "dict[int, OfFont]"
@@ -96,12 +96,12 @@ def marked(table: Any, shapes: Shapes) -> tuple[Any, int]:
     return table.set_column(at, table.schema.field(at), pa.array(values)), int(values.sum())
 
 
-def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, run: str, schema: Any) -> Held:
+def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mark: str, schema: Any) -> Held:
     """Write a shard whole.
 
     Args:
         made: the rows of its chunks in order, each with the number of its font. shapes: of the rows before it; those
-            of the shard are added. run: hash of the plan. schema: of the rows.
+            of the shard are added. mark: see :func:`finished`. schema: of the rows.
 
     Raises:
         OutputError: it cannot be written.
@@ -124,7 +124,7 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, run
             for group in _groups(tables(), schema):
                 writer.write_table(group, row_group_size=ROW_GROUP)
             facts = json.dumps({str(font): of_font for font, of_font in held.items()}, ensure_ascii=False)
-            writer.add_key_value_metadata({FACTS: facts.encode(), RUN: run.encode()})
+            writer.add_key_value_metadata({FACTS: facts.encode(), MARK: mark.encode()})
 
     store.put(path, write)
     return held
@@ -145,8 +145,8 @@ def _groups(tables: Iterable[Any], schema: Any) -> Iterator[Any]:
         yield pa.concat_tables(waiting).combine_chunks()
 
 
-def finished(path: str, run: str) -> Held | None:
-    """What a shard of this run holds; None if there is no file, or another."""
+def finished(path: str, mark: str) -> Held | None:
+    """What a shard holds that has this mark, of run and shard; None if there is no file, or another."""
     pa = need("parquet")
     from pyarrow import parquet
 
@@ -155,7 +155,7 @@ def finished(path: str, run: str) -> Held | None:
     try:
         with store.read(path) as file:
             metadata = parquet.read_metadata(file).metadata or {}
-        if metadata.get(RUN) != run.encode():
+        if metadata.get(MARK) != mark.encode():
             return None
         facts = json.loads(metadata[FACTS])
         return {int(k): OfFont(a, b, c, d, tuple((n, why) for n, why in e)) for k, (a, b, c, d, e) in facts.items()}
