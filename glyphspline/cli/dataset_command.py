@@ -20,6 +20,13 @@ row_option = partial(typer.Option, rich_help_panel="What rows hold")
 which_option = partial(typer.Option, rich_help_panel="Which fonts and glyphs")
 split_option = partial(typer.Option, rich_help_panel="Splits, by family")
 
+Folder = Annotated[
+    str,
+    opt.file_option(
+        "--out", "-o", parser=opt.place_or_url, metavar="DIR|URL", help="Folder to write to, or s3://bucket/folder.",
+        show_default=False,
+    ),
+]  # fmt: skip
 RowKind = Annotated[Rows, row_option("--rows", help="A row a glyph, or a contour.")]
 Points = Annotated[
     str, row_option("--points", metavar="N|polygon", help="Points of a contour at equal arc lengths, or its polygon.")
@@ -49,7 +56,7 @@ Test = Annotated[float, split_option("--test", parser=opt.number, metavar="SHARE
 
 def dataset(
     fonts: opt.FontFiles,
-    out: opt.Out,
+    out: Folder,
     rows: RowKind = DatasetSpec.rows,
     points: Points = str(DatasetSpec.points),
     normalise: Unit = DatasetSpec.normalise,
@@ -95,13 +102,11 @@ def dataset(
         from ..dataset.dataset_run import dataset as make
 
         with progress(quiet) as observer:
-            summary = make(
-                fonts, out, spec, jobs=jobs, executor=cluster(scheduler), restart=not resume, observer=observer
-            )
+            summary = make(fonts, out, spec, jobs=jobs, scheduler=scheduler, restart=not resume, observer=observer)
         if not quiet:
             for line in summary.lines():
                 say(line)
-            say(f"written to {out}: read {out / 'README.md'}")
+            say(f"written to {out}: read {out.rstrip('/')}/README.md")
         if as_json:
             typer.echo(json.dumps(summary.facts(), indent=1, ensure_ascii=False))
     raise typer.Exit(1 if summary.failed or summary.fonts["failed"] else 0)
@@ -133,12 +138,3 @@ def spec_of(given: Mapping[str, Any]) -> DatasetSpec:
 
 def _listed(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(",") if part.strip())
-
-
-def cluster(scheduler: str | None) -> Any:
-    """The executor of a cluster, or None for workers on this machine."""
-    if scheduler is None:
-        return None
-    from ..batch.cluster import ClusterExecutor
-
-    return ClusterExecutor(scheduler)

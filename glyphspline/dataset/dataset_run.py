@@ -13,7 +13,6 @@ from itertools import chain
 from pathlib import Path
 
 from ..batch.font_search import find_fonts
-from ..batch.lock import locked
 from ..batch.schedule import AHEAD, pool_size, spread, workers
 from ..batch.spec import Limits, differences
 from ..errors import OptionError, OutputError
@@ -43,6 +42,7 @@ def dataset(
     *,
     jobs: int | None = None,
     executor: Executor | None = None,
+    scheduler: str | None = None,
     restart: bool = False,
     observer: Observer | None = None,
 ) -> Summary:
@@ -55,11 +55,12 @@ def dataset(
     Fonts and glyphs that are broken cost only themselves: ``fonts.parquet`` says what failed and why.
 
     Args:
-        fonts: files, folders, globs and lists of fonts as for the command line; see :func:`.find_fonts`.
-        out: the folder; it is created if it does not exist.
+        fonts: files, folders, globs, URLs and lists of fonts as for the command line; see :func:`.find_fonts`.
+        out: the folder, which is created if it does not exist, or its URL in an object store: ``s3://bucket/letters``.
         spec: what the data set holds.
         jobs: worker processes; None takes all cores, 0 does everything in this process.
         executor: used instead of worker processes; it is not closed.
+        scheduler: address of a dask cluster, whose workers are used instead: ``tcp://10.0.0.1:8786``.
         restart: remove the files of an earlier run first.
         observer: called after each chunk of glyphs.
 
@@ -75,16 +76,18 @@ def dataset(
     started = time.perf_counter()
     need("parquet")
     spec = spec or DatasetSpec()
+    folder = store.place_of(out)
     given = [fonts] if isinstance(fonts, str | Path) else fonts
     found = find_fonts(map(str, given))
     if not found:
         raise OptionError("no fonts found")
-    folder = str(Path(out).absolute())
-    with locked(Path(folder)):
+    with store.alone(folder):
         options = spec.options
         unfitted = ["points", "unfitted"] if options is None else ["points"]
         limits = Limits()
-        pool = executor or workers(jobs, limits.seconds, options, expected=len(found), also=unfitted)
+        pool = executor or workers(
+            jobs, limits.seconds, options, expected=len(found), also=unfitted, scheduler=scheduler
+        )
         with nullcontext() if executor else pool:
             plan = plan_of(spec, list(_scanned(pool, spec, found)))
             _prepare(folder, plan, restart)

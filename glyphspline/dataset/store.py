@@ -90,7 +90,7 @@ def exists(path: str) -> bool:
 
 
 def listing(folder: str) -> list[str]:
-    """The names of a folder's files, sorted; empty if there is no such folder. What was left half written is removed."""
+    """The names of a folder's files, sorted; none if there is no such folder. Half written files are removed."""
     if remote.is_url(folder):
         return remote.names(folder)
     remove_partials(Path(folder))
