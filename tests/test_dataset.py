@@ -193,7 +193,7 @@ def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyP
 
     from glyphspline.batch import schedule
 
-    waited = schedule.wait
+    waited = vars(schedule)["wait"]
     monkeypatch.setattr(schedule, "wait", ending)
     chunks = (chunk for shard in whole.shards for chunk in whole.chunks(shard))
     found = list(dataset_run.in_order(pool, RowsJob(PLAIN, Limits()), chunks))

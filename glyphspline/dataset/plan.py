@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from .._version import __version__
@@ -18,7 +17,7 @@ from .scan import SPLITS, FontFacts
 from .spec import DatasetSpec
 
 SHARD = 10_000
-"""Glyphs in a shard, at most: some 100 MB with 64 points a contour."""
+"""Glyphs in a shard, at most: of Latin letters some 30 MB, with 64 points a contour and their fit."""
 
 CHUNK = 100
 """Glyphs that a worker makes rows of at a time."""
@@ -169,8 +168,3 @@ def _digest(value: Any) -> str:
 def record_text(plan: Plan) -> bytes:
     """``dataset.json``."""
     return (json.dumps(plan.record, indent=1, ensure_ascii=False) + "\n").encode()
-
-
-def named(paths: Sequence[Path]) -> list[Path]:
-    """Font files by absolute path, each once."""
-    return sorted({path.absolute() for path in paths})

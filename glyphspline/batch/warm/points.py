@@ -11,7 +11,9 @@ from .. import worker  # noqa: F401
 from . import DISC, LEAF, SHAPES, SQUARE
 
 load_compiled()
-canonical_outlines([SHAPES, Outline("in order", contours=(SQUARE, DISC)), Outline("other order", contours=(LEAF, DISC))])
+canonical_outlines(
+    [SHAPES, Outline("in order", contours=(SQUARE, DISC)), Outline("other order", contours=(LEAF, DISC))]
+)
 arrays = as_glyph(SHAPES).arrays
 resampled(arrays.curves, 8, float(np.radians(30.0)))
 at_vertices(arrays.curves, arrays.polygons, float(np.radians(30.0)))
