@@ -158,16 +158,26 @@ def test_a_server_that_stays_away_is_said(server: Server, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("url", "said"),
     [
-        ("nothing://bucket/a", "nothing://bucket/a: is no URL that can be used: Protocol not known"),
+        (
+            "nothing://bucket/a",
+            "nothing://bucket/a: nothing:// is not written to, only folders and object stores: abfs",
+        ),
         (f"s3://somebody:{SECRET}@bucket/a", "s3://bucket/a: credentials do not belong into a URL"),
         ("s3://no-such-bucket/a", "s3://no-such-bucket/a: cannot be written: The specified bucket does not exist"),
-        ("ftp://127.0.0.1/a", "ftp://127.0.0.1/a: ftp may hold half a file; what is written goes to a folder, or abfs"),
+        ("ftp://127.0.0.1/a", "ftp://127.0.0.1/a: ftp:// is not written to, only folders and object stores: abfs"),
     ],
 )
 def test_a_url_that_cannot_be_used_is_said(url: str, said: str, server: Server) -> None:
     with pytest.raises(GlyphsplineError, match=said) as caught:
         store.put(url, b"")
     assert SECRET not in str(caught.value)
+
+
+def test_a_font_s_url_that_cannot_be_used_is_said() -> None:
+    with pytest.raises(
+        GlyphsplineError, match=r"nothing://bucket/a\.ttf: is no URL that can be used: Protocol not known"
+    ):
+        find_fonts(["nothing://bucket/a.ttf"])
 
 
 def test_a_store_that_refuses_is_said(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:

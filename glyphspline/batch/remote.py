@@ -116,10 +116,8 @@ def check_whole(url: str) -> None:
         OutputError: the URL is not that of an object store.
     """
     if (scheme := urlsplit(url).scheme.lower()) not in WHOLE:
-        those = ", ".join(sorted(WHOLE))
-        raise OutputError(
-            f"{scheme} may hold half a file; what is written goes to a folder, or {those}", font=shown(url)
-        )
+        stores = ", ".join(sorted(WHOLE))
+        raise OutputError(f"{scheme}:// is not written to, only folders and object stores: {stores}", font=shown(url))
 
 
 def put(url: str, content: bytes | Path) -> None:
