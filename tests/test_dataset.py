@@ -479,7 +479,7 @@ def test_duckdb_opens_it(letters: Path) -> None:
     duckdb = pytest.importorskip("duckdb")
     query = f"select count(*), count(distinct font) from '{letters}/data/*.parquet'"
     fonts = {row["font"] for row in rows_of(letters)}
-    assert duckdb.sql(query).fetchone() == (len(rows_of(letters)), len(fonts))
+    assert duckdb.sql(query).fetchall() == [(len(rows_of(letters)), len(fonts))]
 
 
 def test_datasets_opens_it(letters: Path, tmp_path: Path) -> None:
