@@ -14,7 +14,7 @@ from .checks.kinds import Thresholds
 from .comparing.compare import compare
 from .comparing.difference import Apart, Difference, Turn
 from .curves.bspline import Spline
-from .dataset.spec import DatasetSpec
+from .dataset.dataset_spec import DatasetSpec
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
 from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters

@@ -20,9 +20,9 @@ import glyphspline as gs
 from glyphspline.curves.integrals import area
 from glyphspline.dataset import loading
 from glyphspline.dataset import schema as columns
+from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.dataset.rows import fits_of, table_of
 from glyphspline.dataset.schema import contour_types, schema
-from glyphspline.dataset.spec import DatasetSpec
 from glyphspline.fitting.results import Measures
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.outlines.resampling import resampled

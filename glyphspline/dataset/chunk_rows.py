@@ -12,9 +12,9 @@ from ..batch.spec import Limits
 from ..errors import GlyphsplineError
 from ..extras import need
 from ..outlines.outline import FontMetrics, Outline
+from .dataset_spec import DatasetSpec
 from .plan import Task
 from .scan import FontFacts, category_of, script_of, selected
-from .spec import DatasetSpec
 
 
 class RowsJob(NamedTuple):

@@ -19,9 +19,9 @@ from ..outlines.resampling import Resampled, at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
+from .dataset_spec import DatasetSpec
 from .grey_pictures import rasters
 from .schema import SCHEMA_VERSION, schema
-from .spec import DatasetSpec
 
 SHAPE_STEPS = 10_000
 """Steps an em to which coordinates are rounded before outlines are compared."""
@@ -60,7 +60,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
 
     Example:
         >>> from glyphspline import open_font
-        >>> from glyphspline.dataset.spec import DatasetSpec
+        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
         2
