@@ -15,6 +15,10 @@ MOST_POINTS = 4096
 """Points of a contour, and pixels of a raster's side."""
 
 
+FIT = Options(corners="sharp")
+"""The fit of a data set: as type has it."""
+
+
 @dataclass(frozen=True)
 class DatasetSpec:
     """What a data set holds.
@@ -35,7 +39,7 @@ class DatasetSpec:
     rows: Rows = "glyph"
     points: int | None = 64
     normalise: Normalise = "em"
-    options: Options | None = Options(corners="sharp")
+    options: Options | None = FIT
     raster: int | None = None
     characters: str = ""
     scripts: tuple[str, ...] = ()
