@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -436,6 +437,34 @@ def test_rounding_after_a_motion_is_set_aside(font: gs.Font) -> None:
     assert shifted.contours[0].measures.within_tolerance is True
 
 
+def test_glyphs_that_touch_are_united(font: gs.Font) -> None:
+    """Kerned by hand into each other: the union of two boxes, wherever the pair stands, fitted once."""
+    pytest.importorskip("pathops")
+    found = gs.layout(font, "AV AV V")
+    options = gs.Options(corners="sharp", remove_overlaps=True)
+    assert len(found.convert(options).contours) == 5  # 80 units of kerning: the squares have 50 at their sides
+    closer = replace(found, origin=found.origin - np.outer(np.isin(found.cluster, [1, 4]), [120.0, 0.0]))
+    result = closer.convert(options)
+    assert len(result.contours) == 3
+    first, second = (contour.curve.points for contour in result.contours[:2])
+    np.testing.assert_allclose(second - first, np.broadcast_to(closer.origin[3] - closer.origin[0], first.shape))
+    assert len(closer.convert(gs.Options(corners="sharp")).contours) == 5
+
+
+def test_results_of_distinct_glyphs(font: gs.Font) -> None:
+    found = gs.layout(font, "AVA V")
+    results = found.results(gs.Options(corners="sharp"))
+    assert [result.outline.gid for result in results] == [gid for _, gid in found.distinct()]
+    assert [results[k].outline.name for k in found.which.tolist()] == names(found)
+    np.testing.assert_array_equal(results[1].contours[0].source.points, font.outline("A").contours[0].points)
+
+
+def test_options_that_suit_no_glyph_are_an_error(font: gs.Font, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pathops", None)
+    with pytest.raises(gs.GlyphsplineError, match="overlaps"):
+        gs.layout(font, "AV").convert(gs.Options(remove_overlaps=True))
+
+
 def test_a_text_of_spaces_has_no_contours(font: gs.Font) -> None:
     result = gs.layout(font, "  \n ").convert()
     assert len(result.contours) == 0
@@ -457,7 +486,10 @@ def test_a_broken_glyph_costs_only_itself(font: gs.Font, tmp_path: Path) -> None
     result = found.convert(gs.Options(corners="sharp"))
     assert len(result.contours) == 2
     assert any("left out" in note and "'V'" in note for note in result.notes), result.notes
-    assert len(found.outline().contours) == 2
+    outline = found.outline()
+    assert len(outline.contours) == 2
+    assert any("left out" in note and "'V'" in note for note in outline.notes), outline.notes
+    assert [len(glyph.contours) for glyph in found.results(gs.Options(corners="sharp"))] == [1, 0]
 
 
 # --- sources without tables for shaping
