@@ -6,7 +6,9 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ from fontTools.ttLib import TTFont
 import glyphspline as gs
 from glyphspline import OptionError
 from glyphspline.layout.bidi import embedding_levels, line_levels, visual_order
+from glyphspline.layout.boundaries import clusters
 from glyphspline.layout.placed import Layout
 from glyphspline.layout.scripts import scripts_of, upright_in_columns
 
@@ -325,6 +328,29 @@ def test_lines_of_both_directions_break_in_reading_order(font: gs.Font) -> None:
     found = gs.layout(font, text, width=2 * advance("alef-hb") + advance("space") + 2 * advance("a"))
     assert words(found) == ["\u05d0\u05d0 aa", "\u05d1\u05d1"]
     assert found.cluster[found.line == 0].tolist() == [3, 4, 2, 1, 0]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_odd_texts_are_laid_out_in_order(font: gs.Font, double: gs.Font, seed: int) -> None:
+    """Whatever the text and the width, lines follow each other and none is longer than the box."""
+    random = Random(seed)
+    pool = "aVfi \u0301\u05d0\u0628\u0633(1)\u00ad-\u200d\u2067\u202e\u2069"
+    pool += "\u3042\u300c\t\n\u0e20\u2122\U0001f467\U0001f3fd\U0001f1e9"
+    for _ in range(150):
+        text = "".join(random.choices(pool, k=random.randint(1, 40)))
+        direction: Any = random.choice([None, "ltr", "rtl", "ttb", "btt"])
+        align: Any = random.choice(["start", "center", "end", "justify"])
+        width = random.choice([None, random.uniform(1, 9000)])
+        found = gs.layout(font, text, fallbacks=[double], direction=direction, align=align, width=width)
+        lines = [found.line == k for k in np.unique(found.line)]
+        assert bool((np.diff(found.line) >= 0).all())
+        for before, after in pairwise(lines):
+            assert found.cluster[before].max() < found.cluster[after].min()
+        length = -found.box[1] if direction in ("ttb", "btt") else found.box[2]
+        for line in lines:
+            wide = np.searchsorted(clusters(text), found.cluster[line & (found.advance > 0)], side="right")
+            alone = len(np.unique(wide)) <= 1  # one grapheme cluster, which is never broken
+            assert found.advance[line].sum() <= (length if width is None or alone else width) + 1e-3
 
 
 # --- columns
