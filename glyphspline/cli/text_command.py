@@ -58,7 +58,7 @@ def set_text(given: Mapping[str, Any]) -> int:
             say(line)
         if len(remarks) > SHOWN:
             say(f"and {len(remarks) - SHOWN} remarks more")
-    return 1 if layout.missing or any(note.startswith(LEFT_OUT) for note in drawn.notes) else 0
+    return 1 if layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
 
 
 def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, Format]]:
@@ -248,9 +248,9 @@ class Drawn:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
         layout = self.layout
         if fitted:
-            results = layout.fitted(self.options)
+            results = layout.results(self.options)
         else:
             results = [as_glyph(o if isinstance(o, Outline) else Outline("")) for o in layout.outlines()]
-        self.notes |= dict.fromkeys([note for result in results for note in result.notes])
+        self.notes |= dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)])
         box = curves_data(self.unfitted.arrays.curves, self.options.precision)[0].box
         return text_document(layout, results, layout.which, self.look, box)
