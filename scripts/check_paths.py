@@ -39,7 +39,7 @@ WAVE = "M0 4C4 -4 8 -4 12 4S20 10 24 4"
 """Paths, in em."""
 
 LINES_LIMIT, WAVE_LIMIT = 2e-5, 5e-4
-"""Distances in em that count as the same place: on a curve, whose length is that of chords in Chromium, half a pixel."""
+"""Distances in em that count as the same place: on a curve, whose length Chromium takes of chords, half a pixel."""
 
 POSITIONS = """() => {
   const text = document.querySelector("text");

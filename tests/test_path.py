@@ -447,7 +447,7 @@ def test_paths_with_cusps_and_many_points_are_measured_and_refused_or_bent() -> 
     for s in (0.5 * cusp.length, [0.5 * cusp.length - 1e-9]):
         assert np.isfinite(cusp.at(s)[1]).all()
     assert np.isfinite(along(layout, cusp, align="center").origin).all()
-    with pytest.raises(GlyphsplineError, match="bends too sharply|fold over"):
+    with pytest.raises(GlyphsplineError, match=r"bends too sharply|fold over"):
         bend(text("O"), cusp, 0.1, align="center")
 
 
