@@ -29,6 +29,10 @@ from .outlines.sampling import sample
 display.install()
 
 if TYPE_CHECKING:
+    from .layout.along_path import along as along
+    from .layout.bent import bend as bend
+    from .layout.path import Path as Path
+    from .layout.path_file import open_path as open_path
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -45,6 +49,10 @@ if TYPE_CHECKING:
 _ON_DEMAND = {
     "Font": ".readers",
     "Layout": ".layout.placed",
+    "Path": ".layout.path",
+    "along": ".layout.along_path",
+    "bend": ".layout.bent",
+    "open_path": ".layout.path_file",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -97,11 +105,14 @@ __all__ = [
     "Options",
     "Outline",
     "OutputError",
+    "Path",
     "PolygonError",
     "Spline",
     "Thresholds",
     "Turn",
     "__version__",
+    "along",
+    "bend",
     "check",
     "compare",
     "convert",
@@ -113,6 +124,7 @@ __all__ = [
     "kinks",
     "layout",
     "open_font",
+    "open_path",
     "open_source",
     "plot",
     "sample",
