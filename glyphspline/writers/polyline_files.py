@@ -13,6 +13,7 @@ import numpy as np
 from ..fitting.results import GlyphResult
 from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Outline
+from ..outlines.uncrossing import uncrossed
 from ..types import FloatArray, counted, rounded_up
 from .formats import RELATIVE_FLATNESS, Settings
 from .json_file import as_text, head
@@ -90,10 +91,11 @@ def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
     """The polygons as a module of OpenSCAD, which the file also calls; ``use <file>`` only defines it.
 
     OpenSCAD fills the paths of one ``polygon()`` by the even-odd rule, which would make holes where contours overlap.
-    So each outer contour is a ``polygon()`` with its own holes as further paths, and the ink is their union. A contour
-    is a hole if contours around it wind the other way; it belongs to the smallest of these.
+    So contours are cut where they cross, and joined to loops that do not; each outer loop is a ``polygon()`` with its
+    own holes as further paths, and the ink is their union: that of the nonzero rule.
     """
     polygons, bound = _written(glyph, settings)
+    polygons = uncrossed(polygons)
     name = f"glyph_{_NOT_NAME.sub('_', glyph.outline.name)}"
     unit = settings.unit or "font units"
     codes = "".join(f" U+{code:04X}" for code in glyph.outline.unicodes)
@@ -115,10 +117,10 @@ def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
 
 
 def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int]]]:
-    """Indices of the outer contours, each with those of its holes; what encloses no area is left out.
+    """Indices of the outer polygons, each with those of its holes; what encloses no area is left out.
 
-    The union of the outer contours, each less its holes, is the ink of the nonzero rule, if no contour crosses itself
-    and no hole reaches beyond the outer contour that it belongs to, into another.
+    Polygons are :func:`.uncrossed`. One is a hole if those around it wind the other way; it belongs to the smallest of
+    these. The union of the outer ones, each less its holes, is the ink of the nonzero rule.
     """
     areas = np.array([_area(polygon) for polygon in polygons])
     boxes = np.array([[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]).reshape(-1, 4)
@@ -136,8 +138,6 @@ def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int
         else:
             holes[c] = []
     for c, outer in belongs.items():
-        while outer in belongs:  # only where contours cross
-            outer = belongs[outer]
         holes[outer].append(c)
     return list(holes.items())
 
