@@ -516,6 +516,7 @@ DRAWINGS = {
     "a figure of eight": [Contour(np.array([[0.0, 0], [90, 80], [90, 0], [0, 80]]), np.ones(4, dtype=np.int64))],
     "a hole through two outer contours": [ring(60), ring(60, 70), ring(20, 35, turn=-1)],
     "sides on sides": [square(0, 0, 60), square(60, 0, 60), square(30, 0, 60), square(10, 10, 20, turn=-1)],
+    "twice around, and out again": [ring(100), ring(90), ring(60, turn=-1), ring(50, turn=-1)],
     "the same twice": [ring(60), ring(60), ring(30, turn=-1)],
     "apart": [ring(20), ring(20, 60), ring(20, 120, turn=-1)],
 }
@@ -553,8 +554,7 @@ def test_openscad_has_the_ink_of_real_glyphs(glyph: gs.GlyphResult) -> None:
     nonzero = sum(windings(polygon, points) for polygon in polygons) != 0
     assert away.mean() > 0.8
     np.testing.assert_array_equal(ink_of(scad, points)[away], nonzero[away])
-    found = outers_and_holes(uncrossed(polygons))
-    assert sum(len(holes) + 1 for _, holes in found) >= len(polygons)
+    assert len(outers_and_holes(uncrossed(polygons))) > 1
 
 
 def test_the_module_of_openscad_has_a_name_that_it_can_read() -> None:

@@ -117,28 +117,29 @@ def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
 
 
 def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int]]]:
-    """Indices of the outer polygons, each with those of its holes; what encloses no area is left out.
+    """Indices of the outer polygons, each with those of its holes, of the ink of the nonzero rule.
 
-    Polygons are :func:`.uncrossed`. One is a hole if those around it wind the other way; it belongs to the smallest of
-    these. The union of the outer ones, each less its holes, is the ink of the nonzero rule.
+    Polygons are :func:`.uncrossed`. One bounds ink if winding numbers are zero on one of its sides only; it is a hole
+    if that is the inside, and belongs to the smallest outer one around it. The others are left out.
     """
     areas = np.array([_area(polygon) for polygon in polygons])
     boxes = np.array([[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]).reshape(-1, 4)
     holes: dict[int, list[int]] = {}
-    belongs: dict[int, int] = {}
+    around: dict[int, list[int]] = {}
     for c in np.flatnonzero(areas).tolist():
         x, y = _middle(polygons[c])
-        near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y)
+        near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y) & (areas != 0)
         near[c] = False
-        around = {
-            k: turns for k in np.flatnonzero(near & (areas != 0)).tolist() if (turns := _winding(polygons[k], x, y))
-        }
-        if sum(around.values()) * areas[c] < 0:
-            belongs[c] = min((k for k in around if areas[k] * areas[c] < 0), key=lambda k: abs(areas[k]))
-        else:
+        turns = {k: _winding(polygons[k], x, y) for k in np.flatnonzero(near).tolist()}
+        outside = sum(turns.values())
+        if outside == 0:
             holes[c] = []
-    for c, outer in belongs.items():
-        holes[outer].append(c)
+        elif outside + np.sign(areas[c]) == 0:
+            around[c] = [k for k, times in turns.items() if times]
+    for c, those in around.items():
+        outer = min((k for k in those if k in holes), key=lambda k: abs(areas[k]), default=None)
+        if outer is not None:
+            holes[outer].append(c)
     return list(holes.items())
 
 
