@@ -11,8 +11,8 @@ from .bezier import derivative_points, evaluate
 def flattened(pieces: FloatArray, flatness: float) -> tuple[FloatArray, IntArray, FloatArray]:
     """Bézier pieces as chords between points at even parameters, as few for each piece as the bound asks for.
 
-    A chord of a piece cut into n is nowhere further than max |B''| / 8n² from it, at equal parameters, and B'' is within
-    the convex hull of its Bézier points. A bound at equal parameters is one of the distance in both directions.
+    A chord of a piece cut into n is nowhere further than max |B''| / 8n² from it, at equal parameters, and B'' is
+    within the convex hull of its Bézier points. A bound at equal parameters is one of the distance in both directions.
 
     Args:
         pieces: (m, degree + 1, 2). flatness: the distance allowed.

@@ -164,7 +164,7 @@ def _fill(document: Any, drawn: Iterator[Sequence[Piece] | FloatArray], counters
                 entities.append(space.add_line(start, end, dxfattribs=layer))
                 continue
             spline = space.add_spline(degree=piece.degree, dxfattribs={**layer, "flags": PLANAR})
-            spline.control_points, spline.knots = points.tolist(), piece.knots.tolist()
+            spline.control_points, spline.knots = points.tolist(), (piece.knots * scale).tolist()
             entities.append(spline)
         if len(entities) > 1:
             document.groups.new(f"CONTOUR-{number}").extend(entities)
