@@ -64,8 +64,12 @@ for job in jobs:
         area = 0.0
         for part in face.Faces:
             for wire in part.Wires:
-                corners = [p for edge in wire.OrderedEdges for p in edge.discretize(4000)]
-                enclosed = abs(sum(a.x * b.y - a.y * b.x for a, b in zip(corners, corners[1:] + corners[:1]))) / 2
+                enclosed = 0.0
+                for edge in wire.Edges:
+                    p = edge.discretize(4000)
+                    swept = sum(a.x * b.y - a.y * b.x for a, b in zip(p, p[1:])) / 2
+                    enclosed += swept if edge.Orientation == "Forward" else -swept
+                enclosed = abs(enclosed)
                 area += enclosed if wire.isSame(part.OuterWire) else -enclosed
         kinds = sorted(set(type(edge.Curve).__name__ for edge in edges))
         smooth = sorted(set(edge.Curve.Continuity for edge in edges if hasattr(edge.Curve, "Continuity")))
@@ -161,9 +165,8 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
     for layer, sign in (("outlines", 1.0), ("holes", -1.0)):  # each contour a solid: holes are not told whose they are
         for wire in wires[layer]:
             closed &= wire.Closed()
-            solid = BRepPrimAPI_MakePrism(
-                BRepBuilderAPI_MakeFace(wire, True).Face(), gp_Vec(0, 0, job["height"])
-            ).Shape()
+            face = BRepBuilderAPI_MakeFace(wire, True).Face()
+            solid = BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, job["height"])).Shape()
             valid &= BRepCheck_Analyzer(solid).IsValid()
             found = GProp_GProps()
             BRepGProp.VolumeProperties_s(solid, found)
