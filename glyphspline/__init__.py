@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from .readers import open_source as open_source
     from .writers.dxf import to_dxf as to_dxf
     from .writers.font.font_file import write_font as write_font
+    from .writers.json_file import to_json as to_json
     from .writers.parquet import write_table as write_table
+    from .writers.polyline_files import to_polylines as to_polylines
     from .writers.svg.curvature_map import to_curvature_svg as to_curvature_svg
     from .writers.svg.document import to_svg as to_svg
     from .writers.ufo_folder import write_ufo as write_ufo
@@ -44,6 +46,8 @@ _ON_DEMAND = {
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
     "to_dxf": ".writers.dxf",
+    "to_json": ".writers.json_file",
+    "to_polylines": ".writers.polyline_files",
     "to_svg": ".writers.svg.document",
     "write_font": ".writers.font.font_file",
     "write_table": ".writers.parquet",
@@ -109,6 +113,8 @@ __all__ = [
     "sample",
     "to_curvature_svg",
     "to_dxf",
+    "to_json",
+    "to_polylines",
     "to_svg",
     "write_font",
     "write_table",

@@ -29,17 +29,18 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.curves.flatten import flattened
 from glyphspline.curves.integrals import area
+from glyphspline.outlines.flattening import flattened, polygons_of
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
-from glyphspline.writers.dxf import FLATNESS, holes
+from glyphspline.writers.dxf import holes
+from glyphspline.writers.formats import Settings
 
 DEFLECTION = 0.02
 """Millimetres between a mesh and its solid."""
 
 SIZE = 20.0
-"""Millimetres of an em."""
+"""Millimetres from descender to ascender."""
 
 LOOKS = {
     "smooth": gs.Options(),
@@ -120,6 +121,7 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import TopoDS
+    from OCP.TopTools import TopTools_ListOfShape
 
     def edges(entity: Any) -> list[Any]:
         if entity.dxftype() == "LWPOLYLINE":
@@ -154,11 +156,12 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
     contours = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
     wires, count = {"outlines": [], "holes": []}, 0  # type: ignore[var-annotated]
     for contour in contours:
-        builder = BRepBuilderAPI_MakeWire()
+        builder, parts = BRepBuilderAPI_MakeWire(), TopTools_ListOfShape()
         for entity in contour:
             for edge in edges(entity):
-                builder.Add(edge)
+                parts.Append(edge)
                 count += 1
+        builder.Add(parts)
         wires[contour[0].dxf.layer].append(builder.Wire())
     area, volume, said, valid, closed = 0.0, 0.0, 0.0, True, True
     meshes: list[FloatArray] = []
@@ -194,13 +197,14 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
 
 def true_area(result: gs.GlyphResult, kind: str) -> float:
     """Of the ink in square millimetres, if contours do not overlap: the outlines' areas less the holes'."""
-    em = result.outline.metrics.units_per_em
+    metrics = result.outline.metrics
+    em, height = metrics.units_per_em, metrics.ascender - metrics.descender
     curves = [contour.curve for contour in result.contours]
     if kind == "polyline":
-        corners = [flattened(curve.cubics(), em * FLATNESS)[0] for curve in curves]
-        curves = [Contour(points, np.ones(len(points), dtype=np.int64)) for points in corners]
+        polygons = polygons_of(flattened(result.arrays.curves, Settings().flatness_for(em))[0])
+        curves = [Contour(points, np.ones(len(points), dtype=np.int64)) for points in polygons]
     areas = np.abs([area(curve.cubics()) for curve in curves])
-    return float(np.where(holes(result), -areas, areas).sum()) * (SIZE / em) ** 2
+    return float(np.where(holes(result), -areas, areas).sum()) * (SIZE / height) ** 2
 
 
 def main() -> int:

@@ -21,7 +21,7 @@ from glyphspline.batch.galleries import result_path
 from glyphspline.report import write_index, write_report
 from glyphspline.report.data import glyph_text, inside
 from glyphspline.report.glyph_measures import glyph_measures
-from glyphspline.writers.svg.source_drawing import source_data
+from glyphspline.writers.svg.polygon_drawing import polygon_data, source_data
 
 from .drawings import METRICS, circle
 
@@ -50,7 +50,7 @@ def tables(folder: Path) -> list[Any]:
 def test_a_glyphs_file_has_its_drawing(tmp_path: Path) -> None:
     outline = gs.Outline("odd #%?name", 3, (65,), 600.0, (gs.Contour.from_segments(circle(200.0, 8)),), METRICS)
     result = gs.convert(outline, gs.Options(count=12))
-    source, polygon, control = (part.text for part in source_data([result])[0])
+    source, polygon, control = (part.text for part in (*source_data([result]), *polygon_data([result])[0]))
     drawing: dict[str, Any] = {"source": source, "result": "M0 0Z", "polygon": polygon, "control": control}
     files = {"svg": "svg/odd #%?name.svg", "gallery": "gallery/odd.glyph.js"}
     (tmp_path / "a.js").write_bytes(glyph_text(drawing, files, '{"vertices":12,"deviation":null}'))

@@ -25,7 +25,7 @@ from glyphspline.writers.svg.appearance import VIEW_BOXES, ViewBox
 from glyphspline.writers.svg.document import to_svg
 from glyphspline.writers.svg.markup import number
 from glyphspline.writers.svg.path_data import curves_data, polyline_data
-from glyphspline.writers.svg.source_drawing import to_source_svg
+from glyphspline.writers.svg.polygon_drawing import to_polygon_svg
 
 from .drawings import L_SHAPE, circle, polygon_contour, result
 
@@ -224,7 +224,7 @@ def test_ink_bounds_are_tight(seed: int) -> None:
 
 def test_hostile_names_stay_text() -> None:
     glyph = result(polygon_contour(L_SHAPE), name=HOSTILE, unicodes=(0x41, 0x1F600))
-    for svg in (to_svg(glyph), to_source_svg(glyph)):
+    for svg in (to_svg(glyph), to_polygon_svg(glyph)):
         root = ElementTree.fromstring(svg)
         assert not root.findall(f".//{SVG}script")
         clean = HOSTILE.replace("\x00", "\ufffd").replace("\x1b", "\ufffd").replace("\ud800", "\ufffd")
@@ -249,7 +249,7 @@ def test_identity_and_metrics_can_be_recovered() -> None:
 
 def test_ids_of_different_glyphs_do_not_meet() -> None:
     def ids(glyph: gs.GlyphResult) -> set[str]:
-        svgs = (to_svg(glyph), to_source_svg(glyph))
+        svgs = (to_svg(glyph), to_polygon_svg(glyph))
         found = [e.attrib["id"] for svg in svgs for e in ElementTree.fromstring(svg).iter() if "id" in e.attrib]
         assert len(found) == len(set(found)) > 0
         return set(found)
@@ -265,8 +265,8 @@ def test_empty_glyph_is_a_valid_drawing(choice: ViewBox) -> None:
     assert box_of(svg)[2] > 0
 
 
-def test_source_drawing_has_outline_and_polygon() -> None:
-    root = ElementTree.fromstring(to_source_svg(result(polygon_contour(L_SHAPE))))
+def test_polygon_drawing_has_outline_and_polygon() -> None:
+    root = ElementTree.fromstring(to_polygon_svg(result(polygon_contour(L_SHAPE))))
     groups = {group.attrib["id"]: group for group in root.findall(f"{SVG}g")}
     assert list(groups) == ["g36-A-source", "g36-A-polygon", "g36-A-control"]
     outline = parse_path(groups["g36-A-source"].findall(f"{SVG}path")[0].attrib["d"])

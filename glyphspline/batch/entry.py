@@ -20,19 +20,23 @@ def manifest_line(
     advance: float | None,
     status: str,
     files: str,
-    contours: str,
+    contours: str | None,
     *,
     deviation: float | None = None,
     notes: Sequence[str] = (),
     error: str | None = None,
 ) -> str:
-    """One glyph's line, without the line end; ``files`` and ``contours`` are JSON without the brackets."""
+    """One glyph's line, without the line end; ``files`` and ``contours`` are JSON without the brackets.
+
+    ``contours`` is None if nothing was fitted.
+    """
     said = ",".join(map(quoted, notes))
     codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
     failed = "null" if error is None else quoted(error)
+    measures = "null" if contours is None else f"[{contours}]"
     return (
         f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{files}}},"deviation":{number(deviation)},"contours":[{contours}],'
+        f'"status":"{status}","files":{{{files}}},"deviation":{number(deviation)},"contours":{measures},'
         f'"notes":[{said}],"error":{failed}}}'
     )
 

@@ -17,9 +17,9 @@ NAMES = get_args(Names)
 LONGEST_NAME = 150
 """Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
 
-_RESERVED = "|".join(map(re.escape, sorted(reservedFileNames)))
-_PLAIN = re.compile(rf"(?ai)(?!(?:.*\.)?(?:{_RESERVED})(?:\.|$))[a-z0-9_-][a-z0-9_.-]{{0,73}}(?<!\.)")
-"""Names that are taken as they are: no part of them between dots is the name of a device of Windows."""
+_RESERVED = frozenset(reservedFileNames)
+_PLAIN = re.compile(r"[A-Za-z0-9_-](?:[A-Za-z0-9_.-]{0,72}[A-Za-z0-9_-])?")
+"""Names that are taken as they are, unless a part of them between dots is the name of a device of Windows."""
 
 _NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
 
@@ -51,7 +51,7 @@ def _safe(names: Sequence[str]) -> list[str]:
     """Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names."""
     keys = list(map(_key, names))
     counts = Counter(keys)
-    stays = [counts[key] == 1 and _is_plain(name) for name, key in zip(names, keys, strict=True)]
+    stays = [counts[key] == 1 and _is_plain(name, key) for name, key in zip(names, keys, strict=True)]
     taken = {key for key, stay in zip(keys, stays, strict=True) if stay}
     return [name if stay else _by_rule(name, taken) for name, stay in zip(names, stays, strict=True)]
 
@@ -61,8 +61,10 @@ def _key(name: str) -> str:
     return name.lower() if name.isascii() else unicodedata.normalize("NFKC", name).casefold()
 
 
-def _is_plain(name: str) -> bool:
-    return _PLAIN.fullmatch(name) is not None or (not name.isascii() and len(name) == 1 and _is_seen(name))
+def _is_plain(name: str, key: str) -> bool:
+    if _PLAIN.fullmatch(name) is not None:
+        return key not in _RESERVED and ("." not in key or _RESERVED.isdisjoint(key.split(".")))
+    return not name.isascii() and len(name) == 1 and _is_seen(name)
 
 
 def _is_seen(character: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -132,11 +132,10 @@ def aim(source: Source, spec: RunSpec) -> str:
 
 
 def workers_for(
-    source: Source, glyphs: Sequence[str], finished: Container[int], spec: RunSpec, jobs: int | None
+    source: Source, glyphs: Sequence[str], finished: Collection[int], spec: RunSpec, jobs: int | None
 ) -> Executor:
     """Workers, which start while the tasks are listed; none if all glyphs are finished."""
-    names = {name for gid, name in enumerate(source.glyph_names) if gid not in finished}
-    expected = len(names.intersection(glyphs))
+    expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
     return workers(jobs if expected else 0, spec.limits.seconds, spec.options, spec.formats, expected)
 
 
@@ -171,14 +170,13 @@ def prepare(
 
 def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
-    index = {name: gid for gid, name in enumerate(source.glyph_names)}
     stems = file_names(source.glyph_names, names, source.cmap)
     unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
     for code, name in source.cmap.items():
         if name in unicodes:
             unicodes[name].append(code)
-    chosen = sorted((index[name], name, tuple(sorted(codes))) for name, codes in unicodes.items())
-    return [Task(gid, name, stems[gid], codes) for gid, name, codes in chosen]
+    chosen = [(gid, name) for gid, name in enumerate(source.glyph_names) if name in unicodes]
+    return [Task(gid, name, stems[gid], tuple(sorted(unicodes[name]))) for gid, name in chosen]
 
 
 def with_scale(job: Job, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> Job:

@@ -22,7 +22,7 @@ from typing import Any, BinaryIO
 from ..errors import OutputError
 from .files import O_BINARY, PARTIAL, sizes, writing
 from .job import Done
-from .spec import SUFFIXES
+from .spec import is_folder
 from .summary import Facts, Summary
 
 MANIFEST = "manifest.jsonl"
@@ -59,7 +59,7 @@ class Record:
 def read_record(out: Path) -> Record:
     """Read the record of an earlier run from the manifest and journal of a folder."""
     record = Record(sizes=_known_sizes(out / SIZES))
-    present = {name: sizes(out / name) for name in SUFFIXES}
+    present: dict[str, dict[str, int]] = {}
     for name in (MANIFEST, JOURNAL):
         for offset, lengths, entry in _lines(out / name):
             if not _is_entry(entry):
@@ -109,8 +109,16 @@ def _is_entry(entry: Any) -> bool:
 
 
 def _written(out: Path, files: dict[str, str], lengths: list[int] | None, present: dict[str, dict[str, int]]) -> bool:
-    """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None."""
-    there = [present.get(folder, {}).get(name) for folder, _, name in (path.rpartition("/") for path in files.values())]
+    """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None.
+
+    ``present``: sizes of files by folder, as far as they are known; folders are added.
+    """
+    there = []
+    for path in files.values():
+        folder, _, name = path.rpartition("/")
+        if folder not in present:
+            present[folder] = sizes(out / folder) if is_folder(folder) else {}
+        there.append(present[folder].get(name))
     if not (all(there) if lengths is None else there == lengths):
         return False
     return all(_stored(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
@@ -132,7 +140,7 @@ def remove_written(out: Path) -> None:
         for _, _, entry in _lines(out / name):
             for path in entry["files"].values() if _is_entry(entry) else ():
                 folder, _, file = str(path).partition("/")
-                if folder in SUFFIXES and file == Path(file).name and not (out / folder).is_symlink():
+                if is_folder(folder) and file == Path(file).name and not (out / folder).is_symlink():
                     (out / folder / file).unlink(missing_ok=True)
 
 

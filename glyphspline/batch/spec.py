@@ -7,15 +7,18 @@ import math
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OutputError, is_positive, require, require_choice
+from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require, require_choice
 from ..fitting.options import Options
+from ..outlines.outline import FontMetrics
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
 from ..types import Names
+from ..writers.formats import OURS, DxfKind, Settings, format_named, format_names, is_format, settings_for
 from ..writers.svg.appearance import Appearance, ViewBox
 from ..writers.svg.curvature_map import WHOSE, Whose
 from .file_names import NAMES
@@ -29,12 +32,12 @@ RUN_FILE = "run.json"
 
 RESULTS = "results"
 
-SUFFIXES = {
-    "source": ".svg", "svg": ".svg", "curvature": ".svg", "png": ".png", "pdf": ".pdf", "curvature-png": ".png",
-    "curvature-pdf": ".pdf", GALLERY: SUFFIX, RESULTS: ".json",
-}  # fmt: skip
-"""Formats with one file a glyph, each in a folder of its name. "source" is part of the gallery; formats with one file a
-font are made from "results"."""
+POLYGON = "polygon"
+
+OF_RUNS = {GALLERY: SUFFIX, POLYGON: ".svg", RESULTS: ".json"}
+"""Suffixes of the formats with one file a glyph that only a run has, besides those of :mod:`..writers.formats`.
+"polygon", the source with the polygon over it, comes with the gallery; formats with one file a font are made from
+"results"."""
 
 MAPS = {"curvature", "curvature-png", "curvature-pdf"}
 """Formats of curvature maps, which share a scale."""
@@ -42,8 +45,25 @@ MAPS = {"curvature", "curvature-png", "curvature-pdf"}
 WHOLE = ("ufo", "otf", "ttf", "parquet")
 """Formats with one file a font."""
 
-FORMATS = (*(name for name in SUFFIXES if name not in ("source", RESULTS)), *WHOLE)
-"""Formats that a run can have."""
+
+def available() -> tuple[str, ...]:
+    """The formats that a run can have, those of plug-ins too, in the order in which a run lists them."""
+    return (*format_names(), GALLERY, *WHOLE)
+
+
+def suffix_of(name: str) -> str:
+    """The suffix of the files of a format with one file a glyph."""
+    return OF_RUNS.get(name) or format_named(name).suffix
+
+
+def is_folder(name: str) -> bool:
+    """Whether a folder of that name belongs to a format with one file a glyph."""
+    return name in OF_RUNS or is_format(name)
+
+
+def needs_fit(formats: Sequence[str]) -> bool:
+    """Whether any of these formats shows more than outlines as the font has them."""
+    return not all(is_format(name) and not format_named(name).fitted for name in formats)
 
 
 @dataclass(frozen=True)
@@ -69,11 +89,16 @@ class RunSpec:
     """How the glyphs of a run are converted, and what is written.
 
     Attributes:
-        options: of the conversion. formats: of ``FORMATS``. names: what the files of glyphs are called after.
+        options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
         masters: all masters of a variable font at once; see :mod:`.masters_run`.
         comb: whose curvature the maps show. corner_teeth: also where a smooth result turns about a corner.
+        flatness: of polylines, in font units; None: 1/2000 em. dxf: contours as splines, or as polylines.
+
+    Raises:
+        OptionError: one of these is none of what it can be.
+        GlyphsplineError: the plug-in of a format cannot be loaded.
     """
 
     options: Options = field(default_factory=Options)
@@ -87,31 +112,49 @@ class RunSpec:
     comb: Whose = "result"
     corner_teeth: bool = False
     masters: bool = False
+    flatness: float | None = Settings.flatness
+    dxf: DxfKind = Settings.dxf
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
-        unknown = [str(name) for name in self.formats if name not in FORMATS]
-        if unknown or not self.formats:
-            raise GlyphsplineError(f"no format {', '.join(unknown) or 'given'}: there are {', '.join(FORMATS)}")
+        if not self.formats:
+            raise OptionError(f"no format given: there are {', '.join(available())}")
+        for name in self.formats:
+            if name not in (GALLERY, *WHOLE) and not (isinstance(name, str) and is_format(name)):
+                raise OptionError(f"no format {name}: there are {', '.join(available())}")
         require_choice("names", self.names, NAMES)
         require_choice("comb", self.comb, WHOSE)
         require_choice("corner_teeth", self.corner_teeth)
-        _ = self.look  # raises where it is none
+        _ = self.settings(FontMetrics())  # raises where it is none
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
-        object.__setattr__(self, "formats", tuple(name for name in FORMATS if name in self.formats))
+        own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]
+        for name in own:
+            format_named(name)  # raises where a plug-in is broken
+        order = OURS if set(own) <= OURS.keys() else format_names()
+        given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
+        object.__setattr__(self, "formats", tuple(given))
 
-    @property
+    @cached_property
     def look(self) -> Appearance:
         """How drawings look."""
         return Appearance(self.view_box, self.size, self.fill, self.stroke)
 
-    @property
+    def settings(self, metrics: FontMetrics) -> Settings:
+        """What writers of glyphs of a font with these metrics are told."""
+        return settings_for(self.look, metrics, self.flatness, self.dxf)
+
+    @cached_property
+    def is_fitted(self) -> bool:
+        """Whether anything is fitted: any of the formats shows more than outlines as the font has them."""
+        return needs_fit(self.formats)
+
+    @cached_property
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        return (*own, *(["source"] if GALLERY in own else []), *([RESULTS] if self.whole else []))
+        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.whole else []))
 
     @property
     def whole(self) -> tuple[str, ...]:
@@ -165,6 +208,8 @@ def describe(
         **asdict(spec.look),
         "comb": spec.comb,
         "corner_teeth": spec.corner_teeth,
+        "flatness": spec.flatness,
+        "dxf": spec.dxf,
         "names": spec.names,
         "curvature_scale": curvature_scale,
         **({"masters": True} if spec.masters else {}),

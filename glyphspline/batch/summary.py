@@ -62,7 +62,7 @@ def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) 
 
 def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
     """The facts of a glyph from its line of the manifest."""
-    facts = facts_of(columns_of(entry["contours"]))
+    facts = facts_of(columns_of(entry["contours"] or ()))
     return facts._replace(notes=tuple(entry.get("notes") or ())) if entry["status"] == "empty" else facts
 
 

@@ -13,9 +13,10 @@ from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
 from ..types import rounded_up
+from ..writers.formats import format_named
 from .files import PARTIAL, write_whole, writing
 from .manifest import entries_of
-from .spec import RESULTS, RunSpec
+from .spec import OF_RUNS, RESULTS, RunSpec
 from .store import from_text
 
 
@@ -106,5 +107,9 @@ def check_possible(spec: RunSpec) -> None:
     """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
     if "parquet" in spec.whole:
         need("parquet")
+    for name in spec.folders:
+        extra = None if name in OF_RUNS else format_named(name).extra
+        if extra is not None:
+            need(extra)
     if spec.options.remove_overlaps:
         need("overlaps")

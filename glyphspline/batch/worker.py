@@ -14,7 +14,7 @@ import numpy as np
 
 from ..curves.curvature import Comb
 from ..errors import GlyphsplineError, OutputError
-from ..fitting.convert import convert_many
+from ..fitting.convert import convert_many, unfitted
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult, as_glyph, end_to_end
 from ..outlines.contour_arrays import joined, offsets_of
@@ -25,17 +25,18 @@ from ..readers.source import reason as library_reason
 from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
 from ..writers.figures.images import ImageKind
+from ..writers.formats import format_named
 from ..writers.svg.curvature_map import combs, curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
-from ..writers.svg.source_drawing import SourceData, source_data, source_document
+from ..writers.svg.polygon_drawing import PolygonData, polygon_data, polygon_document, source_data
 from .entry import contour_texts, journal_line, manifest_line
 from .files import write_whole
 from .job import Done, Job, Task, failed
 from .pool import sign_of_life
-from .spec import RESULTS, SUFFIXES, Limits
+from .spec import POLYGON, RESULTS, Limits, suffix_of
 from .store import to_text
-from .summary import Facts, facts_of
+from .summary import NO_FACTS, Facts, facts_of
 
 Location = tuple[tuple[str, float], ...]
 
@@ -173,7 +174,7 @@ def convert_and_write(job: Job, batch: Sequence[Read]) -> list[Done]:
     try:
         results = converted(job, batch)
         glyphs = iter(drawn(job, [result for result in results if isinstance(result, GlyphResult)]))
-        formats = [name for name in WRITERS if name in job.spec.folders]
+        formats = job.spec.folders
         share = (time.perf_counter() - started) / len(batch)
         return [
             write_files(job, formats, read.task, next(glyphs), share)
@@ -191,42 +192,52 @@ def convert_and_write(job: Job, batch: Sequence[Read]) -> list[Done]:
 
 def converted(job: Job, batch: Sequence[Read]) -> list[GlyphResult | GlyphsplineError]:
     """The results of a batch."""
-    options = job.spec.fitting(batch[0].outline.metrics.units_per_em)
-    return convert_many([read.outline for read in batch], options, errors="return")
+    outlines = [read.outline for read in batch]
+    if not job.spec.is_fitted:
+        return unfitted(outlines, job.spec.options)
+    options = job.spec.fitting(outlines[0].metrics.units_per_em)
+    return convert_many(outlines, options, errors="return")
 
 
 class Glyph(NamedTuple):
     """The input of the writers.
 
     Attributes:
-        path: of the result. source: None without a gallery.
-        measures: of the contours, as JSON without the brackets. facts: of these, for the summary.
+        path: of the result. source: of the source; None if no format shows it.
+        polygons: None without a gallery.
+        measures: of the contours, as JSON without the brackets; None if nothing is fitted. facts: for the summary.
     """
 
     result: GlyphResult
     path: PathData
-    source: SourceData | None
-    measures: str
+    source: PathData | None
+    polygons: PolygonData | None
+    measures: str | None
     facts: Facts
 
 
 def drawn(job: Job, results: Sequence[GlyphResult]) -> list[Glyph]:
-    """Path data and measures of a batch."""
+    """Path data and measures of a batch. What was not fitted is not measured."""
     if not results:
         return []
+    spec = job.spec
     arrays, offsets = end_to_end(results)
-    paths = curves_data(arrays.curves, job.spec.options.precision, offsets)
-    sources = source_data(results) if GALLERY in job.spec.formats else [None] * len(results)
+    paths = curves_data(arrays.curves, spec.options.precision, offsets)
+    nothing = [None] * len(results)
+    if not spec.is_fitted:
+        return list(map(Glyph, results, paths, paths, nothing, nothing, [NO_FACTS] * len(results)))
+    sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
+    polygons = polygon_data(results) if GALLERY in spec.formats else nothing
     facts = [facts_of(arrays.measures, a, b) for a, b in pairwise(offsets.tolist())]
-    return list(map(Glyph, results, paths, sources, contour_texts(arrays.measures, offsets), facts))
+    return list(map(Glyph, results, paths, sources, polygons, contour_texts(arrays.measures, offsets), facts))
 
 
 def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seconds: float) -> Done:
     """Write a glyph's files, none if it is empty. ``seconds``: time already spent on it."""
     started = time.perf_counter()
     empty = not glyph.result.contours
-    files = {} if empty else {name: f"{name}/{task.stem}{SUFFIXES[name]}" for name in formats}
-    sizes = [write_whole(f"{job.out}/{path}", WRITERS[name](job, glyph, files)) for name, path in files.items()]
+    files = {} if empty else {name: f"{name}/{task.stem}{suffix_of(name)}" for name in formats}
+    sizes = [write_whole(f"{job.out}/{path}", written(name, job, glyph, files)) for name, path in files.items()]
     status, advance = "empty" if empty else "ok", glyph.result.outline.advance
     notes = tuple(dict.fromkeys([*glyph.result.outline.notes, *glyph.result.notes]))
     facts = glyph.facts._replace(notes=notes if empty else ())
@@ -248,9 +259,23 @@ def reason(error: Exception) -> str:
     return library_reason(error)
 
 
+def written(name: str, job: Job, glyph: Glyph, files: dict[str, str]) -> str | bytes:
+    """A glyph's file of a format."""
+    writer = SHARING.get(name)
+    if writer is not None:
+        return writer(job, glyph, files)
+    return format_named(name).write(glyph.result, job.spec.settings(glyph.result.outline.metrics))
+
+
 def _source(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
-    return source_document(glyph.result, glyph.source)
+    return svg_document(glyph.result, glyph.source, job.spec.look)
+
+
+def _polygon(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
+    assert glyph.source is not None
+    assert glyph.polygons is not None
+    return polygon_document(glyph.result, glyph.source, glyph.polygons)
 
 
 def _curvature(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
@@ -275,12 +300,14 @@ def _map(job: Job, glyph: Glyph, kind: ImageKind) -> bytes:
 
 def _gallery(job: Job, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
-    source, polygon, control = (part.text for part in glyph.source)
-    shown = {"source": source, "result": glyph.path.text, "polygon": polygon, "control": control}
+    assert glyph.polygons is not None
+    assert glyph.measures is not None
+    polygon, control = (part.text for part in glyph.polygons)
+    shown = {"source": glyph.source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
     return glyph_text(shown, files, glyph.measures)
 
 
-WRITERS: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
+SHARING: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
     "source": _source,
     "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.look),
     "curvature": _curvature,
@@ -289,6 +316,8 @@ WRITERS: dict[str, Callable[[Job, Glyph, dict[str, str]], str | bytes]] = {
     "curvature-png": lambda job, glyph, files: _map(job, glyph, "png"),
     "curvature-pdf": lambda job, glyph, files: _map(job, glyph, "pdf"),
     GALLERY: _gallery,
+    POLYGON: _polygon,
     RESULTS: lambda job, glyph, files: to_text(glyph.result),
 }
-"""The formats with one file a glyph, in the order in which they are written and listed."""
+"""Writers that share what is made for a whole batch or run, such as path data or the scale of maps, and those of
+formats that only a run has. All other formats are written by their own ``write``."""

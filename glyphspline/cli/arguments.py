@@ -15,6 +15,7 @@ from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
 from ..types import Names
+from ..writers.formats import OURS, DxfKind
 from ..writers.svg.appearance import ViewBox
 from ..writers.svg.curvature_map import Whose
 
@@ -171,9 +172,19 @@ Out = Annotated[
 Formats = Annotated[
     str,
     file_option(
-        "--format", help="Of svg, png, pdf, curvature, curvature-png, curvature-pdf, gallery, ufo, otf, ttf, parquet."
+        "--format", metavar="NAME,…", help=f"Of {', '.join(OURS)}, gallery, ufo, otf, ttf, parquet, and of plug-ins."
     ),
 ]
+Flatness = Annotated[
+    float | None,
+    file_option(
+        "--flatness",
+        parser=number,
+        metavar="UNITS",
+        help="How far a polyline may be from its curve, in font units. Without it, 1/2000 em.",
+    ),
+]
+Dxf = Annotated[DxfKind, file_option("--dxf", help="Contours in a DXF as splines, exact, or as polylines.")]
 OfMasters = Annotated[
     bool,
     file_option(
@@ -393,7 +404,7 @@ def spec_of(given: Mapping[str, Any]) -> RunSpec:
     from ..batch import RunSpec
 
     formats = tuple(filter(None, given["formats"].replace(" ", "").split(",")))
-    drawn = {name: given[name] for name in (*DRAWN, "names", "masters") if name in given}
+    drawn = {name: given[name] for name in (*DRAWN, "names", "masters", "flatness", "dxf") if name in given}
     return RunSpec(options_of(given), formats, **drawn)
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import typer
 
 from ..fitting.options import Options
+from ..writers.formats import Settings
 from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption
@@ -73,6 +74,8 @@ def convert(
     remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
     measure: opt.Measure = Options.measure,
     formats: opt.Formats = "svg,curvature,gallery",
+    flatness: opt.Flatness = Settings.flatness,
+    dxf: opt.Dxf = Settings.dxf,
     masters: opt.OfMasters = False,
     others: opt.MoreFonts = None,
     axis: opt.NewAxis = None,

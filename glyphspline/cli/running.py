@@ -171,7 +171,7 @@ def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec) -> bool
     from ..errors import GlyphsplineError
     from ..outlines.corner_share import share_of_corners
 
-    if spec.options.corners != "smooth" or spec.options.is_fixed:
+    if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
         return False
     outlines = []
     for name in names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Literal, overload
@@ -14,7 +14,7 @@ from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
 from ..types import BoolArray, IntArray, rounded_up
 from .options import Options
-from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns
+from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns, as_glyphs
 
 DEFAULTS = Options()
 
@@ -82,6 +82,25 @@ def convert(outline: Outline, options: Options = DEFAULTS) -> GlyphResult:
         True
     """
     return _convert_batch([outline], options)[0]
+
+
+def unfitted(outlines: Sequence[Outline], options: Options = DEFAULTS) -> list[GlyphResult | GlyphsplineError]:
+    """The outlines as results whose curves are their own contours, overlaps removed if the options say so.
+
+    The error of an outline that cannot be united is in its place.
+    """
+    if not options.remove_overlaps:
+        return list(as_glyphs(outlines, options))
+    from ..outlines.overlaps import remove_overlaps
+
+    found: list[GlyphResult | GlyphsplineError] = []
+    for outline in outlines:
+        try:
+            united, note = remove_overlaps(outline)
+            found += [replace(result, notes=(note,) if note else ()) for result in as_glyphs([united], options)]
+        except GlyphsplineError as error:
+            found.append(error)
+    return found
 
 
 def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineError:

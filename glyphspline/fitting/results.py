@@ -11,6 +11,7 @@ import numpy as np
 
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import (
+    NO_POLYLINES,
     ContourArrays,
     Polylines,
     joined,
@@ -285,10 +286,30 @@ def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
     if isinstance(thing, Contour):
         extent = float(np.ptp(thing.points, axis=0).max()) if len(thing) else 1.0
         return as_glyph(Outline("", contours=(thing,), metrics=FontMetrics(units_per_em=extent or 1.0)))
-    drawn = [contour for contour in thing.contours if len(contour)]
-    known = [Measures(vertices=len(c), segments=len(c), numbers=2 * len(c.points)) for c in drawn]
-    contours = [ContourResult(c, c.points[c.offsets], (), c, m) for c, m in zip(drawn, known, strict=True)]
-    return GlyphResult(thing, Options(), tuple(contours))
+    return as_glyphs([thing])[0]
+
+
+def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> list[GlyphResult]:
+    """Results whose curves are the outlines' contours, those without segments left out: nothing is fitted.
+
+    Polygons have the points where segments meet; there are no interpolations, and no measures but the three counts.
+    """
+    options = options or Options()
+    given = joined([outline.arrays for outline in outlines])
+    ends = offsets_of([outline.arrays.num_contours for outline in outlines])
+    kept = np.diff(given.offsets) > 0
+    if not kept.all():
+        given, ends = given.chosen(np.flatnonzero(kept).tolist()), offsets_of(kept.astype(np.int64))[ends]
+    joints = given.points[np.cumsum(given.degrees) - given.degrees]
+    polygons = Polylines(joints, given.offsets, np.ones(given.num_contours, dtype=np.bool_))
+    segments, numbers = np.diff(given.offsets).tolist(), (2 * np.diff(given.starts)).tolist()
+    counts = {"vertices": segments, "segments": segments, "numbers": numbers}
+    no_arcs = np.zeros(len(given.offsets), dtype=np.int64)
+    found = ConvertedContours(given, given, polygons, (), NO_POLYLINES, no_arcs, counts)
+    return [
+        GlyphResult(outline, options, ContourResults(found, first, last))
+        for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
+    ]
 
 
 def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:

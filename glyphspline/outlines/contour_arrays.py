@@ -105,5 +105,10 @@ def joined_polylines(parts: Sequence[Polylines]) -> Polylines:
 
 def joined_offsets(parts: Sequence[IntArray]) -> IntArray:
     """Offsets (C + 1,) of arrays end to end from the offsets of each."""
-    ends = np.cumsum([0, *(int(part[-1]) for part in parts)])
-    return np.concatenate([[0], *(part[1:] + end for part, end in zip(parts, ends, strict=False))]).astype(np.int64)
+    if not parts:
+        return np.zeros(1, dtype=np.int64)
+    found = np.concatenate(parts).astype(np.int64)
+    counts = np.array([len(part) for part in parts])
+    last = np.cumsum(counts) - 1
+    found[counts[0] :] += np.repeat(np.cumsum(found[last])[:-1], counts[1:])
+    return np.delete(found, last[:-1] + 1)  # the 0 with which each but the first begins

@@ -14,6 +14,7 @@ from ...fitting.convert import convert
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Contour, Outline
+from ..spec import needs_fit
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
 TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
@@ -45,7 +46,7 @@ SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 EVERYTHING = (
     "interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "stacked", "checks",
-    "comparing", "rest",
+    "comparing", "unfitted", "rest",
 )  # fmt: skip
 """All modules of this package. Together they compile every function there is. The first ones share little, so that
 processes that begin at the same time seldom compile the same function."""
@@ -57,6 +58,8 @@ def modules_for(options: Options | None, formats: Sequence[str] = (), masters: b
         return []
     if masters:
         return module_names(["stacked"])
+    if formats and not needs_fit(formats):
+        return module_names(["unfitted", *(["rest"] if options.remove_overlaps else [])])
     fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
     best = [f"{options.corners}_best"] if options.effort == "best" else []
     drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []

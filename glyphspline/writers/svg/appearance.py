@@ -54,20 +54,23 @@ class Appearance:
 
     def inches(self, default: float) -> float:
         """The height in inches, ``default`` where none is said."""
-        if self.size is None:
+        if self.length is None:
             return default
-        value, unit = self._length
+        value, unit = self.length
         return value * INCHES[unit]
 
     def attributes(self, width: float, height: float) -> str:
         """Width and height of a document whose view box is so many units wide and high, as attributes."""
-        if self.size is None:
+        if self.length is None:
             return ""
-        value, unit = self._length
+        value, unit = self.length
         return f' width="{number(value * width / height, 4)}{unit}" height="{number(value, 6)}{unit}"'
 
     @property
-    def _length(self) -> tuple[float, str]:
+    def length(self) -> tuple[float, str] | None:
+        """The height as a number and its unit; None where none is said."""
+        if self.size is None:
+            return None
         found = _LENGTH.fullmatch(self.size) if isinstance(self.size, str) else None
         if found is None or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
             units = ", ".join(INCHES)

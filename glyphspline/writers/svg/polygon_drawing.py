@@ -13,40 +13,44 @@ from .markup import data_attributes, document, id_prefix, number, union, view_bo
 from .path_data import PathData, curves_data, dots_data, polylines_data
 
 
-class SourceData(NamedTuple):
-    """Path data of a glyph's source outline, its polygons, and the control polygons of its result."""
+class PolygonData(NamedTuple):
+    """Path data of a glyph's polygons, and of the control polygons of its result."""
 
-    source: PathData
     polygon: PathData
     control: PathData
 
 
-def source_data(glyphs: Sequence[GlyphResult]) -> list[SourceData]:
-    """Path data of glyphs, at least one, that have the same options and em."""
-    precision, coarse = glyphs[0].options.precision, comb_precision(glyphs[0].outline.metrics.units_per_em)
+def source_data(glyphs: Sequence[GlyphResult]) -> list[PathData]:
+    """Path data of the source outlines of glyphs, at least one, that have the same options."""
     outlines = [glyph.outline.arrays for glyph in glyphs]
-    source = curves_data(joined(outlines), precision, offsets_of([own.num_contours for own in outlines]))
+    offsets = offsets_of([own.num_contours for own in outlines])
+    return curves_data(joined(outlines), glyphs[0].options.precision, offsets)
+
+
+def polygon_data(glyphs: Sequence[GlyphResult]) -> list[PolygonData]:
+    """Path data of the polygons of glyphs, at least one, that have the same options and em."""
+    precision, coarse = glyphs[0].options.precision, comb_precision(glyphs[0].outline.metrics.units_per_em)
     arrays, offsets = end_to_end(glyphs)
     polygon = polylines_data(arrays.polygons, precision, offsets)
     control = polylines_data(arrays.controls, coarse, arrays.arc_offsets[offsets])
-    return [SourceData(*parts) for parts in zip(source, polygon, control, strict=True)]
+    return [PolygonData(*parts) for parts in zip(polygon, control, strict=True)]
 
 
-def to_source_svg(glyph: GlyphResult) -> str:
+def to_polygon_svg(glyph: GlyphResult) -> str:
     """The source outline, and over it the polygon with its vertices, as groups of one SVG document.
 
     Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. As an image with the fragment of the first, as in
     ``a.svg#g36-A-source``, the drawing has no polygon. A third group, ``…-control``, holds the control
     polygons of the result; it is not displayed.
     """
-    return source_document(glyph, source_data([glyph])[0]).decode()
+    return polygon_document(glyph, source_data([glyph])[0], polygon_data([glyph])[0]).decode()
 
 
-def source_document(glyph: GlyphResult, data: SourceData) -> bytes:
-    """The document of :func:`to_source_svg` in UTF-8, from its path data."""
+def polygon_document(glyph: GlyphResult, source: PathData, data: PolygonData) -> bytes:
+    """The document of :func:`to_polygon_svg` in UTF-8, from its path data."""
     outline, precision = glyph.outline, glyph.options.precision
     em = outline.metrics.units_per_em
-    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), data.source.box)
+    box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), source.box)
     prefix = id_prefix(outline.name, outline.gid)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" overflow="visible"'
@@ -66,6 +70,6 @@ def source_document(glyph: GlyphResult, data: SourceData) -> bytes:
     )
     dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
     return document([
-        head, data.source.text, polygon, data.polygon.text, f'"/><path stroke-width="{number(em / 100, 3)}" d="', dots,
+        head, source.text, polygon, data.polygon.text, f'"/><path stroke-width="{number(em / 100, 3)}" d="', dots,
         control, data.control.text, '"/></g>\n</svg>\n',
     ])  # fmt: skip
