@@ -24,7 +24,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -34,13 +34,15 @@ from glyphspline.outlines.flattening import flattened, polygons_of
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 from glyphspline.writers.dxf import holes
-from glyphspline.writers.formats import Settings
+from glyphspline.writers.formats import DxfKind, Settings
 
 DEFLECTION = 0.02
 """Millimetres between a mesh and its solid."""
 
 SIZE = 20.0
 """Millimetres from descender to ascender."""
+
+KINDS: tuple[DxfKind, ...] = get_args(DxfKind)
 
 LOOKS = {
     "smooth": gs.Options(),
@@ -154,7 +156,8 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
     grouped = [list(group) for _, group in document.groups]
     alone = set(document.modelspace()) - {entity for group in grouped for entity in group}
     contours = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
-    wires, count = {"outlines": [], "holes": []}, 0  # type: ignore[var-annotated]
+    wires: dict[str, list[Any]] = {"outlines": [], "holes": []}
+    count = 0
     for contour in contours:
         builder, parts = BRepBuilderAPI_MakeWire(), TopTools_ListOfShape()
         for entity in contour:
@@ -229,9 +232,9 @@ def main() -> int:
         for name in font.select(text=given.text):
             for look, options in LOOKS.items():
                 result = gs.convert(font.outline(name), options)
-                for kind in ("spline", "polyline"):
+                for kind in KINDS:
                     path = folder / f"{name}-{look}-{kind}.dxf"
-                    path.write_text(gs.to_dxf(result, size=f"{SIZE:g}mm", dxf=kind))  # type: ignore[arg-type]
+                    path.write_text(gs.to_dxf(result, size=f"{SIZE:g}mm", dxf=kind))
                     picture = "" if given.pictures is None or kind == "polyline" else str(folder / f"{path.stem}.npy")
                     jobs.append({"path": str(path), "height": given.height, "picture": picture})
                     areas.append(true_area(result, kind))

@@ -228,7 +228,7 @@ def test_units(results: dict[str, gs.GlyphResult], unit: str | None, code: int) 
     result = results["smooth"]
     document = opened(dxf.write(result, Settings(scale=0.25, unit=unit)))
     assert document.header["$INSUNITS"] == code
-    factor = 0.25 * (INCHES[unit] / INCHES["mm"] if unit in ("pt", "pc", "px") else 1.0)  # type: ignore[index]
+    factor = 0.25 * (INCHES[unit] / INCHES["mm"] if unit in ("pt", "pc", "px") else 1.0)
     first = document.modelspace()[0].control_points[5]
     expected = result.contours[0].interpolations[0].spline.clamped().control_points[5] * factor
     np.testing.assert_allclose(first[:2], expected, rtol=1e-14)
