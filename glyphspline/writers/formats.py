@@ -248,6 +248,12 @@ def _polyline_scad(result: GlyphResult, settings: Settings) -> str:
     return polyline_scad(result, settings)
 
 
+def _dxf(result: GlyphResult, settings: Settings) -> str:
+    from .dxf import write
+
+    return write(result, settings)
+
+
 OURS = _by_name([
     Format("source", ".svg", _source, fitted=False),
     Format("svg", ".svg", _svg),
@@ -261,5 +267,6 @@ OURS = _by_name([
     Format("polyline", ".json", _polyline),
     Format("polyline-csv", ".csv", _polyline_csv),
     Format("polyline-scad", ".scad", _polyline_scad),
+    Format("dxf", ".dxf", _dxf, extra="cad"),
 ])  # fmt: skip
 """Our formats by name, in the order in which a run writes and lists them."""
