@@ -152,7 +152,7 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
             faces.Next()
         return np.concatenate(found)
 
-    document = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
+    document: Any = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
     grouped = [list(group) for _, group in document.groups]
     alone = set(document.modelspace()) - {entity for group in grouped for entity in group}
     contours = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]

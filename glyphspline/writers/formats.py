@@ -218,12 +218,6 @@ def _curvature_pdf(result: GlyphResult, settings: Settings) -> bytes:
     return map_image(result, "pdf")
 
 
-def _dxf(result: GlyphResult, settings: Settings) -> str:
-    from .dxf import write
-
-    return write(result, settings)
-
-
 def _json(result: GlyphResult, settings: Settings) -> str:
     from .json_file import json_text
 
@@ -262,7 +256,6 @@ OURS = _by_name([
     Format("pdf", ".pdf", _pdf),
     Format("curvature-png", ".png", _curvature_png),
     Format("curvature-pdf", ".pdf", _curvature_pdf),
-    Format("dxf", ".dxf", _dxf, extra="cad"),
     Format("json", ".json", _json),
     Format("polyline", ".json", _polyline),
     Format("polyline-csv", ".csv", _polyline_csv),
