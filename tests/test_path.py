@@ -470,6 +470,14 @@ def test_a_bent_text_is_fitted_within_the_whole_tolerance() -> None:
         assert contour.measures.deviation_bound >= bent.snapped
 
 
+def test_what_readers_snapped_and_said_goes_on(tmp_path: FilePath) -> None:
+    layout = text("Og")
+    flat = layout.outline()
+    assert flat.snapped == max(outline.snapped for outline in layout.outlines() if isinstance(outline, gs.Outline))
+    said = replace(layout, notes=("no tables for shaping",))
+    assert "no tables for shaping" in bend(said, Path.of(WAVE), 0.1).notes
+
+
 def test_text_without_ink_bends_to_nothing() -> None:
     assert len(bend(text(" "), Path.of(WAVE), 0.1).contours) == 0
 

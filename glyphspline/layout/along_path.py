@@ -65,10 +65,8 @@ def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "st
 
     Example:
         >>> import glyphspline as gs
-        >>> from glyphspline.layout.along_path import along
-        >>> from glyphspline.layout.path import Path
         >>> font = gs.open_font("fonts_test/kouzan-gyosho.ttf")
-        >>> upwards = along(gs.layout(font, "龍好"), Path.of([[0, 0], [0, 3000]]))
+        >>> upwards = gs.along(gs.layout(font, "龍好"), gs.Path.of([[0, 0], [0, 3000]]))
         >>> upwards.origin.round(6).tolist()
         [[0.0, 0.0], [0.0, 1024.0]]
     """

@@ -104,7 +104,7 @@ class Layout:
         arrays = joined([outline.arrays for outline in parts.outlines])
         found = self._as_outline(arrays, offsets_of([len(outline.contours) for outline in parts.outlines]), parts)
         notes = [f"glyph {outline.name!r}: {note}" for outline in parts.outlines for note in outline.notes]
-        return replace(found, notes=tuple(notes))
+        return replace(found, notes=tuple(notes), snapped=max([o.snapped for o in parts.outlines], default=0.0))
 
     def results(self, options: Options = DEFAULTS) -> list[GlyphResult]:
         """The results of :meth:`distinct`, each at its own origin, in units of the first font, in one batch.
