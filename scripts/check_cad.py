@@ -69,7 +69,7 @@ for job in jobs:
             for wire in part.Wires:
                 enclosed = 0.0
                 for edge in wire.Edges:
-                    p = edge.discretize(4000)
+                    p = edge.discretize(4000 if "Spline" in type(edge.Curve).__name__ else 2)
                     swept = sum(a.x * b.y - a.y * b.x for a, b in zip(p, p[1:])) / 2
                     enclosed += swept if edge.Orientation == "Forward" else -swept
                 enclosed = abs(enclosed)
@@ -153,9 +153,9 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
         return np.concatenate(found)
 
     document = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
-    grouped = [list(group) for _, group in document.groups]
+    grouped: list[list[Any]] = [list(group) for _, group in document.groups]
     alone = set(document.modelspace()) - {entity for group in grouped for entity in group}
-    contours = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
+    contours: list[list[Any]] = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
     wires: dict[str, list[Any]] = {"outlines": [], "holes": []}
     count = 0
     for contour in contours:
