@@ -34,7 +34,7 @@ from glyphspline.outlines.flattening import flattened, polygons_of
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 from glyphspline.writers.dxf import holes
-from glyphspline.writers.formats import DxfKind, Settings
+from glyphspline.writers.settings import DxfKind, Settings
 
 DEFLECTION = 0.02
 """Millimetres between a mesh and its solid."""
@@ -69,7 +69,7 @@ for job in jobs:
             for wire in part.Wires:
                 enclosed = 0.0
                 for edge in wire.Edges:
-                    p = edge.discretize(4000)
+                    p = edge.discretize(4000 if "Spline" in type(edge.Curve).__name__ else 2)
                     swept = sum(a.x * b.y - a.y * b.x for a, b in zip(p, p[1:])) / 2
                     enclosed += swept if edge.Orientation == "Forward" else -swept
                 enclosed = abs(enclosed)
@@ -152,10 +152,10 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
             faces.Next()
         return np.concatenate(found)
 
-    document: Any = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
-    grouped = [list(group) for _, group in document.groups]
+    document = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
+    grouped: list[list[Any]] = [list(group) for _, group in document.groups]
     alone = set(document.modelspace()) - {entity for group in grouped for entity in group}
-    contours = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
+    contours: list[list[Any]] = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
     wires: dict[str, list[Any]] = {"outlines": [], "holes": []}
     count = 0
     for contour in contours:

@@ -21,7 +21,8 @@ import glyphspline as gs
 from glyphspline.errors import OptionError
 from glyphspline.fitting.results import as_glyph
 from glyphspline.writers import dxf
-from glyphspline.writers.formats import DxfKind, Settings, format_named
+from glyphspline.writers.formats import format_named
+from glyphspline.writers.settings import DxfKind, Settings
 from glyphspline.writers.svg.appearance import INCHES
 
 ezdxf: Any = pytest.importorskip("ezdxf")

@@ -33,9 +33,10 @@ from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
 from glyphspline.outlines.uncrossing import uncrossed
 from glyphspline.types import FloatArray
 from glyphspline.writers import formats as registry
-from glyphspline.writers.formats import OURS, Format, Settings, format_named, format_names, formats, settings_for
+from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
 from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
+from glyphspline.writers.settings import Settings, settings_for
 from glyphspline.writers.svg.appearance import Appearance
 
 ROOT = Path(__file__).parents[1]

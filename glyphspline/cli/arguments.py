@@ -17,7 +17,8 @@ from ..interpolation.method import Fallback
 from ..layout.along_path import Side
 from ..layout.setting import Align, Direction
 from ..types import Names
-from ..writers.formats import OURS, DxfKind
+from ..writers.formats import OURS
+from ..writers.settings import DxfKind
 from ..writers.svg.appearance import ViewBox
 from ..writers.svg.curvature_map import Whose
 

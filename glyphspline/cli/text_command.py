@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from ..fitting.results import GlyphResult
     from ..layout.path import Path as Curve
     from ..layout.placed import Layout
-    from ..writers.formats import Format, Settings
+    from ..writers.formats import Format
+    from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -225,7 +226,7 @@ class Drawn:
     @cached_property
     def settings(self) -> Settings:
         """What writers are told."""
-        from ..writers.formats import settings_for
+        from ..writers.settings import settings_for
 
         metrics = self.layout.fonts[0].metrics
         return settings_for(self.look, metrics, self.given["flatness"], self.given["dxf"])

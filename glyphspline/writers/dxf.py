@@ -5,7 +5,7 @@ What is written, so that all programs read the same curve:
 - A closed smooth contour is one SPLINE entity: the spline itself with the knot of its seam inserted until it is clamped
   (:meth:`..curves.bspline.Spline.clamped`), first and last control point equal, flags (group code 70) planar only. The
   closed and the periodic flag are left away: with either of them one program or another wraps the control points once
-  more, replaces the knots, or reads no curve. docs/formats.md says which.
+  more, replaces the knots, or reads no curve. docs/formats.md says which. Knots have the scale of the drawing.
 - Of a contour with corners each arc is a SPLINE and each straight line a LINE. Cubics that only share tangents, and
   contours kept from the source, are one SPLINE from corner to corner, with triple knots where cubics meet. Quadratics
   are raised to cubics. The entities of a contour follow each other, end in the same coordinates, and are a GROUP.
@@ -30,7 +30,7 @@ from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Contour
 from ..types import BoolArray, FloatArray
-from .formats import DxfKind, Settings, settings_for
+from .settings import DxfKind, Settings, settings_for
 from .svg.appearance import INCHES, Appearance
 
 VERSION = "R2000"
