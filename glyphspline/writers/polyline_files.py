@@ -15,8 +15,8 @@ from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Outline
 from ..outlines.uncrossing import uncrossed
 from ..types import FloatArray, counted, rounded_up
-from .formats import RELATIVE_FLATNESS, Settings
 from .json_file import as_text, head
+from .settings import RELATIVE_FLATNESS, Settings
 
 VERSION = 1
 """Of ``polyline.schema.json``."""
