@@ -14,8 +14,7 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
-from ..layout.along_path import Side
-from ..layout.setting import Align, Direction
+from ..layout.setting import Align, Direction, Side
 from ..types import Names
 from ..writers.formats import OURS
 from ..writers.settings import DxfKind

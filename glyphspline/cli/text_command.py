@@ -135,6 +135,8 @@ def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Curve 
     else:
         if given["width"] is not None:
             raise GlyphsplineError("--width is for lines; text on a --path is one")
+        if given["direction"] in ("ttb", "btt"):
+            raise GlyphsplineError("columns cannot stand on a --path")
         from ..layout.path_file import open_path
 
         curve = open_path(given["path"]).scaled(pixel(em, look))

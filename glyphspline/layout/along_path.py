@@ -11,9 +11,9 @@ from ..errors import GlyphsplineError, is_number, require, require_choice
 from ..types import FloatArray, IntArray, counted
 from .path import Path
 from .placed import Layout
+from .setting import Side
 
 Align = Literal["start", "center", "end"]
-Side = Literal["left", "right"]
 
 ROUNDING = 1e-9
 """Share of the path's length by which a text may be too long."""

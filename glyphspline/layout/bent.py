@@ -12,9 +12,10 @@ from ..curves.bezier import cross, derivative_points, split
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
 from ..types import BoolArray, FloatArray, IntArray
-from .along_path import MOST_NAMED, Align, Letters, Side, laid
+from .along_path import MOST_NAMED, Align, Letters, laid
 from .path import SMOOTH, Path
 from .placed import Layout
+from .setting import Side
 
 SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
