@@ -145,8 +145,10 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
         found, faces = [], TopExp_Explorer(solid, TopAbs_FACE)
         while faces.More():
             face = TopoDS.Face_s(faces.Current())
-            mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
-            points = np.array([mesh.Node(k).Coord() for k in range(1, mesh.NbNodes() + 1)])
+            place = TopLoc_Location()  # top and bottom are one face at two places
+            mesh = BRep_Tool.Triangulation_s(face, place)
+            move = place.Transformation()
+            points = np.array([mesh.Node(k).Transformed(move).Coord() for k in range(1, mesh.NbNodes() + 1)])
             corners = np.array([mesh.Triangle(k).Get() for k in range(1, mesh.NbTriangles() + 1)]) - 1
             found.append(points[corners if face.Orientation() == TopAbs_FORWARD else corners[:, ::-1]])
             faces.Next()
@@ -179,7 +181,7 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
             said += sign * abs(found.Mass())
             BRepMesh_IncrementalMesh(solid, DEFLECTION, False, 0.5, False)
             mesh = triangles(solid)
-            volume += sign * abs(np.linalg.det(mesh).sum() / 6)
+            volume += sign * abs(float(np.linalg.det(mesh).sum()) / 6)
             meshes.append(mesh)
             found = GProp_GProps()
             BRepGProp.SurfaceProperties_s(face, found, 1e-6, False)
@@ -244,7 +246,7 @@ def main() -> int:
                 if "error" not in said:
                     off = said["off"] = [
                         said["area"] / true - 1,
-                        said.get("volume", true * given.height) / true / given.height - 1,
+                        float(said.get("volume", true * given.height)) / true / given.height - 1,
                     ]
                     good &= abs(off[0]) < 1e-5 and abs(off[1]) < 0.02
                 bad += not good
