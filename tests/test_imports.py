@@ -40,10 +40,9 @@ PLAN = {
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"comparing", "report"},
-    "dataset": WRITERS | {"report", "batch"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"comparing", "report", "batch", "dataset", "viewer"},
+    "cli": WRITERS | {"comparing", "report", "batch", "viewer"},
     "fontspector": WRITERS | {"cli"},
     "__main__": {"cli"},
 }
