@@ -46,7 +46,8 @@ figcaption { text-align: center; padding: 0 0 14px }
 
 
 LINE = """
-body { margin: 0; background: #fff } svg { display: block; width: 950px; height: 270px; margin: 5px 20px; overflow: visible }
+body { margin: 0; background: #fff }
+svg { display: block; width: 950px; height: 270px; margin: 5px 20px; overflow: visible }
 .wave { fill: none; stroke: #d33; stroke-width: 12 }
 """
 
