@@ -14,7 +14,7 @@ from .checks.kinds import Thresholds
 from .comparing.compare import compare
 from .comparing.difference import Apart, Difference, Turn
 from .curves.bspline import Spline
-from .dataset.spec import DatasetSpec
+from .dataset.dataset_spec import DatasetSpec
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
 from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from .dataset.dataset_run import dataset as dataset
     from .dataset.loading import Loaded as Loaded
     from .dataset.loading import load as load
+    from .layout.along_path import along as along
+    from .layout.bent import bend as bend
+    from .layout.path import Path as Path
+    from .layout.path_file import open_path as open_path
     from .layout.placed import Layout as Layout
     from .readers import Font as Font
     from .readers import open_font as open_font
@@ -51,8 +55,12 @@ _ON_DEMAND = {
     "Font": ".readers",
     "Layout": ".layout.placed",
     "Loaded": ".dataset.loading",
+    "Path": ".layout.path",
+    "along": ".layout.along_path",
+    "bend": ".layout.bent",
     "dataset": ".dataset.dataset_run",
     "load": ".dataset.loading",
+    "open_path": ".layout.path_file",
     "open_font": ".readers",
     "open_source": ".readers",
     "to_curvature_svg": ".writers.svg.curvature_map",
@@ -107,11 +115,14 @@ __all__ = [
     "Options",
     "Outline",
     "OutputError",
+    "Path",
     "PolygonError",
     "Spline",
     "Thresholds",
     "Turn",
     "__version__",
+    "along",
+    "bend",
     "check",
     "compare",
     "convert",
@@ -125,6 +136,7 @@ __all__ = [
     "layout",
     "load",
     "open_font",
+    "open_path",
     "open_source",
     "plot",
     "sample",

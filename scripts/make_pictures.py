@@ -45,13 +45,22 @@ figcaption { text-align: center; padding: 0 0 14px }
 """
 
 
+LINE = """
+body { margin: 0; background: #fff }
+svg { display: block; width: 950px; height: 270px; margin: 5px 20px; overflow: visible }
+.wave { fill: none; stroke: #d33; stroke-width: 12 }
+"""
+
+WORDS = "永善好龍永善好"
+
+
 def main() -> None:
     """All pictures, one after the other."""
     OUT.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         sandbox = [] if os.getuid() else ["--no-sandbox"]
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=sandbox)
-        for picture in (dragon, corners, variants, terminal, gallery, viewer, checks):
+        for picture in (dragon, corners, variants, text, terminal, gallery, viewer, checks):
             context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=1.25)
             picture(context.new_page())
             context.close()
@@ -89,6 +98,22 @@ def variants(page: Any) -> None:
         words = f"variant {variant}: {max(c.measures.iterations or 0 for c in glyph.contours)} iterations"
         found.append((words, gs.to_curvature_svg(glyph, scale=0.012, control_polygon=True)))
     side_by_side(page, "variants", found)
+
+
+def text(page: Any) -> None:
+    """A line bent along a path, and its curvature."""
+    font = gs.open_font(FONTS / "kouzan-kaisho.ttf")
+    wave = "M0 0C1500 -1100 2300 -500 3300 0S5600 900 7100 -300"
+    with tempfile.TemporaryDirectory() as place:
+        drawing = Path(place) / "wave.svg"
+        drawing.write_text(f'<svg xmlns="http://www.w3.org/2000/svg"><path id="wave" d="{wave}"/></svg>')
+        path = gs.open_path(f"{drawing}#wave")
+    line = gs.layout(font, WORDS)
+    bent = gs.convert(gs.bend(line, path, 0.2, align="center"), gs.Options(tolerance=2.0))
+    svg = gs.to_svg(bent, view_box="ink").replace("<path", f'<path d="{wave}" class="wave"/><path', 1)
+    page.set_content(f"<style>{LINE}</style>{svg}{gs.to_curvature_svg(bent, vertices=False)}")
+    page.set_viewport_size({"width": 990, "height": 560})
+    shot(page, "text")
 
 
 def terminal(page: Any) -> None:
@@ -133,6 +158,8 @@ def viewer(page: Any) -> None:
         page.locator("#compare").check()
         for layer in ("comb", "control"):
             page.locator(f"[data-layer={layer}]").check(force=True)
+        page.fill("#text", "龍好 Ag8")
+        page.wait_for_selector("#text-line use")
         page.wait_for_selector("#compared figure")
         page.wait_for_load_state("networkidle")
         page.wait_for_timeout(1500)

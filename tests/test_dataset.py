@@ -32,11 +32,11 @@ from glyphspline.cli import app
 from glyphspline.dataset import dataset_run, plan, shards
 from glyphspline.dataset.card import command
 from glyphspline.dataset.chunk_rows import Made, RowsJob
+from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.dataset.licences import licence_of
 from glyphspline.dataset.plan import Plan, Task, plan_of
 from glyphspline.dataset.scan import SPLITS, FontFacts, split_of
 from glyphspline.dataset.shards import Shapes
-from glyphspline.dataset.spec import DatasetSpec
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 PLAIN = DatasetSpec(options=None, points=8)
@@ -96,7 +96,7 @@ MAKE = """
 import sys, time
 import glyphspline as gs
 from glyphspline.dataset import plan, shards
-from glyphspline.dataset.spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)
@@ -479,7 +479,7 @@ def test_duckdb_opens_it(letters: Path) -> None:
     duckdb = pytest.importorskip("duckdb")
     query = f"select count(*), count(distinct font) from '{letters}/data/*.parquet'"
     fonts = {row["font"] for row in rows_of(letters)}
-    assert duckdb.sql(query).fetchone() == (len(rows_of(letters)), len(fonts))
+    assert duckdb.sql(query).fetchall() == [(len(rows_of(letters)), len(fonts))]
 
 
 def test_datasets_opens_it(letters: Path, tmp_path: Path) -> None:

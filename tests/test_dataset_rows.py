@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from fontTools.fontBuilder import FontBuilder
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,9 +20,9 @@ import glyphspline as gs
 from glyphspline.curves.integrals import area
 from glyphspline.dataset import loading
 from glyphspline.dataset import schema as columns
-from glyphspline.dataset.rows import table_of
+from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.dataset.rows import fits_of, table_of
 from glyphspline.dataset.schema import contour_types, schema
-from glyphspline.dataset.spec import DatasetSpec
 from glyphspline.fitting.results import Measures
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.outlines.resampling import resampled
@@ -61,10 +62,63 @@ def test_a_glyph_of_a_font_has_one_row_however_it_is_stored(font: str) -> None:
     rng = np.random.default_rng(1)
     outlines = font_outlines(font)
     for rows in ("glyph", "contour"):
-        spec = replace(UNFITTED, rows=rows)  # type: ignore[arg-type]
+        spec = replace(UNFITTED, rows=rows)
         table = table_of(outlines, None, spec)
         for _ in range(3):
             assert table_of([stored_otherwise(each, rng) for each in outlines], None, spec).equals(table)
+
+
+def test_implied_points_and_direction_of_a_real_font_make_no_difference(tmp_path: Path) -> None:
+    from fontTools.pens.reverseContourPen import ReverseContourPen
+    from fontTools.pens.ttGlyphPen import TTGlyphPen
+    from fontTools.ttLib.tables._g_l_y_f import dropImpliedOnCurvePoints
+
+    ring = [(0, -200), (200, -200), (200, 0), (200, 200), (0, 200), (-200, 200), (-200, 0), (-200, -200)]
+    tables, points = [], []
+    for implied, backward in ((False, False), (True, False), (False, True)):
+        pen = TTGlyphPen(None)
+        to: Any = ReverseContourPen(pen) if backward else pen
+        for size, inner in ((1.0, False), (0.5, True)):
+            own = [(300 + round(size * x), 300 + round(size * y)) for x, y in (ring[::-1] if inner else ring)]
+            own = own[1:] + own[:1] if inner else own
+            to.moveTo(own[0])
+            for k in range(1, 9, 2):
+                to.qCurveTo(own[k], own[(k + 1) % 8])
+            to.closePath()
+        glyph = pen.glyph(dropImpliedOnCurves=False)
+        if implied:
+            assert dropImpliedOnCurvePoints(glyph)
+        builder = FontBuilder(1000, isTTF=True)
+        builder.setupGlyphOrder([".notdef", "o"])
+        builder.setupCharacterMap({0x6F: "o"})
+        builder.setupGlyf({".notdef": TTGlyphPen(None).glyph(), "o": glyph})
+        builder.setupHorizontalMetrics({".notdef": (600, 0), "o": (600, 0)})
+        builder.setupHorizontalHeader(ascent=800, descent=-200)
+        builder.setupNameTable({"familyName": "T", "styleName": "R"})
+        builder.setupPost()
+        builder.save(path := tmp_path / f"{implied}{backward}.ttf")
+        points.append(len(glyph.coordinates))
+        tables.append(table_of([gs.open_font(path).outline("o")], None, UNFITTED))
+    assert points == [16, 8, 16]
+    assert tables[0].equals(tables[1])
+    assert tables[0].equals(tables[2])
+
+
+def test_a_fit_has_one_row_however_the_outline_is_stored() -> None:
+    rng, spec = np.random.default_rng(2), DatasetSpec()
+    outlines = font_outlines(text="gO")
+    otherwise = [stored_otherwise(each, rng) for each in outlines]
+    one, other = (fits_of(given, spec) for given in (outlines, otherwise))
+    assert table_of(outlines, one, spec).equals(table_of(otherwise, other, spec))  # type: ignore[arg-type]
+
+
+def test_united_outlines_are_canonical_too() -> None:
+    left, right = (polygon_contour(L_SHAPE + np.array([x, 0.0])) for x in (0.0, 100.0))
+    spec = DatasetSpec(options=gs.Options(corners="sharp", remove_overlaps=True), normalise="units")
+    (found,) = fits_of([outline(left, right)], spec)
+    (row,) = table_of([outline(left, right)], [found], spec).to_pylist()  # type: ignore[list-item]
+    assert row["source_points"][0][0] == [50.0, 0.0]
+    assert all(area(contour.cubics()) > 0 for contour in gs.load(row).outline.contours)
 
 
 @st.composite
@@ -183,8 +237,8 @@ def test_a_cusp_has_a_tangent_and_no_curvature() -> None:
 
 @pytest.fixture(scope="module")
 def fitted() -> tuple[list[gs.Outline], list[gs.GlyphResult]]:
-    outlines = canonical_outlines(font_outlines(text="gO好"))
-    return outlines, gs.convert_many(outlines, DatasetSpec().options or gs.Options())
+    outlines = font_outlines(text="gO好")
+    return outlines, [fit for fit in fits_of(outlines, DatasetSpec()) if isinstance(fit, gs.GlyphResult)]
 
 
 @pytest.mark.parametrize("rows", ["glyph", "contour"])

@@ -18,6 +18,7 @@ FONT = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
 COMMANDS = {
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
+    "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],
     "sources": ["convert", "made.glyphs", "--text", "O"],
     "cluster": ["convert", FONT, "--text", "O", "--scheduler", "tcp://127.0.0.1:1"],
     "remote": ["convert", "s3://fonts/made.ttf", "--text", "O"],

@@ -30,11 +30,13 @@ from glyphspline.errors import GlyphsplineError, OptionError
 from glyphspline.fitting.results import as_glyph
 from glyphspline.outlines.flattening import flattened
 from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
+from glyphspline.outlines.uncrossing import uncrossed
 from glyphspline.types import FloatArray
 from glyphspline.writers import formats as registry
-from glyphspline.writers.formats import OURS, Format, Settings, format_named, format_names, formats, settings_for
+from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
 from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
+from glyphspline.writers.settings import Settings, settings_for
 from glyphspline.writers.svg.appearance import Appearance
 
 ROOT = Path(__file__).parents[1]
@@ -492,6 +494,16 @@ def ring(radius: float, x: float = 0.0, turn: int = 1) -> Contour:
     )
 
 
+def star(points: int, step: int) -> Contour:
+    angles = 2 * np.pi * np.arange(points) * step / points
+    return Contour(100 * np.stack([np.cos(angles), np.sin(angles)], axis=1), np.ones(points, dtype=np.int64))
+
+
+def square(x: float, y: float, size: float, turn: int = 1) -> Contour:
+    corners = np.array([[x, y], [x + size, y], [x + size, y + size], [x, y + size]])
+    return Contour(corners[::turn], np.ones(4, dtype=np.int64))
+
+
 DRAWINGS = {
     "a hole": [ring(100), ring(50, turn=-1)],
     "an island in a hole": [ring(100), ring(80, turn=-1), ring(50), ring(20, turn=-1)],
@@ -500,6 +512,13 @@ DRAWINGS = {
     "a hole in one, inked by the other": [ring(100), ring(30, 60, turn=-1), ring(90, 100)],
     "an outer contour in another": [ring(100), ring(50)],
     "all the other way round": [ring(100, turn=-1), ring(50)],
+    "a contour that crosses itself": [star(5, 2)],
+    "one that goes round itself three times": [star(7, 3)],
+    "a figure of eight": [Contour(np.array([[0.0, 0], [90, 80], [90, 0], [0, 80]]), np.ones(4, dtype=np.int64))],
+    "a hole through two outer contours": [ring(60), ring(60, 70), ring(20, 35, turn=-1)],
+    "sides on sides": [square(0, 0, 60), square(60, 0, 60), square(30, 0, 60), square(10, 10, 20, turn=-1)],
+    "twice around, and out again": [ring(100), ring(90), ring(60, turn=-1), ring(50, turn=-1)],
+    "the same twice": [ring(60), ring(60), ring(30, turn=-1)],
     "apart": [ring(20), ring(20, 60), ring(20, 120, turn=-1)],
 }
 
@@ -511,7 +530,21 @@ def test_openscad_has_the_ink_of_the_nonzero_rule(name: str, backwards: bool) ->
     glyph = as_glyph(Outline(name, contours=contours))
     points = np.random.default_rng(0).uniform((-110, -110), (210, 110), (4000, 2))
     nonzero = sum(windings(contour.points, points) for contour in contours) != 0
+    assert 0.02 < nonzero.mean() < 0.98
     np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings()), points), nonzero)
+
+
+def test_polygons_are_uncrossed_with_the_same_winding() -> None:
+    random = np.random.default_rng(1)
+    for count in (5, 12, 40):
+        polygons = [random.uniform(0, 100, (count, 2)) for _ in range(3)]
+        found = uncrossed(polygons)
+        points = random.uniform(0, 100, (500, 2))
+        before, after = (sum(windings(polygon, points) for polygon in some) for some in (polygons, found))
+        np.testing.assert_array_equal(before, after)
+        assert len(found) > len(polygons)
+        glyph = as_glyph(Outline("", contours=[Contour(each, np.ones(count, dtype=np.int64)) for each in polygons]))
+        np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings(flatness=1e-3)), points), before != 0)
 
 
 def test_openscad_has_the_ink_of_real_glyphs(glyph: gs.GlyphResult) -> None:
@@ -522,7 +555,7 @@ def test_openscad_has_the_ink_of_real_glyphs(glyph: gs.GlyphResult) -> None:
     nonzero = sum(windings(polygon, points) for polygon in polygons) != 0
     assert away.mean() > 0.8
     np.testing.assert_array_equal(ink_of(scad, points)[away], nonzero[away])
-    assert sum(len(holes) + 1 for _, holes in outers_and_holes(polygons)) == len(polygons)
+    assert len(outers_and_holes(uncrossed(polygons))) > 1
 
 
 def test_the_module_of_openscad_has_a_name_that_it_can_read() -> None:

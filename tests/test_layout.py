@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -16,6 +19,7 @@ from fontTools.ttLib import TTFont
 import glyphspline as gs
 from glyphspline import OptionError
 from glyphspline.layout.bidi import embedding_levels, line_levels, visual_order
+from glyphspline.layout.boundaries import clusters
 from glyphspline.layout.placed import Layout
 from glyphspline.layout.scripts import scripts_of, upright_in_columns
 
@@ -326,6 +330,29 @@ def test_lines_of_both_directions_break_in_reading_order(font: gs.Font) -> None:
     assert found.cluster[found.line == 0].tolist() == [3, 4, 2, 1, 0]
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_odd_texts_are_laid_out_in_order(font: gs.Font, double: gs.Font, seed: int) -> None:
+    """Whatever the text and the width, lines follow each other and none is longer than the box."""
+    random = Random(seed)
+    pool = "aVfi \u0301\u05d0\u0628\u0633(1)\u00ad-\u200d\u2067\u202e\u2069"
+    pool += "\u3042\u300c\t\n\u0e20\u2122\U0001f467\U0001f3fd\U0001f1e9"
+    for _ in range(150):
+        text = "".join(random.choices(pool, k=random.randint(1, 40)))
+        direction: Any = random.choice([None, "ltr", "rtl", "ttb", "btt"])
+        align: Any = random.choice(["start", "center", "end", "justify"])
+        width = random.choice([None, random.uniform(1, 9000)])
+        found = gs.layout(font, text, fallbacks=[double], direction=direction, align=align, width=width)
+        lines = [found.line == k for k in np.unique(found.line)]
+        assert bool((np.diff(found.line) >= 0).all())
+        for before, after in pairwise(lines):
+            assert found.cluster[before].max() < found.cluster[after].min()
+        length = -found.box[1] if direction in ("ttb", "btt") else found.box[2]
+        for line in lines:
+            wide = np.searchsorted(clusters(text), found.cluster[line & (found.advance > 0)], side="right")
+            alone = len(np.unique(wide)) <= 1  # one grapheme cluster, which is never broken
+            assert found.advance[line].sum() <= (length if width is None or alone else width) + 1e-3
+
+
 # --- columns
 
 
@@ -436,6 +463,34 @@ def test_rounding_after_a_motion_is_set_aside(font: gs.Font) -> None:
     assert shifted.contours[0].measures.within_tolerance is True
 
 
+def test_glyphs_that_touch_are_united(font: gs.Font) -> None:
+    """Kerned by hand into each other: the union of two boxes, wherever the pair stands, fitted once."""
+    pytest.importorskip("pathops")
+    found = gs.layout(font, "AV AV V")
+    options = gs.Options(corners="sharp", remove_overlaps=True)
+    assert len(found.convert(options).contours) == 5  # 80 units of kerning: the squares have 50 at their sides
+    closer = replace(found, origin=found.origin - np.outer(np.isin(found.cluster, [1, 4]), [120.0, 0.0]))
+    result = closer.convert(options)
+    assert len(result.contours) == 3
+    first, second = (contour.curve.points for contour in result.contours[:2])
+    np.testing.assert_allclose(second - first, np.broadcast_to(closer.origin[3] - closer.origin[0], first.shape))
+    assert len(closer.convert(gs.Options(corners="sharp")).contours) == 5
+
+
+def test_results_of_distinct_glyphs(font: gs.Font) -> None:
+    found = gs.layout(font, "AVA V")
+    results = found.results(gs.Options(corners="sharp"))
+    assert [result.outline.gid for result in results] == [gid for _, gid in found.distinct()]
+    assert [results[k].outline.name for k in found.which.tolist()] == names(found)
+    np.testing.assert_array_equal(results[1].contours[0].source.points, font.outline("A").contours[0].points)
+
+
+def test_options_that_suit_no_glyph_are_an_error(font: gs.Font, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pathops", None)
+    with pytest.raises(gs.GlyphsplineError, match="overlaps"):
+        gs.layout(font, "AV").convert(gs.Options(remove_overlaps=True))
+
+
 def test_a_text_of_spaces_has_no_contours(font: gs.Font) -> None:
     result = gs.layout(font, "  \n ").convert()
     assert len(result.contours) == 0
@@ -457,7 +512,10 @@ def test_a_broken_glyph_costs_only_itself(font: gs.Font, tmp_path: Path) -> None
     result = found.convert(gs.Options(corners="sharp"))
     assert len(result.contours) == 2
     assert any("left out" in note and "'V'" in note for note in result.notes), result.notes
-    assert len(found.outline().contours) == 2
+    outline = found.outline()
+    assert len(outline.contours) == 2
+    assert any("left out" in note and "'V'" in note for note in outline.notes), outline.notes
+    assert [len(glyph.contours) for glyph in found.results(gs.Options(corners="sharp"))] == [1, 0]
 
 
 # --- sources without tables for shaping

@@ -26,6 +26,7 @@ from glyphspline.outlines.joins import joins
 from glyphspline.types import FloatArray
 
 from .drawings import circle
+from .text_fonts import text_font
 
 FONTS = FilePath(__file__).parent.parent / "fonts_test"
 NAMESPACE = 'xmlns="http://www.w3.org/2000/svg"'
@@ -145,6 +146,8 @@ def test_splines_contours_and_polylines_are_paths() -> None:
         ([[0, 0], [np.inf, 1]], "not finite"),
         ([[3, 3], [3, 3]], "no length"),
         ([[3, 3]], "no length"),
+        ([[0, 0], [1e-300, 0]], "no length"),
+        ([[0, 0], [1e300, 0]], "above 1e"),
         ([], "polyline"),
         ([1, 2, 3], "polyline"),
         ([[[0, 0], [1, 0], [2, 0], [3, 0]], [[5, 0], [6, 0], [7, 0], [8, 0]]], "a gap of 2"),
@@ -435,6 +438,19 @@ def test_small_kinks_are_rounded_and_corners_refused() -> None:
     assert along(layout, corner).angle[1] == pytest.approx(np.arctan2(2000, 2800))
 
 
+def test_paths_with_cusps_and_many_points_are_measured_and_refused_or_bent() -> None:
+    layout = text("Og")
+    sampled = np.stack([np.linspace(0, 6000, 3000), 500 * np.sin(np.linspace(0, 6, 3000))], axis=1)
+    assert bend(layout, Path.of(sampled), 0.1).snapped <= 0.11
+    cusp = Path(np.array([[[0.0, 0], [3000, 3000], [0, 3000], [3000, 0]]]))
+    assert cusp.length_error < 1e-6 * cusp.length
+    for s in (0.5 * cusp.length, [0.5 * cusp.length - 1e-9]):
+        assert np.isfinite(cusp.at(s)[1]).all()
+    assert np.isfinite(along(layout, cusp, align="center").origin).all()
+    with pytest.raises(GlyphsplineError, match=r"bends too sharply|fold over"):
+        bend(text("O"), cusp, 0.1, align="center")
+
+
 def test_outlines_that_would_fold_over_are_named() -> None:
     layout = text("Og")
     height = float(layout.outline().arrays.points[:, 1].max())
@@ -454,5 +470,42 @@ def test_a_bent_text_is_fitted_within_the_whole_tolerance() -> None:
         assert contour.measures.deviation_bound >= bent.snapped
 
 
+def test_what_readers_snapped_and_said_goes_on(tmp_path: FilePath) -> None:
+    layout = text("Og")
+    flat = layout.outline()
+    assert flat.snapped == max(outline.snapped for outline in layout.outlines() if isinstance(outline, gs.Outline))
+    said = replace(layout, notes=("no tables for shaping",))
+    assert "no tables for shaping" in bend(said, Path.of(WAVE), 0.1).notes
+
+
 def test_text_without_ink_bends_to_nothing() -> None:
     assert len(bend(text(" "), Path.of(WAVE), 0.1).contours) == 0
+
+
+def test_shaped_text_stands_on_a_path(tmp_path: FilePath) -> None:
+    """Right to left with joined letters, marks, a ligature, and fonts of two sizes; columns are refused."""
+    font = gs.open_font(text_font(tmp_path / "text.ttf"))
+    other = gs.open_font(text_font(tmp_path / "other.ttf", em=2000, family="Double"))
+    path = Path.of(circle(2000, 64, turn=-1), closed=True)
+    arabic = gs.layout(font, "\u0628\u0633\u0628")
+    on = along(arabic, path)
+    assert (np.diff(arabic.cluster) < 0).all()
+    assert (np.diff(on.angle) < 0).all()  # the last letter comes first
+    marked = along(gs.layout(font, "ffia\u0301"), path)
+    assert letters_of(gs.layout(font, "ffia\u0301")).of.tolist() == [0, 1, 2, 2]
+    assert marked.angle[2] == marked.angle[3]
+    mixed = gs.layout(other, "a\u3042", fallbacks=[font])
+    np.testing.assert_allclose(np.abs(along(mixed, path).outline().arrays.points @ [1, 1j]).min(), 2000, atol=20)
+    assert len(bend(mixed, path, 0.1).contours) == len(mixed.outline().contours)
+    for direction in ("ttb", "btt"):
+        with pytest.raises(GlyphsplineError, match="columns"):
+            along(gs.layout(font, "\u3042\u3042\u300c", direction=direction), path)
+    with pytest.raises(GlyphsplineError, match="2 lines"):
+        bend(gs.layout(font, "a\na"), path, 0.1)
+
+
+def test_a_text_on_a_path_is_fitted_and_written(tmp_path: FilePath) -> None:
+    layout = along(text("Og"), Path.of(WAVE), align="center")
+    result = layout.convert(gs.Options(corners="sharp"))
+    assert all(contour.measures.within_tolerance for contour in result.contours)
+    assert "<svg" in gs.to_svg(result)

@@ -19,7 +19,7 @@ import pytest
 from glyphspline.batch import find_fonts, remote
 from glyphspline.dataset import plan, store
 from glyphspline.dataset.dataset_run import dataset
-from glyphspline.dataset.spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
 
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"

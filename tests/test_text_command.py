@@ -67,7 +67,7 @@ def test_one_path_and_elements_draw_the_same() -> None:
     font = gs.open_font(BRUSH)
     layout = gs.layout(font, "Ag龍A", width=3 * EM)
     whole = layout.convert(gs.Options(step=60))
-    results = layout.fitted(gs.Options(step=60))
+    results = layout.results(gs.Options(step=60))
     at = 0
     for k, which in enumerate(layout.which.tolist()):
         for contour in results[which].contours:

@@ -98,8 +98,9 @@ def spread(
 ) -> Iterator[tuple[Sequence[Task], Result | WorkerLostError | TimeLimitError]]:
     """Call a function on chunks of glyphs; yield each chunk with its result as it completes.
 
-    Only a few chunks are in flight at a time. If a worker is lost or killed, the glyphs of its chunk are
-    tried one by one, so that only the glyph that causes it fails.
+    Only a few chunks are in flight at a time. ``chunks`` may yield an empty one while others are in flight: none is
+    to be begun now, and it is asked again when one completes. If a worker is lost or killed, the glyphs of its chunk
+    are tried one by one, so that only the glyph that causes it fails.
     """
     again: deque[tuple[Sequence[Task], int]] = deque()
     fresh = ((chunk, 1) for chunk in chunks)

@@ -18,7 +18,8 @@ from ..outlines.outline import FontMetrics
 from ..report.data import FOLDER as GALLERY
 from ..report.data import SUFFIX
 from ..types import Names
-from ..writers.formats import OURS, DxfKind, Settings, format_named, format_names, is_format, settings_for
+from ..writers.formats import OURS, format_named, format_names, is_format
+from ..writers.settings import DxfKind, Settings, settings_for
 from ..writers.svg.appearance import Appearance, ViewBox
 from ..writers.svg.curvature_map import WHOSE, Whose
 from .file_names import NAMES

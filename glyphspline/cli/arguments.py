@@ -14,10 +14,10 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
-from ..layout.along_path import Side
-from ..layout.setting import Align, Direction
+from ..layout.setting import Align, Direction, Side
 from ..types import Names
-from ..writers.formats import OURS, DxfKind
+from ..writers.formats import OURS
+from ..writers.settings import DxfKind
 from ..writers.svg.appearance import ViewBox
 from ..writers.svg.curvature_map import Whose
 

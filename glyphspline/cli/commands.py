@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from ..fitting.options import Options
-from ..writers.formats import Settings
+from ..writers.settings import Settings
 from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption

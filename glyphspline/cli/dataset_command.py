@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..dataset.spec import FIT, DatasetSpec, Normalise, Rows
+from ..dataset.dataset_spec import FIT, DatasetSpec, Normalise, Rows
 from ..errors import OptionError
 from . import arguments as opt
 from .messages import errors, listen, say

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from ..fitting.results import GlyphResult
     from ..layout.path import Path as Curve
     from ..layout.placed import Layout
-    from ..writers.formats import Format, Settings
+    from ..writers.formats import Format
+    from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -58,7 +59,7 @@ def set_text(given: Mapping[str, Any]) -> int:
             say(line)
         if len(remarks) > SHOWN:
             say(f"and {len(remarks) - SHOWN} remarks more")
-    return 1 if layout.missing or any(note.startswith(LEFT_OUT) for note in drawn.notes) else 0
+    return 1 if layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
 
 
 def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, Format]]:
@@ -134,6 +135,8 @@ def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Curve 
     else:
         if given["width"] is not None:
             raise GlyphsplineError("--width is for lines; text on a --path is one")
+        if given["direction"] in ("ttb", "btt"):
+            raise GlyphsplineError("columns cannot stand on a --path")
         from ..layout.path_file import open_path
 
         curve = open_path(given["path"]).scaled(pixel(em, look))
@@ -225,7 +228,7 @@ class Drawn:
     @cached_property
     def settings(self) -> Settings:
         """What writers are told."""
-        from ..writers.formats import settings_for
+        from ..writers.settings import settings_for
 
         metrics = self.layout.fonts[0].metrics
         return settings_for(self.look, metrics, self.given["flatness"], self.given["dxf"])
@@ -248,9 +251,9 @@ class Drawn:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
         layout = self.layout
         if fitted:
-            results = layout.fitted(self.options)
+            results = layout.results(self.options)
         else:
             results = [as_glyph(o if isinstance(o, Outline) else Outline("")) for o in layout.outlines()]
-        self.notes |= dict.fromkeys([note for result in results for note in result.notes])
+        self.notes |= dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)])
         box = curves_data(self.unfitted.arrays.curves, self.options.precision)[0].box
         return text_document(layout, results, layout.which, self.look, box)

@@ -11,12 +11,12 @@ from typing import Any
 from ..extras import need
 from ..fitting.options import Options
 from ..types import counted
+from .dataset_spec import FIT, DatasetSpec
 from .dataset_summary import Summary
 from .licences import UNKNOWN
 from .plan import Plan
 from .scan import SPLITS
 from .shards import OfFont
-from .spec import FIT, DatasetSpec
 
 HUB = {
     "OFL-1.1": "ofl-1.1", "Apache-2.0": "apache-2.0", "MIT": "mit", "CC0-1.0": "cc0-1.0", "CC-BY-4.0": "cc-by-4.0",

@@ -11,10 +11,10 @@ from ..batch.pool import sign_of_life
 from ..batch.spec import Limits
 from ..errors import GlyphsplineError
 from ..extras import need
-from ..outlines.outline import Outline
+from ..outlines.outline import FontMetrics, Outline
+from .dataset_spec import DatasetSpec
 from .plan import Task
 from .scan import FontFacts, category_of, script_of, selected
-from .spec import DatasetSpec
 
 
 class RowsJob(NamedTuple):
@@ -78,16 +78,13 @@ def _tables(
 ) -> list[Any]:
     """Tables of a batch's rows; after an unexpected error, glyph by glyph."""
     from ..batch.worker import reason
-    from ..fitting.convert import convert_many
-    from ..outlines.canonical_outlines import canonical_outlines
-    from .rows import table_of
+    from .rows import fits_of, table_of
 
     outlines = [outline for _, outline in glyphs]
     try:
         results: list[Any] = [None] * len(outlines)
         if spec.options is not None:
-            outlines = canonical_outlines(outlines)
-            results = convert_many(outlines, spec.options, errors="return")
+            results = list(fits_of(outlines, spec))
         good = [k for k, result in enumerate(results) if not isinstance(result, GlyphsplineError)]
         own = [outlines[k] for k in good]
         table = with_font(table_of(own, [results[k] for k in good], spec), own, font, spec)
@@ -109,7 +106,8 @@ def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: Da
     pa = need("parquet")
     first = {outline.gid: outline.unicodes[0] for outline in outlines if outline.unicodes}
     codes = [first.get(gid) for gid in table["gid"].to_pylist()]
-    unit = 1.0 if spec.normalise == "units" else font.units_per_em or 1.0
+    metrics = outlines[0].metrics if outlines else FontMetrics()  # of all in a batch: drawings have their own
+    unit = 1.0 if spec.normalise == "units" else metrics.units_per_em
     length = "font unit" if spec.normalise == "units" else "em"
     string, number = pa.string(), pa.float64()
     constant = [
@@ -119,9 +117,9 @@ def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: Da
         ("width", pa.uint16(), font.width_class, None),
         ("italic", pa.bool_(), font.italic, None),
         ("location", string, font.location, "user space"),
-        ("units_per_em", number, font.units_per_em, "font unit"),
-        ("ascender", number, None if font.ascender is None else font.ascender / unit, length),
-        ("descender", number, None if font.descender is None else font.descender / unit, length),
+        ("units_per_em", number, metrics.units_per_em, "font unit"),
+        ("ascender", number, metrics.ascender / unit, length),
+        ("descender", number, metrics.descender / unit, length),
         ("licence", string, font.licence, None),
         ("split", string, font.split, None),
         ("font", string, font.sha256, None),

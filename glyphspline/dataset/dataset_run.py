@@ -20,11 +20,11 @@ from ..extras import need
 from . import store
 from .card import card, fonts_file
 from .chunk_rows import Made, RowsJob, empty_table, make_rows
+from .dataset_spec import DatasetSpec
 from .dataset_summary import Summary
 from .plan import CHUNK, Plan, Shard, Task, plan_of, record_text
 from .scan import FontFacts, ScanJob, scan_files, unread
 from .shards import OfFont, Shapes, add_shapes, finished, write_shard
-from .spec import DatasetSpec
 
 RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
 """Files beside the folder of shards."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.outline import Outline
-from ..types import IntArray
+from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow
 
 
@@ -53,7 +53,7 @@ def rasters(outlines: Sequence[Outline], contours: ContourArrays, offsets: IntAr
 def _path(contours: ContourArrays) -> tuple[Any, Any]:
     """Vertices and codes of matplotlib's path."""
     move, close = 1, 79
-    vertices, codes = [], []
+    vertices, codes = list[FloatArray](), list[Any]()
     for c in range(contours.num_contours):
         part = contours.part(c, c + 1)
         vertices += [part.points, part.points[:1], part.points[:1]]

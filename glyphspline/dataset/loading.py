@@ -43,7 +43,7 @@ def load(row: Mapping[str, Any]) -> Loaded:
     Example:
         >>> from glyphspline import load, open_font
         >>> from glyphspline.dataset.rows import table_of
-        >>> from glyphspline.dataset.spec import DatasetSpec
+        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> row, = table_of(outlines, None, DatasetSpec(options=None)).to_pylist()
         >>> load(row).outline

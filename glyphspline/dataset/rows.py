@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from hashlib import blake2b
 from typing import Any
 
 import numpy as np
 
+from ..errors import GlyphsplineError, OptionError
+from ..fitting.convert import convert_many, unfitted
 from ..fitting.measures import check_coordinates
 from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
 from ..outlines.canonical_outlines import canonical_outlines
@@ -16,20 +19,36 @@ from ..outlines.resampling import Resampled, at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
+from .dataset_spec import DatasetSpec
 from .grey_pictures import rasters
 from .schema import SCHEMA_VERSION, schema
-from .spec import DatasetSpec
 
 SHAPE_STEPS = 10_000
 """Steps an em to which coordinates are rounded before outlines are compared."""
+
+
+def fits_of(outlines: Sequence[Outline], spec: DatasetSpec) -> list[GlyphResult | GlyphsplineError]:
+    """The fit of outlines by the options of ``spec``, whatever way their font stores them; errors in their places.
+
+    Overlaps are removed first, if the options say so; what is fitted then is as :func:`.canonical_outlines` has it.
+
+    Raises:
+        OptionError: the spec has no options.
+    """
+    if spec.options is None:
+        raise OptionError("a fit needs options")
+    united = unfitted(outlines, spec.options)
+    whole = [result.outline for result in united if isinstance(result, GlyphResult)]
+    found = iter(convert_many(canonical_outlines(whole), replace(spec.options, remove_overlaps=False), errors="return"))
+    return [next(found) if isinstance(result, GlyphResult) else result for result in united]
 
 
 def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] | None, spec: DatasetSpec) -> Any:
     """Rows of the glyphs of one font, or of some of them, with the columns of :mod:`.schema`.
 
     Args:
-        outlines: as their font has them where nothing is fitted; else as :func:`.canonical_outlines` has them.
-        results: the fit of the canonical outlines, one for each; None, or None for each, where nothing is fitted.
+        outlines: as their font has them.
+        results: of :func:`fits_of`, for each one that is no error; None, or None for each, where nothing is fitted.
         spec: what the rows hold; its filters and split are not looked at.
 
     Returns:
@@ -41,7 +60,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
 
     Example:
         >>> from glyphspline import open_font
-        >>> from glyphspline.dataset.spec import DatasetSpec
+        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
         2

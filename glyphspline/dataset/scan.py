@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..batch.job import Place
 from ..errors import GlyphsplineError
+from .dataset_spec import DatasetSpec
 from .licences import UNKNOWN, licence_of
-from .spec import DatasetSpec
 
 if TYPE_CHECKING:
     from ..readers import Source

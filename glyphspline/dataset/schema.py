@@ -47,7 +47,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..writers.arrow_columns import POWERS, arrow, fit_types, measure_types, source_types
-from .spec import DatasetSpec
+from .dataset_spec import DatasetSpec
 
 SCHEMA_VERSION = 1
 """Of the rows. A program reads the rows of its own version and of all before."""

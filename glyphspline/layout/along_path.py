@@ -11,9 +11,9 @@ from ..errors import GlyphsplineError, is_number, require, require_choice
 from ..types import FloatArray, IntArray, counted
 from .path import Path
 from .placed import Layout
+from .setting import Side
 
 Align = Literal["start", "center", "end"]
-Side = Literal["left", "right"]
 
 ROUNDING = 1e-9
 """Share of the path's length by which a text may be too long."""
@@ -65,10 +65,8 @@ def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "st
 
     Example:
         >>> import glyphspline as gs
-        >>> from glyphspline.layout.along_path import along
-        >>> from glyphspline.layout.path import Path
         >>> font = gs.open_font("fonts_test/kouzan-gyosho.ttf")
-        >>> upwards = along(gs.layout(font, "龍好"), Path.of([[0, 0], [0, 3000]]))
+        >>> upwards = gs.along(gs.layout(font, "龍好"), gs.Path.of([[0, 0], [0, 3000]]))
         >>> upwards.origin.round(6).tolist()
         [[0.0, 0.0], [0.0, 1024.0]]
     """

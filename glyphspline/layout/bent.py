@@ -12,9 +12,10 @@ from ..curves.bezier import cross, derivative_points, split
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
 from ..types import BoolArray, FloatArray, IntArray
-from .along_path import MOST_NAMED, Align, Letters, Side, laid
+from .along_path import MOST_NAMED, Align, Letters, laid
 from .path import SMOOTH, Path
 from .placed import Layout
+from .setting import Side
 
 SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
@@ -102,6 +103,14 @@ def bend(
         GlyphsplineError: as for :func:`.along`; the path has a corner under the text; or its radius is less than the
             height of the text on its inner side, where outlines would fold over.
         OptionError: an argument out of range.
+
+    Example:
+        >>> import glyphspline as gs
+        >>> font = gs.open_font("fonts_test/kouzan-gyosho.ttf")
+        >>> hill = gs.interpolate([[0, 0], [1500, 400], [3000, 0]], closed=False).spline
+        >>> bent = gs.bend(gs.layout(font, "龍好"), gs.Path.of(hill), 0.1, align="center")
+        >>> bent.snapped < 0.1, len(bent.contours)
+        (True, 11)
     """
     require(is_positive(tolerance), "the tolerance of a bend is a positive distance", tolerance)
     path, letters, start = laid(layout, path, offset, align, side)
@@ -126,7 +135,7 @@ def bend(
         own = np.flatnonzero(contours[parent] == contour)
         chosen = zip(pieces[own], straight[own].tolist(), strict=True)
         found.append(Contour.from_segments([piece[[0, 3]] if is_line else piece for piece, is_line in chosen]))
-    notes = flat.notes
+    notes = (*layout.notes, *flat.notes)
     if smooth.moved > path.moved:
         notes += (f"kinks of the path are rounded, which moves it by up to {smooth.moved - path.moved:.2g}",)
     low, high = line.cubics[..., 0].min(), line.cubics[..., 0].max()

@@ -162,6 +162,7 @@ class Paragraph:
     def _breaks(self) -> tuple[IntArray, IntArray, FloatArray]:
         """(k,) where lines may end, where what is seen of them ends, and the length of the text before that."""
         text, places = self.text, line_ends(self.text)
+        places = places[np.isin(places, self._clusters)]  # UAX #14 cuts some clusters, such as of emoji out of place
         hanging = np.array([character in HANGING for character in text])
         last_seen = np.maximum.accumulate(np.where(hanging, 0, np.arange(1, len(text) + 1)))
         seen = np.concatenate([[0], last_seen])[places]

@@ -29,8 +29,11 @@ MOST_PARTS = 1 << 20
 COINCIDENT = 1e-9
 """Share of the path's extent below which its ends meet."""
 
-SMOOTH = 1e-9
+SMOOTH = 1e-7
 """Radians of turn up to which a joint is smooth: rounding."""
+
+SMALLEST, LARGEST = 1e-50, 1e50
+"""Extents of a path; squares of others would under- or overflow."""
 
 EVEN = 1.1
 """A part is halved, too, while its control polygon's longest leg is longer than its shortest by more than this."""
@@ -84,13 +87,13 @@ class Path:
         GlyphsplineError: coordinates that are not finite, no length, or a gap between segments.
 
     Example:
-        >>> from glyphspline.layout.path import Path
+        >>> from glyphspline import Path
         >>> path = Path.of([[0, 0], [30, 0], [30, 40]])
         >>> path
         <Path: open, 2 segments, length 70>
         >>> points, tangents = path.at([10, 50])
-        >>> points.tolist(), tangents.tolist()
-        ([[10.0, 0.0], [30.0, 20.0]], [[1.0, 0.0], [0.0, 1.0]])
+        >>> points.round(9).tolist(), tangents.round(9).tolist()[0]
+        ([[10.0, 0.0], [30.0, 20.0]], [1.0, 0.0])
     """
 
     cubics: FloatArray
@@ -106,8 +109,10 @@ class Path:
             raise GlyphsplineError("coordinates of the path are not finite", font=self.name)
         extent = float(np.ptp(cubics.reshape(-1, 2), axis=0).max()) if len(cubics) else 0.0
         least = COINCIDENT * extent
+        if len(cubics) and np.abs(cubics).max() > LARGEST:
+            raise GlyphsplineError(f"coordinates of the path above {LARGEST:g}", font=self.name)
         cubics = cubics[np.abs(cubics[:, 1:] - cubics[:, :1]).max(axis=(1, 2)) > least] if len(cubics) else cubics
-        if not len(cubics):
+        if not len(cubics) or extent < SMALLEST:
             raise GlyphsplineError("the path has no length", font=self.name)
         gaps = np.abs(cubics[:, 0] - np.roll(cubics[:, 3], 1, axis=0)).max(axis=1)[0 if self.closed else 1 :]
         if len(gaps) and gaps.max() > 100 * least:

@@ -16,6 +16,7 @@ from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Contours, FontMetrics, Outline
 from ..readers import Source
 from ..types import FloatArray, IntArray, counted
+from .joined_glyphs import Parts, joined_where_touching
 from .moved import Motion, moved_contours, moved_results, ranges
 
 LEFT_OUT = "left out"
@@ -69,24 +70,24 @@ class Layout:
         return len(self.gid)
 
     @cached_property
-    def _distinct(self) -> tuple[IntArray, IntArray]:
-        """(k, 2) font and index of the distinct glyphs; (n,) which of them each placed glyph is."""
+    def _pairs(self) -> tuple[IntArray, IntArray]:
+        """(k, 2) font and index of the distinct glyphs; (n,) which of them each glyph is."""
         pairs, which = np.unique(np.stack([self.font, self.gid], axis=1).reshape(-1, 2), axis=0, return_inverse=True)
         return pairs, which.reshape(-1)
 
-    def distinct(self) -> list[tuple[int, int]]:
-        """Font and glyph index of each glyph, once however often it stands in the text, in ascending order."""
-        return [(font, gid) for font, gid in self._distinct[0].tolist()]
-
     @property
     def which(self) -> IntArray:
-        """(n,) which of :meth:`distinct` each placed glyph is."""
-        return self._distinct[1]
+        """(n,) which of :meth:`distinct` each glyph is."""
+        return self._pairs[1]
+
+    def distinct(self) -> list[tuple[int, int]]:
+        """Font and glyph index of each glyph, once however often it stands in the text, in ascending order."""
+        return [(font, gid) for font, gid in self._pairs[0].tolist()]
 
     def outlines(self) -> list[Outline | GlyphsplineError]:
         """The outlines of :meth:`distinct`, in units of the first font; an error in place of each broken glyph."""
         found: list[Outline | GlyphsplineError] = []
-        pairs = self._distinct[0]
+        pairs = self._pairs[0]
         metrics = self.fonts[0].metrics
         for k in np.unique(pairs[:, 0]).tolist():
             scale = metrics.units_per_em / self.fonts[k].metrics.units_per_em
@@ -99,8 +100,25 @@ class Layout:
 
         ``advance`` is the width of the box, ascender and descender are its top and bottom.
         """
-        found = [outline if isinstance(outline, Outline) else Outline("") for outline in self.outlines()]
-        return self._as_outline(joined([o.arrays for o in found]), offsets_of([len(o.contours) for o in found]))
+        parts = self._parts(united=False)
+        arrays = joined([outline.arrays for outline in parts.outlines])
+        found = self._as_outline(arrays, offsets_of([len(outline.contours) for outline in parts.outlines]), parts)
+        notes = [f"glyph {outline.name!r}: {note}" for outline in parts.outlines for note in outline.notes]
+        return replace(found, notes=tuple(notes), snapped=max([o.snapped for o in parts.outlines], default=0.0))
+
+    def results(self, options: Options = DEFAULTS) -> list[GlyphResult]:
+        """The results of :meth:`distinct`, each at its own origin, in units of the first font, in one batch.
+
+        A broken glyph has no contours, and ``notes`` of its outline or result say why. Of the tolerance is set aside
+        what :meth:`convert` says.
+
+        Args:
+            options: for all glyphs.
+
+        Raises:
+            GlyphsplineError: no glyph can be converted: options that contradict each other, or a missing extra.
+        """
+        return self._fitted(self._parts(united=False), options)
 
     def convert(self, options: Options = DEFAULTS) -> GlyphResult:
         """Interpolate the text: each distinct glyph is fitted once, and its result moved into place.
@@ -109,67 +127,73 @@ class Layout:
         is turned, or moved by other than whole units of the last digit written, rounding moves it once more: so much is
         set aside of the tolerance, and is in ``deviation_bound``.
 
+        With ``remove_overlaps`` glyphs whose boxes touch are united, as joined letters do: each such group is fitted
+        once.
+
         Args:
             options: for all glyphs.
 
         Returns:
-            One result of all contours, in the order of the glyphs. Its outline is :meth:`outline`; what cannot be read
-            or converted is left out, and ``notes`` says so.
+            One result of all contours. Its outline has their sources; what cannot be read or converted is left out, and
+            ``notes`` says so.
 
         Raises:
-            OptionError: options that contradict each other.
+            GlyphsplineError: no glyph can be converted: options that contradict each other, or a missing extra.
         """
-        glyphs = self.fitted(options)
+        parts = self._parts(options.remove_overlaps)
+        glyphs = self._fitted(parts, options)
+        notes = [f"glyph {g.outline.name!r}: {note}" for g in glyphs for note in (*g.outline.notes, *g.notes)]
         found, ends = end_to_end(glyphs)
-        which, motion = self._contours(ends)
-        results = moved_results(found, which, motion)
-        outline = replace(self._as_outline(found.source, ends), notes=())
-        notes = [note for glyph in glyphs for note in (*glyph.outline.notes, *glyph.notes)]
-        return GlyphResult(outline, options, ContourResults(results), (*self.notes, *notes))
+        which, motion = _chosen(ends, parts)
+        outline = self._as_outline(found.source, ends, parts)
+        results = ContourResults(moved_results(found, which, motion))
+        return GlyphResult(outline, options, results, tuple(dict.fromkeys([*self.notes, *notes])))
 
-    def fitted(self, options: Options = DEFAULTS) -> list[GlyphResult]:
-        """The results of :meth:`distinct`, each where its own origin is; what fails has no contours, and a note.
+    def _parts(self, united: bool) -> Parts:
+        """What is fitted by itself and where it stands. A broken glyph draws nothing, and has a note."""
+        outlines = []
+        for (font, gid), read in zip(self.distinct(), self.outlines(), strict=True):
+            if isinstance(read, GlyphsplineError):
+                read = Outline(self.fonts[font].glyph_names[gid], gid, notes=(f"{LEFT_OUT}: {read}",))
+            outlines.append(read)
+        parts = Parts(outlines, self.which, self.origin, self.angle)
+        return joined_where_touching(parts) if united else parts
 
-        Raises:
-            OptionError: options that contradict each other.
-        """
-        read = self.outlines()
-        if self._rounded_anew(options.precision):
+    def _fitted(self, parts: Parts, options: Options) -> list[GlyphResult]:
+        outlines = list(parts.outlines)
+        if _rounded_anew(parts, options.precision):
             moved = sqrt(2.0) * 10.0**-options.precision
-            read = [replace(o, snapped=o.snapped + moved) if isinstance(o, Outline) else o for o in read]
-        whole = [outline if isinstance(outline, Outline) else Outline("") for outline in read]
-        converted = convert_many(whole, options, errors="return")
-        glyphs = []
-        for outline, source, result in zip(read, whole, converted, strict=True):
-            failed = next((found for found in (outline, result) if isinstance(found, GlyphsplineError)), None)
-            if failed is not None or not isinstance(result, GlyphResult):
-                notes = (f"{LEFT_OUT}: {failed}",)
-                result = GlyphResult(replace(source, contours=()), options, (), notes)
-            elif source.notes or result.notes:
-                said = [f"glyph {source.name!r}: {note}" for note in (*source.notes, *result.notes)]
-                result = replace(result, outline=replace(source, notes=()), notes=tuple(said))
-            glyphs.append(result)
-        return glyphs
+            outlines = [replace(outline, snapped=outline.snapped + moved) for outline in outlines]
+        found = convert_many(outlines, options, errors="return")
+        errors = [result for result in found if isinstance(result, GlyphsplineError)]
+        if errors and len(errors) >= sum(len(outline.contours) > 0 for outline in outlines):
+            raise errors[0]
+        return [
+            result
+            if isinstance(result, GlyphResult)
+            else GlyphResult(replace(outline, contours=()), options, (), (f"{LEFT_OUT}: {result}",))
+            for outline, result in zip(outlines, found, strict=True)
+        ]
 
-    def _contours(self, ends: IntArray) -> tuple[IntArray, Motion]:
-        """Which contours stand in the text, glyph by glyph, and how each is moved; ``ends`` as of offsets."""
-        which = self._distinct[1]
-        counts = np.diff(ends)[which]
-        motion = Motion(self.origin, self.angle).repeated(counts)
-        return ranges(ends[:-1][which], counts), motion
-
-    def _as_outline(self, contours: ContourArrays, ends: IntArray) -> Outline:
-        which, motion = self._contours(ends)
+    def _as_outline(self, contours: ContourArrays, ends: IntArray, parts: Parts) -> Outline:
+        """The contours of the parts, which begin at ``ends``, wherever these stand."""
         left, bottom, right, top = self.box
         metrics = FontMetrics(self.fonts[0].metrics.units_per_em, top, bottom)
-        placed = Contours(moved_contours(contours, which, motion))
-        return Outline(NAME, advance=right - left, contours=placed, metrics=metrics)
+        moved = Contours(moved_contours(contours, *_chosen(ends, parts)))
+        return Outline(NAME, advance=right - left, contours=moved, metrics=metrics)
 
-    def _rounded_anew(self, precision: int) -> bool:
-        """Whether coordinates with so many decimals are not such any more where glyphs are put."""
-        steps = self.origin * 10.0**precision
-        quarters = self.angle * (2.0 / np.pi)
-        return any(bool(np.abs(values - np.round(values)).max(initial=0.0) > 1e-6) for values in (steps, quarters))
+
+def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:
+    """Which contours stand in the text, and how each is moved; ``ends``: where those of each part begin."""
+    counts = np.diff(ends)[parts.which]
+    return ranges(ends[:-1][parts.which], counts), Motion(parts.origin, parts.angle).repeated(counts)
+
+
+def _rounded_anew(parts: Parts, precision: int) -> bool:
+    """Whether coordinates with so many decimals are not such any more where the parts are put."""
+    steps = parts.origin * 10.0**precision
+    quarters = parts.angle * (2.0 / np.pi)
+    return any(bool(np.abs(values - np.round(values)).max(initial=0.0) > 1e-6) for values in (steps, quarters))
 
 
 def _scaled(outline: Outline | GlyphsplineError, scale: float, metrics: FontMetrics) -> Outline | GlyphsplineError:

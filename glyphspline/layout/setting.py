@@ -15,6 +15,8 @@ from .features import Feature, parsed
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 Align: TypeAlias = Literal["start", "center", "end", "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
+Side: TypeAlias = Literal["left", "right"]
+"""Of a path, on which letters stand."""
 
 LONGEST = 1_000_000
 """Characters of the longest text."""

@@ -79,7 +79,7 @@ def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resam
                 if along >= total:
                     along -= total
                 k = _part_of(table, along)
-                s = np.searchsorted(firsts, k, side="right") - 1
+                s = int(np.searchsorted(firsts, k, side="right")) - 1
                 end = places[k + 1] if k + 1 < firsts[s + 1] else 1.0
                 x = _place(cubics, s, places[k], end, along - table[k], table[k + 1] - table[k])
             curvature[at + i] = _frame(cubics, s, x, points[at + i], tangents[at + i])

@@ -5,7 +5,7 @@ What is written, so that all programs read the same curve:
 - A closed smooth contour is one SPLINE entity: the spline itself with the knot of its seam inserted until it is clamped
   (:meth:`..curves.bspline.Spline.clamped`), first and last control point equal, flags (group code 70) planar only. The
   closed and the periodic flag are left away: with either of them one program or another wraps the control points once
-  more, replaces the knots, or reads no curve. docs/formats.md says which.
+  more, replaces the knots, or reads no curve. docs/formats.md says which. Knots have the scale of the drawing.
 - Of a contour with corners each arc is a SPLINE and each straight line a LINE. Cubics that only share tangents, and
   contours kept from the source, are one SPLINE from corner to corner, with triple knots where cubics meet. Quadratics
   are raised to cubics. The entities of a contour follow each other, end in the same coordinates, and are a GROUP.
@@ -19,18 +19,18 @@ import threading
 from collections.abc import Iterator, Sequence
 from io import StringIO
 from itertools import islice, pairwise
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..curves.bspline import Spline
-from ..curves.flatten import flattened
-from ..errors import is_positive, require, require_choice
+from ..errors import require
 from ..extras import need
 from ..fitting.results import ContourResult, GlyphResult
+from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Contour
 from ..types import BoolArray, FloatArray
-from .formats import DxfKind, Format, Settings
+from .settings import DxfKind, Settings, settings_for
 from .svg.appearance import INCHES, Appearance
 
 VERSION = "R2000"
@@ -45,9 +45,6 @@ COLOURS = (7, 1)
 
 PLANAR = 8
 """The flag of a SPLINE in a plane."""
-
-FLATNESS = 1 / 2000
-"""Distance of a polyline from its curve in em, unless said otherwise."""
 
 SMOOTH = 1e-3
 """Radians of turn up to which a SPLINE goes on from cubic to cubic."""
@@ -80,8 +77,8 @@ def to_dxf(
 
     Args:
         result: of :func:`convert`.
-        size: length of the em with its unit, as in "20mm", "2cm" or "1in"; pt, pc and px are written as millimetres.
-            None: a unit of the drawing is a font unit, and the drawing has no unit of length.
+        size: height from descender to ascender with its unit, as in "20mm", "2cm" or "1in"; DXF has no pt, pc and px:
+            these become millimetres. None: a unit of the drawing is a font unit, and no unit of length is said.
         dxf: "spline" writes the curves as they are: within ``deviation_bound`` of the source, and the rounding to
             ``precision`` that this bound counts and the file does not have, at most 0.71 of the last decimal.
             "polyline" writes closed LWPOLYLINEs, within ``flatness`` of these curves.
@@ -97,12 +94,7 @@ def to_dxf(
         >>> to_dxf(glyph, size="20mm").count("AcDbSpline"), len(glyph.contours)
         (2, 2)
     """
-    unit = scale = None
-    if size is not None:
-        Appearance(size=size)
-        unit = size.lstrip("0123456789.")
-        scale = float(size.removesuffix(unit)) / result.outline.metrics.units_per_em
-    return write(result, Settings(scale=scale or 1.0, unit=unit, flatness=flatness, dxf=dxf))
+    return write(result, settings_for(Appearance(size=size), result.outline.metrics, flatness, dxf))
 
 
 def write(result: GlyphResult, settings: Settings) -> str:
@@ -111,12 +103,7 @@ def write(result: GlyphResult, settings: Settings) -> str:
     Raises:
         GlyphsplineError: ezdxf, of the extra ``cad``, is not installed. OptionError: settings that are none.
     """
-    require_choice("dxf", settings.dxf, get_args(DxfKind))
     require(settings.unit is None or settings.unit in INCHES, f"unit is one of {', '.join(INCHES)}", settings.unit)
-    require(is_positive(settings.scale), "scale is a positive number", settings.scale)
-    em = result.outline.metrics.units_per_em
-    flatness = em * FLATNESS if settings.flatness is None else settings.flatness
-    require(is_positive(flatness), "flatness is a positive distance", flatness)
     unit, scale = settings.unit, float(settings.scale)
     if unit not in UNITS:
         scale, unit = scale * INCHES[unit] / INCHES["mm"], "mm"  # type: ignore[index]
@@ -124,7 +111,8 @@ def write(result: GlyphResult, settings: Settings) -> str:
     drawn: Iterator[Sequence[Piece] | FloatArray]
     drawn = (pieces(contour, g1) for contour in result.contours)
     if settings.dxf == "polyline":
-        drawn = (flattened(contour.curve.cubics(), flatness)[0] for contour in result.contours)
+        flatness = settings.flatness_for(result.outline.metrics.units_per_em)
+        drawn = iter(polygons_of(flattened(result.arrays.curves, flatness)[0]))
     ezdxf = need("cad")
     with _metadata:  # the option is the process's: no date, no random number for the time of this drawing
         before = ezdxf.options.write_fixed_meta_data_for_testing
@@ -140,9 +128,6 @@ def write(result: GlyphResult, settings: Settings) -> str:
         finally:
             ezdxf.options.write_fixed_meta_data_for_testing = before
     return text.getvalue()
-
-
-FORMAT = Format("dxf", ".dxf", write, extra="cad")
 
 
 def _fill(document: Any, drawn: Iterator[Sequence[Piece] | FloatArray], counters: BoolArray, scale: float) -> None:
@@ -164,7 +149,7 @@ def _fill(document: Any, drawn: Iterator[Sequence[Piece] | FloatArray], counters
                 entities.append(space.add_line(start, end, dxfattribs=layer))
                 continue
             spline = space.add_spline(degree=piece.degree, dxfattribs={**layer, "flags": PLANAR})
-            spline.control_points, spline.knots = points.tolist(), piece.knots.tolist()
+            spline.control_points, spline.knots = points.tolist(), (piece.knots * scale).tolist()
             entities.append(spline)
         if len(entities) > 1:
             document.groups.new(f"CONTOUR-{number}").extend(entities)

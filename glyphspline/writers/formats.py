@@ -11,68 +11,17 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Literal, get_args
 
-from ..errors import GlyphsplineError, OptionError, is_positive, require, require_choice
+from ..errors import GlyphsplineError, OptionError, require
 from ..extras import EXTRAS
 from ..fitting.results import GlyphResult
-from ..outlines.outline import FontMetrics
-from .svg.appearance import PLAIN, Appearance
+from .settings import Settings
 
 GROUP = "glyphspline.formats"
 """The entry point group: the value of an entry point is a :class:`Format` of the same name."""
 
-DxfKind = Literal["spline", "polyline"]
-
-RELATIVE_FLATNESS = 1 / 2000
-"""Flatness of polylines where none is given, in em."""
-
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SUFFIX = re.compile(r"(\.[A-Za-z0-9]+)+")
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What a writer is told besides the result.
-
-    Attributes:
-        look: of drawings. scale: length of a font unit in the drawing, in ``unit``.
-        unit: "mm", "cm", "in", "pt", "pc" or "px"; None: a font unit.
-        flatness: largest distance of a polyline from its curve, in font units; None: 1/2000 em.
-        dxf: contours as splines, or flattened.
-
-    Raises:
-        OptionError: a scale or flatness that is not positive, or an unknown kind of DXF.
-    """
-
-    look: Appearance = PLAIN
-    scale: float = 1.0
-    unit: str | None = None
-    flatness: float | None = None
-    dxf: DxfKind = "spline"
-
-    def __post_init__(self) -> None:
-        require(is_positive(self.scale), "scale is a positive number", self.scale)
-        given = self.flatness is None or is_positive(self.flatness)
-        require(given, "flatness is a positive distance in font units", self.flatness)
-        require_choice("dxf", self.dxf, get_args(DxfKind))
-
-    def flatness_for(self, units_per_em: float) -> float:
-        """The flatness in font units."""
-        return units_per_em * RELATIVE_FLATNESS if self.flatness is None else self.flatness
-
-
-def settings_for(
-    look: Appearance, metrics: FontMetrics, flatness: float | None = None, dxf: DxfKind = "spline"
-) -> Settings:
-    """Settings of the scale that ``look`` says: its size is from ascender to descender. Without a size: 1 and no unit.
-
-    A font whose ascender is not above its descender is scaled by its em.
-    """
-    height = metrics.ascender - metrics.descender
-    found = look.scale(height if height > 0 else metrics.units_per_em, metrics.units_per_em)
-    scale, unit = found or (1.0, None)
-    return Settings(look, scale, unit, flatness, dxf)
 
 
 @dataclass(frozen=True)
@@ -218,12 +167,6 @@ def _curvature_pdf(result: GlyphResult, settings: Settings) -> bytes:
     return map_image(result, "pdf")
 
 
-def _dxf(result: GlyphResult, settings: Settings) -> str:
-    from .dxf import write
-
-    return write(result, settings)
-
-
 def _json(result: GlyphResult, settings: Settings) -> str:
     from .json_file import json_text
 
@@ -248,6 +191,12 @@ def _polyline_scad(result: GlyphResult, settings: Settings) -> str:
     return polyline_scad(result, settings)
 
 
+def _dxf(result: GlyphResult, settings: Settings) -> str:
+    from .dxf import write
+
+    return write(result, settings)
+
+
 OURS = _by_name([
     Format("source", ".svg", _source, fitted=False),
     Format("svg", ".svg", _svg),
@@ -256,10 +205,10 @@ OURS = _by_name([
     Format("pdf", ".pdf", _pdf),
     Format("curvature-png", ".png", _curvature_png),
     Format("curvature-pdf", ".pdf", _curvature_pdf),
-    Format("dxf", ".dxf", _dxf, extra="cad"),
     Format("json", ".json", _json),
     Format("polyline", ".json", _polyline),
     Format("polyline-csv", ".csv", _polyline_csv),
     Format("polyline-scad", ".scad", _polyline_scad),
+    Format("dxf", ".dxf", _dxf, extra="cad"),
 ])  # fmt: skip
 """Our formats by name, in the order in which a run writes and lists them."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..curves.bspline import Spline
 from ..fitting.results import ContourResult, GlyphResult
-from .formats import Settings
+from .settings import Settings
 
 VERSION = 1
 """Of ``glyph.schema.json``: raised where a reader of the version before would misread a file."""

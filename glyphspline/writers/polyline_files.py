@@ -13,9 +13,10 @@ import numpy as np
 from ..fitting.results import GlyphResult
 from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Outline
+from ..outlines.uncrossing import uncrossed
 from ..types import FloatArray, counted, rounded_up
-from .formats import RELATIVE_FLATNESS, Settings
 from .json_file import as_text, head
+from .settings import RELATIVE_FLATNESS, Settings
 
 VERSION = 1
 """Of ``polyline.schema.json``."""
@@ -90,10 +91,11 @@ def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
     """The polygons as a module of OpenSCAD, which the file also calls; ``use <file>`` only defines it.
 
     OpenSCAD fills the paths of one ``polygon()`` by the even-odd rule, which would make holes where contours overlap.
-    So each outer contour is a ``polygon()`` with its own holes as further paths, and the ink is their union. A contour
-    is a hole if contours around it wind the other way; it belongs to the smallest of these.
+    So contours are cut where they cross, and joined to loops that do not; each outer loop is a ``polygon()`` with its
+    own holes as further paths, and the ink is their union: that of the nonzero rule.
     """
     polygons, bound = _written(glyph, settings)
+    polygons = uncrossed(polygons)
     name = f"glyph_{_NOT_NAME.sub('_', glyph.outline.name)}"
     unit = settings.unit or "font units"
     codes = "".join(f" U+{code:04X}" for code in glyph.outline.unicodes)
@@ -115,30 +117,29 @@ def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
 
 
 def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int]]]:
-    """Indices of the outer contours, each with those of its holes; what encloses no area is left out.
+    """Indices of the outer polygons, each with those of its holes, of the ink of the nonzero rule.
 
-    The union of the outer contours, each less its holes, is the ink of the nonzero rule, if no contour crosses itself
-    and no hole reaches beyond the outer contour that it belongs to, into another.
+    Polygons are :func:`.uncrossed`. One bounds ink if winding numbers are zero on one of its sides only; it is a hole
+    if that is the inside, and belongs to the smallest outer one around it. The others are left out.
     """
     areas = np.array([_area(polygon) for polygon in polygons])
     boxes = np.array([[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]).reshape(-1, 4)
     holes: dict[int, list[int]] = {}
-    belongs: dict[int, int] = {}
+    around: dict[int, list[int]] = {}
     for c in np.flatnonzero(areas).tolist():
         x, y = _middle(polygons[c])
-        near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y)
+        near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y) & (areas != 0)
         near[c] = False
-        around = {
-            k: turns for k in np.flatnonzero(near & (areas != 0)).tolist() if (turns := _winding(polygons[k], x, y))
-        }
-        if sum(around.values()) * areas[c] < 0:
-            belongs[c] = min((k for k in around if areas[k] * areas[c] < 0), key=lambda k: abs(areas[k]))
-        else:
+        turns = {k: _winding(polygons[k], x, y) for k in np.flatnonzero(near).tolist()}
+        outside = sum(turns.values())
+        if outside == 0:
             holes[c] = []
-    for c, outer in belongs.items():
-        while outer in belongs:  # only where contours cross
-            outer = belongs[outer]
-        holes[outer].append(c)
+        elif outside + np.sign(areas[c]) == 0:
+            around[c] = [k for k, times in turns.items() if times]
+    for c, those in around.items():
+        outer = min((k for k in those if k in holes), key=lambda k: abs(areas[k]), default=None)
+        if outer is not None:
+            holes[outer].append(c)
     return list(holes.items())
 
 

@@ -10,6 +10,7 @@ the canonical outline and the rest of a row too.
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -130,7 +131,7 @@ def against_loaders(font: Path) -> list[Row]:
     """Rows of a font without a fit, against the others."""
     made(font, 50)  # nothing is compiled while it is timed
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / font.name).symlink_to(font)
+        shutil.copy(font, folder)  # TorchFont passes over links
         loaders = [("fontTools", sys.executable, BY_FONTTOOLS)]
         if TORCHFONT:
             loaders.insert(0, ("TorchFont", TORCHFONT, BY_TORCHFONT))
@@ -156,8 +157,8 @@ def theirs(python: str, code: str, folder: str) -> float:
 
 def made(path: Path, most: int) -> float:
     """Seconds a glyph of a table of rows without a fit, the font's opening included."""
+    from glyphspline.dataset.dataset_spec import DatasetSpec
     from glyphspline.dataset.rows import table_of
-    from glyphspline.dataset.spec import DatasetSpec
     from glyphspline.readers import open_font
 
     spec, count, names = DatasetSpec(options=None), 0, 0
@@ -172,10 +173,10 @@ def made(path: Path, most: int) -> float:
 
 def with_fit() -> Row:
     """Rows with the fit of a data set against the conversion to SVG by the same options, in one process."""
-    from glyphspline.dataset.rows import table_of
-    from glyphspline.dataset.spec import DatasetSpec
+    from glyphspline.dataset.dataset_spec import DatasetSpec
+    from glyphspline.dataset.rows import fits_of, table_of
     from glyphspline.fitting.convert import convert_many
-    from glyphspline.outlines.canonical_outlines import canonical_outlines
+    from glyphspline.fitting.results import GlyphResult
     from glyphspline.readers import open_font
     from glyphspline.writers.svg.document import to_svg
 
@@ -194,8 +195,8 @@ def with_fit() -> Row:
                 for glyph in convert_many(outlines, options):
                     to_svg(glyph)
             else:
-                canonical = canonical_outlines(outlines)
-                table_of(canonical, convert_many(canonical, options), spec)
+                fits = [fit for fit in fits_of(outlines, spec) if isinstance(fit, GlyphResult)]
+                table_of([fit.outline for fit in fits], fits, spec)
         return (perf_counter() - start) / count
 
     svg, table = least(ROUNDS, lambda _: fitted(True), lambda _: fitted(False))

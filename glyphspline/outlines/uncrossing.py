@@ -1,0 +1,107 @@
+"""Polygons without crossings that wind around every point as often as the given ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ..types import FloatArray, IntArray
+from .contour_arrays import offsets_of
+
+SHIFT = 1e-9
+"""Of the extent: corners are taken to be so far from where they are, each its own way, so that none lies on a side."""
+
+GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
+"""The fractional parts of its multiples are spread evenly over the unit square."""
+
+
+def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
+    """Polygons (n, 2) cut where sides cross, and joined again so that none crosses itself or another.
+
+    Where two sides cross, each goes on as the other, in its direction. The sides stay the same, and so do the winding
+    numbers of all points; loops only touch. Polygons without crossings are returned as they are.
+    """
+    starts = offsets_of([len(polygon) for polygon in polygons])
+    if not starts[-1]:
+        return list(polygons)
+    points = np.concatenate(polygons)
+    count = len(points)
+    extent = float(np.ptp(points, axis=0).max())
+    moved = points + SHIFT * extent * (np.outer(np.arange(1, count + 1), GOLDEN) % 1 - 0.5)
+    follows = np.arange(1, count + 1)
+    some = np.flatnonzero(np.diff(starts))
+    follows[starts[some + 1] - 1] = starts[some]
+    sides = moved[follows] - moved
+    pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *_crossing(moved, sides, follows, starts)])
+    if not len(pairs):
+        return list(polygons)
+    i, j = pairs.T
+    apart = moved[j] - moved[i]
+    turn = _cross(sides[i], sides[j])
+    along = np.stack([_cross(apart, sides[j]) / turn, _cross(apart, sides[i]) / turn], axis=1)
+    # Nodes: the corners, then each crossing twice, as a point of one side and of the other.
+    crossings = points[i] + along[:, :1] * (points[follows[i]] - points[i])
+    nodes = np.concatenate([points, np.repeat(crossings, 2, axis=0)])
+    side = np.concatenate([np.arange(count), pairs.ravel()])
+    order = np.lexsort((np.concatenate([np.full(count, -1.0), along.ravel()]), side))
+    ends = np.searchsorted(side[order], starts)
+    after = np.empty(len(nodes), dtype=np.int64)
+    after[order] = np.roll(order, -1)
+    some = np.flatnonzero(np.diff(ends))
+    after[order[ends[some + 1] - 1]] = order[ends[some]]
+    after[count:] = after[count:].reshape(-1, 2)[:, ::-1].ravel()
+    return [nodes[loop] for loop in _loops(after, order)]
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def _crossing(points: FloatArray, sides: FloatArray, follows: IntArray, starts: IntArray) -> Iterator[IntArray]:
+    """(k, 2) pairs of sides that cross, of pairs of polygons whose boxes overlap."""
+    low, high = np.minimum(points, points + sides), np.maximum(points, points + sides)
+    spans = [(a, b) for a, b in pairwise(starts.tolist()) if b > a]
+    boxes = np.array([[*low[a:b].min(axis=0), *high[a:b].max(axis=0)] for a, b in spans])
+    spans = [spans[k] for k in np.argsort(boxes[:, 0], kind="stable")]
+    boxes = boxes[np.argsort(boxes[:, 0], kind="stable")]
+    for c, (a, b) in enumerate(spans):
+        box = boxes[c]
+        last = int(np.searchsorted(boxes[:, 0], box[2], side="right"))
+        near = c + np.flatnonzero((boxes[c:last, 1] <= box[3]) & (boxes[c:last, 3] >= box[1]))
+        for d in near.tolist():
+            e, f = spans[d]
+            common = np.maximum(box[:2], boxes[d, :2]), np.minimum(box[2:], boxes[d, 2:])
+            one, other = (
+                u + np.flatnonzero((low[u:v] <= common[1]).all(axis=1) & (high[u:v] >= common[0]).all(axis=1))
+                for u, v in ((a, b), (e, f))
+            )
+            for part in np.array_split(one, 1 + len(one) * len(other) // 1_000_000):
+                yield _pairs(points, sides, follows, part, other)
+
+
+def _pairs(points: FloatArray, sides: FloatArray, follows: IntArray, one: IntArray, other: IntArray) -> IntArray:
+    """(k, 2) pairs of a side of the one and a side of the other that cross; of equal sets each pair once."""
+    p, q, r, s = points[one], sides[one], points[other], sides[other]
+    begin = r[None] - p[:, None]
+    left = _cross(q[:, None], begin) > 0
+    split = left != (_cross(q[:, None], begin + s[None]) > 0)
+    split &= (_cross(s[None], -begin) > 0) != (_cross(s[None], q[:, None] - begin) > 0)
+    if len(one) and len(other) and one[0] <= other[-1] and other[0] <= one[-1]:  # of one polygon
+        split &= one[:, None] < other[None]
+        split &= (follows[one][:, None] != other[None]) & (follows[other][None] != one[:, None])
+    k, m = np.nonzero(split)
+    return np.stack([one[k], other[m]], axis=1)
+
+
+def _loops(after: IntArray, order: IntArray) -> Iterator[list[int]]:
+    following, seen = after.tolist(), [False] * len(after)
+    for first in order.tolist():
+        loop, at = [], first
+        while not seen[at]:
+            seen[at] = True
+            loop.append(at)
+            at = following[at]
+        if loop:
+            yield loop
