@@ -10,6 +10,7 @@ the time of two or three glyphs.
 from __future__ import annotations
 
 import gc
+import math
 import multiprocessing
 import os
 import signal
@@ -62,10 +63,14 @@ def sign_of_life() -> None:
         _end_after(ORPHANED * _limit)
 
 
+LONGEST_TIMER = 1e8
+"""Seconds, three years: what a timer of any system can hold."""
+
+
 def _end_after(seconds: float) -> None:
     """Have the system end this process; 0: not any more. It does so in the midst of native code too."""
     if hasattr(signal, "setitimer"):
-        signal.setitimer(signal.ITIMER_REAL, seconds)
+        signal.setitimer(signal.ITIMER_REAL, 0.0 if seconds == math.inf else min(seconds, LONGEST_TIMER))
 
 
 def start_forkserver(preload: Sequence[str]) -> None:
