@@ -31,8 +31,8 @@ def opened(page: Any, path: Path) -> Any:
 
 def choose_drawings(page: Any) -> None:
     """Only the findings of the drawings: fonts come in the order of their paths, which differs between machines."""
-    labels = page.locator("#font option").all_inner_texts()
-    page.select_option("#font", label=next(label for label in labels if "Gyosho" not in label and label != labels[0]))
+    (label,) = [label for label in page.locator("#font option").all_inner_texts() if Path(label).name == "font"]
+    page.select_option("#font", label=label)
 
 
 def names(page: Any) -> list[str]:
