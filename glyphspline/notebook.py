@@ -68,12 +68,12 @@ def _cells(measures: Measures, em: float) -> str:
 
 def outline_svg(outline: Outline) -> str:
     """The outline, filled, in its em box."""
-    from .writers.svg.document import shown_box, title
+    from .writers.svg.document import em_box, shown_box, title
     from .writers.svg.markup import data_attributes, view_box_value
     from .writers.svg.path_data import curves_data
 
     path = curves_data(outline.arrays, 2)[0]
-    box = view_box_value(shown_box(outline, path.box, "em"), 1)
+    box = view_box_value(shown_box(em_box(outline), path.box, "em"), 1)
     return _sized(
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" role="img" {data_attributes(outline, 2)}>'
         f"<title>{title(outline)}</title>"

@@ -217,13 +217,14 @@ class Drawn:
     @cached_property
     def unfitted(self) -> GlyphResult:
         """The whole text as the fonts have it."""
-        from dataclasses import replace
-
-        from ..fitting.results import as_glyph
+        from ..fitting.convert import unfitted
 
         outline = self.layout.outline() if self.bent is None else self.bent
-        self.notes |= dict.fromkeys(outline.notes)
-        return replace(as_glyph(outline), options=self.options)
+        (found,) = unfitted([outline], self.options)
+        if isinstance(found, GlyphsplineError):
+            raise found
+        self.notes |= dict.fromkeys((*outline.notes, *found.notes))
+        return found
 
     @cached_property
     def settings(self) -> Settings:
@@ -242,18 +243,10 @@ class Drawn:
 
     def each_glyph(self, *, fitted: bool) -> bytes:
         """The SVG drawing in which each glyph is an element."""
-        from ..fitting.results import as_glyph
-        from ..outlines.outline import Outline
-        from ..writers.svg.path_data import curves_data
         from ..writers.svg.text_drawing import text_document
 
         if self.bent is not None:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
-        layout = self.layout
-        if fitted:
-            results = layout.results(self.options)
-        else:
-            results = [as_glyph(o if isinstance(o, Outline) else Outline("")) for o in layout.outlines()]
+        results = self.layout.results(self.options) if fitted else self.layout.unfitted(self.options)
         self.notes |= dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)])
-        box = curves_data(self.unfitted.arrays.curves, self.options.precision)[0].box
-        return text_document(layout, results, layout.which, self.look, box)
+        return text_document(self.layout, results, self.look)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import sqrt
@@ -11,7 +12,7 @@ import numpy as np
 from ..errors import GlyphsplineError
 from ..fitting.convert import DEFAULTS, convert_many
 from ..fitting.options import Options
-from ..fitting.results import ContourResults, GlyphResult, end_to_end
+from ..fitting.results import ContourResults, GlyphResult, as_glyphs, end_to_end
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Contours, FontMetrics, Outline
 from ..readers import Source
@@ -141,7 +142,18 @@ class Layout:
             GlyphsplineError: no glyph can be converted: options that contradict each other, or a missing extra.
         """
         parts = self._parts(options.remove_overlaps)
-        glyphs = self._fitted(parts, options)
+        return self._placed(parts, self._fitted(parts, options), options)
+
+    def placed(self, results: Sequence[GlyphResult]) -> GlyphResult:
+        """Results of :meth:`distinct`, moved into place: one result of all contours, as of :meth:`convert`."""
+        options = results[0].options if results else DEFAULTS
+        return self._placed(self._parts(united=False), results, options)
+
+    def unfitted(self, options: Options = DEFAULTS) -> list[GlyphResult]:
+        """The outlines of :meth:`distinct` as the fonts have them, as results; ``options`` say how they are written."""
+        return list(as_glyphs(self._parts(united=False).outlines, options))
+
+    def _placed(self, parts: Parts, glyphs: Sequence[GlyphResult], options: Options) -> GlyphResult:
         notes = [f"glyph {g.outline.name!r}: {note}" for g in glyphs for note in (*g.outline.notes, *g.notes)]
         found, ends = end_to_end(glyphs)
         which, motion = _chosen(ends, parts)

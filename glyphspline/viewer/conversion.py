@@ -94,7 +94,7 @@ class Work:
             placed = layout(self.at(state.location), state.text)
             names = [self.font.glyph_names[gid] for _, gid in placed.distinct()]
         results = [self._of_text(name, state) for name in names]
-        drawing = text_document(placed, results, placed.which)
+        drawing = text_document(placed, results)
         lacking = [f"no glyph for {' '.join(placed.missing)}"] if placed.missing else []
         failed = [note for result in results if not result.contours for note in result.notes]
         return drawing.decode(), [*lacking, *failed]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...fitting.results import GlyphResult
 from ..svg.appearance import CURRENT, PLAIN, Appearance
-from ..svg.document import STROKE, shown_box
+from ..svg.document import STROKE, em_box, shown_box
 from ..svg.path_data import Box, curves_data
 from .images import DPI, ImageKind, blank, saved
 from .patches import outline_patch
@@ -29,7 +29,7 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
     """
     outline = glyph.outline
     left, bottom, right, top = shown_box(
-        outline, ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
+        em_box(outline), ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
     )
     width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
     inches = look.inches(height, outline.metrics.units_per_em, HEIGHT)

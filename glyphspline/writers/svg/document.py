@@ -55,27 +55,41 @@ def to_svg(
 def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -> bytes:
     """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves."""
     outline, precision = glyph.outline, glyph.options.precision
-    value = view_box_value(shown_box(outline, path.box, look.view_box), precision)
-    overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
-    width, height = map(float, value.split()[2:])
-    size = look.attributes(width, height, outline.metrics.units_per_em)
-    line = number(STROKE * outline.metrics.units_per_em, 3)
-    stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
+    em = outline.metrics.units_per_em
+    box = shown_box(em_box(outline), path.box, look.view_box)
     prefix = id_prefix(outline.name, outline.gid)
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{size}{overflow}'
-        f' role="img" aria-labelledby="{prefix}-title" {data_attributes(outline, precision)}>\n'
+        f'{opening(box, look, em, precision)} aria-labelledby="{prefix}-title" {data_attributes(outline, precision)}>\n'
         f'<title id="{prefix}-title">{title(outline)}</title>\n'
-        f'<path id="{prefix}-outline" fill="{text(look.fill)}"{stroke} fill-rule="nonzero" d="'
+        f'<path id="{prefix}-outline" {painting(look, em)} d="'
     )
     return document([head, path.text, '"/>\n</svg>\n'])
 
 
-def shown_box(outline: Outline, ink: Box | None, choice: ViewBox) -> Box:
-    """The region of a view box choice, in font units, y up."""
+def opening(box: Box, look: Appearance, em: float, precision: int) -> str:
+    """The beginning of a drawing's ``<svg>``: its region and size."""
+    value = view_box_value(box, precision)
+    width, height = map(float, value.split()[2:])
+    overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
+    size = look.attributes(width, height, em)
+    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{size}{overflow} role="img"'
+
+
+def painting(look: Appearance, em: float) -> str:
+    """How outlines are filled and stroked, as attributes."""
+    line = number(STROKE * em, 3)
+    stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
+    return f'fill="{text(look.fill)}"{stroke} fill-rule="nonzero"'
+
+
+def em_box(outline: Outline) -> Box:
+    """From the origin to the advance, and from descender to ascender."""
+    return (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
+
+
+def shown_box(box: Box, ink: Box | None, choice: ViewBox) -> Box:
+    """The region of a view box choice, in font units, y up; ``box``: that of the metrics."""
     require_choice("view_box", choice, VIEW_BOXES)
-    metrics = outline.metrics
-    box = (0.0, metrics.descender, outline.advance, metrics.ascender)
     if choice == "metrics":
         return box
     if choice == "em":

@@ -9,31 +9,28 @@ import numpy as np
 
 from ...fitting.results import GlyphResult, end_to_end
 from ...layout.placed import Layout
-from ...types import IntArray
 from .appearance import PLAIN, Appearance
-from .document import STROKE
-from .markup import document, id_prefix, number, text, union, view_box_value
-from .path_data import Box, curves_data
+from .document import opening, painting, shown_box
+from .markup import document, id_prefix, number, text
+from .path_data import curves_data
 
 
-def text_document(
-    layout: Layout, results: Sequence[GlyphResult], which: IntArray, look: Appearance = PLAIN, ink: Box | None = None
-) -> bytes:
+def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearance = PLAIN) -> bytes:
     """The text in UTF-8: each distinct glyph is a path, drawn once for each place by a ``<use>`` of its own.
 
     Ids are stable: ``font-0-g36-A`` is the path of a glyph of the first font, ``line-0`` a line, ``glyph-7`` the eighth
     glyph in visual order. ``data-cluster`` is the number of the character of the text that a glyph stands for.
 
     Args:
-        layout: n placed glyphs. results: of the distinct glyphs. which: (n,) the result of each.
-        look: of the drawing; its em box is the box of the lines. ink: the box around all curves.
+        layout: n placed glyphs. results: of its distinct glyphs.
+        look: of the drawing; its em box is the box of the lines.
     """
     precision = results[0].options.precision if results else 2
     em = layout.fonts[0].metrics.units_per_em
     arrays, offsets = end_to_end(results)
     paths = curves_data(arrays.curves, precision, offsets)
     fonts = np.zeros(len(results), dtype=np.int64)
-    fonts[which] = layout.font
+    fonts[layout.which] = layout.font
     ids = [
         f"font-{font}-{id_prefix(result.outline.name, result.outline.gid)}"
         for font, result in zip(fonts.tolist(), results, strict=True)
@@ -41,26 +38,21 @@ def text_document(
     names = [
         f' data-glyph="{text(result.outline.name)}" href="#{own}' for own, result in zip(ids, results, strict=True)
     ]
-    box = layout.box if look.view_box == "metrics" else ink if look.view_box == "ink" else union(layout.box, ink)
-    value = view_box_value(box or (0.0, 0.0, 0.0, 0.0), precision)
-    width, height = map(float, value.split()[2:])
-    overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
-    stroke = ""
-    if look.stroke != "none":
-        stroke = f' stroke="{text(look.stroke)}" stroke-width="{number(STROKE * em, 3)}"'
+    ink = curves_data(layout.placed(results).arrays.curves, precision)[0].box
+    box = shown_box(layout.box, ink, look.view_box)
     parts: list[str | memoryview] = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{look.attributes(width, height, em)}{overflow}'
-        f' role="img" aria-labelledby="text-title" data-units-per-em="{number(em, precision)}">\n'
+        f'{opening(box, look, em, precision)} aria-labelledby="text-title"'
+        f' data-units-per-em="{number(em, precision)}">\n'
         f'<title id="text-title">{text(layout.text)}</title>\n<defs>\n'
     ]
     for name, path in zip(ids, paths, strict=True):
         if path.text:
             parts += [f'<path id="{name}" d="', path.text, '"/>\n']
-    parts.append(f'</defs>\n<g fill="{text(look.fill)}"{stroke} fill-rule="nonzero">\n')
+    parts.append(f"</defs>\n<g {painting(look, em)}>\n")
     drawn = [bool(path.text) for path in paths]
     places = zip(
-        range(len(layout)), layout.line.tolist(), which.tolist(), layout.cluster.tolist(), layout.origin.tolist(),
-        np.degrees(layout.angle).tolist(), strict=True,
+        range(len(layout)), layout.line.tolist(), layout.which.tolist(), layout.cluster.tolist(),
+        layout.origin.tolist(), np.degrees(layout.angle).tolist(), strict=True,
     )  # fmt: skip
     for line, own in groupby(places, key=lambda place: place[1]):
         parts.append(f'<g id="line-{line}">\n')
