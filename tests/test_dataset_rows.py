@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from fontTools.fontBuilder import FontBuilder
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -131,6 +131,7 @@ def contours(draw: st.DrawFn) -> gs.Contour:
 
 @settings(max_examples=300, deadline=None)
 @given(contours(), st.integers(0, 2**32))
+@example(gs.Contour(np.array([[50.0, 0], [0, 0], [50, 0], [100, 0]]), np.array([1, 3])), 1)  # told by degrees alone
 def test_a_contour_of_any_shape_has_one_row(contour: gs.Contour, seed: int) -> None:
     given = outline(contour)
     otherwise = stored_otherwise(given, np.random.default_rng(seed))

@@ -4,7 +4,8 @@ Two fonts may store one shape with other start points, the other way round (True
 contours in another order. Here all of these become one outline, number for number:
 
 - The ink is to the left: outer contours run counter-clockwise, holes clockwise, under the non-zero rule. A contour that
-  encloses as much to its left as to its right runs the way in which its list of points is lexicographically less.
+  encloses as much to its left as to its right runs the way in which its list of points is lexicographically less, or
+  its list of degrees.
 - A contour begins at the joint with the least x + y, at the lower left; of several at the leftmost.
 - Contours are in order of the least x + y of their curves: an outer contour comes before its holes.
 
@@ -84,18 +85,15 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
             ink, extent = area(cubics), _extent(p)
             backward, its_degrees = _reversed(p, d)
             if abs(ink) <= NO_AREA * extent * extent:
-                i, j = _first_joint(p, d), _first_joint(backward, its_degrees)
-                reverse = _compare(backward, j, p, i) < 0
+                s, t = _first_joint(p, d), _first_joint(backward, its_degrees)
+                reverse = _compare(backward, its_degrees, t, p, d, s) < 0
             else:
                 reverse = sides[c - a] < 0.0
             if reverse:
                 p, d = backward, its_degrees
             n, m = len(p), len(d)
-            i = _first_joint(p, d)
-            at = s = 0
-            while at < i:
-                at += d[s]
-                s += 1
+            s = _first_joint(p, d)
+            i = np.sum(d[:s])
             for k in range(n):
                 points[starts[c] + k, 0], points[starts[c] + k, 1] = p[(i + k) % n, 0], p[(i + k) % n, 1]
             for k in range(m):
@@ -198,22 +196,22 @@ def _reversed(points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
 
 @compiled(internal=True)
 def _first_joint(points: FloatArray, degrees: IntArray) -> int:
-    """Index in the points of the joint from which the contour begins: by what follows, if it passes there twice."""
-    best = at = 0
-    for s in range(len(degrees)):
-        if at > 0 and _compare(points, at, points, best) < 0:
-            best = at
-        at += degrees[s]
+    """The joint from which the contour begins: by what follows, if it passes there twice."""
+    best = 0
+    for s in range(1, len(degrees)):
+        if _compare(points, degrees, s, points, degrees, best) < 0:
+            best = s
     return best
 
 
 @compiled(internal=True)
-def _compare(one: FloatArray, i: int, other: FloatArray, j: int) -> int:
-    """-1, 0 or 1: which of two contours of as many points, from its point i or j on, is lexicographically less.
+def _compare(one: FloatArray, degrees: IntArray, s: int, other: FloatArray, its_degrees: IntArray, t: int) -> int:
+    """-1, 0 or 1: which of two contours of as many points, from its joint s or t on, is lexicographically less.
 
-    Points are compared by x + y, and then by x.
+    Points are compared by x + y, and then by x; contours through the same points by their degrees.
     """
-    n = len(one)
+    n, m = len(one), len(degrees)
+    i, j = np.sum(degrees[:s]), np.sum(its_degrees[:t])
     for k in range(n):
         ax, ay = one[(i + k) % n, 0], one[(i + k) % n, 1]
         bx, by = other[(j + k) % n, 0], other[(j + k) % n, 1]
@@ -221,6 +219,10 @@ def _compare(one: FloatArray, i: int, other: FloatArray, j: int) -> int:
             return -1 if ax + ay < bx + by else 1
         if ax != bx:
             return -1 if ax < bx else 1
+    for k in range(m):
+        a, b = degrees[(s + k) % m], its_degrees[(t + k) % m]
+        if a != b:
+            return -1 if a < b else 1
     return 0
 
 
