@@ -37,6 +37,7 @@ from glyphspline.dataset.licences import licence_of
 from glyphspline.dataset.plan import Plan, Task, plan_of
 from glyphspline.dataset.scan import SPLITS, FontFacts, split_of
 from glyphspline.dataset.shards import Shapes
+from glyphspline.outlines.canonical_outlines import canonical_outlines
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 PLAIN = DatasetSpec(options=None, points=8)
@@ -182,7 +183,7 @@ class Scrambled(Executor):
 
 
 def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    font = FontFacts(Path("a.ttf"), "a.ttf", sha256="a", split="train", taken=SMALL * 40)
+    font = FontFacts(Path("gone.ttf"), "gone.ttf", sha256="a", split="train", taken=SMALL * 40)
     whole = Plan(PLAIN, (font,))
     pool = Scrambled(lost=437)
 
@@ -200,6 +201,25 @@ def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyP
     numbers = [task.number for tasks, _ in found for task in tasks]
     assert numbers == list(range(SMALL * 40))
     assert [made.failed for tasks, made in found if made.failed] == [[("#437", "the worker process died")]]
+
+
+class Lossy(Executor):
+    """Loses its worker with each call."""
+
+    _max_workers = 1
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_exception(WorkerLostError("the worker process died"))
+        return future
+
+
+def test_glyphs_that_cost_a_worker_are_named() -> None:
+    facts = FontFacts(FONTS / "kouzan-kaisho.ttf", "kouzan-kaisho.ttf", sha256="a", split="train", taken=5)
+    spec = replace(PLAIN, characters="あいうのを")
+    whole = Plan(spec, (facts,))
+    found = dataset_run.in_order(Lossy(), RowsJob(spec, Limits()), whole.chunks(whole.shards[0]))
+    assert [name for _, made in found for name, _ in made.failed] == [f"uni{ord(c):04X}" for c in "あいうのを"]
 
 
 # What is taken
@@ -249,6 +269,32 @@ def test_characters_scripts_and_coverage_choose(tmp_path: Path) -> None:
     assert summary.rows == len(rows) == sum(font["rows"] for font in fonts.values())
     gs.dataset(FONTS / "kouzan-kaisho.ttf", tmp_path / "kana", replace(PLAIN, scripts=("Hira",)), jobs=0)
     assert sorted(row["characters"] for row in rows_of(tmp_path / "kana")) == sorted("あいうのを")
+
+
+def test_variable_fonts_are_taken_at_their_named_instances(tmp_path: Path) -> None:
+    file = FONTS / "variable-cff2.otf"
+    gs.dataset(file, tmp_path / "default", PLAIN, jobs=0)
+    gs.dataset([file, FONTS / "variable.ttf"], tmp_path / "named", replace(PLAIN, instances="named"), jobs=2)
+    found = pq.read_table(tmp_path / "named" / "fonts.parquet").to_pylist()
+    assert [(row["style"], row["location"], row["weight_class"]) for row in found if row["file"] == file.name] == [
+        ("Regular", "wght=400,wdth=100", 400),
+        ("Bold Condensed", "wght=700,wdth=75", 700),
+        ("Bold", "wght=700,wdth=100", 700),
+    ]
+    (unnamed,) = [row for row in found if row["file"] == "variable.ttf"]  # it has no named instances
+    assert (unnamed["style"], unnamed["location"]) == ("Regular", "wght=400")
+    assert len({row["split"] for row in found if row["file"] == file.name}) == 1
+    rows = rows_of(tmp_path / "named")
+    (font,) = rows_of(tmp_path / "default")[:1]
+    for style, location in gs.open_font(file).instances.items():
+        source = gs.open_font(file, location=location)
+        own = {row["glyph"]: row for row in rows if row["font"] == font["font"] and row["style"] == style}
+        assert list(own) == list(source.glyph_names)
+        for outline in canonical_outlines(source.outlines(source.glyph_names)):
+            assert own[outline.name]["advance"] == outline.advance / outline.metrics.units_per_em
+            contours = [np.array(contour) for contour in own[outline.name]["source_points"]]
+            for one, other in zip(contours, outline.contours, strict=True):
+                np.testing.assert_allclose(one * outline.metrics.units_per_em, other.points, rtol=1e-12, atol=1e-9)
 
 
 def test_licences_choose_and_are_told(tmp_path: Path) -> None:

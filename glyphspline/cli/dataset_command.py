@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..dataset.dataset_spec import FIT, DatasetSpec, Normalise, Rows
+from ..dataset.dataset_spec import FIT, DatasetSpec, Instances, Normalise, Rows
 from ..errors import OptionError
 from . import arguments as opt
 from .messages import errors, listen, say
@@ -45,6 +45,9 @@ Scripts = Annotated[
 Licences = Annotated[
     str, which_option("--licence", metavar="ID,…", help="Only fonts of these licences, by SPDX, or unknown.")
 ]
+Where = Annotated[
+    Instances, which_option("--instances", help="Variable fonts at their default, or at each named instance.")
+]
 Coverage = Annotated[
     float,
     which_option("--coverage", parser=opt.number, metavar="SHARE", help="Of the characters that a font has to have."),
@@ -66,6 +69,7 @@ def dataset(
     text_file: TextFile = None,
     script: Scripts = "",
     licence: Licences = "",
+    instances: Where = DatasetSpec.instances,
     coverage: Coverage = DatasetSpec.coverage,
     seed: Seed = DatasetSpec.seed,
     validation: Validation = DatasetSpec.validation,
@@ -125,7 +129,7 @@ def spec_of(given: Mapping[str, Any]) -> DatasetSpec:
         text = given["text_file"].read_text(encoding="utf-8-sig")
         characters = "".join(sorted(set(text) - set("\r\n")))
     points = None if given["points"] == "polygon" else opt.whole(given["points"])
-    names = ("rows", "normalise", "raster", "coverage", "seed", "validation", "test")
+    names = ("rows", "normalise", "raster", "instances", "coverage", "seed", "validation", "test")
     try:
         return DatasetSpec(
             points=points, options=opt.options_of(given) if given["fit"] else None, characters=characters,

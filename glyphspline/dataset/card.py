@@ -40,7 +40,7 @@ LISTED = 100
 
 
 def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
-    """``fonts.parquet``: a row for each face, with what failed and why."""
+    """``fonts.parquet``: a row for each face at each location, with what failed and why."""
     pa = need("parquet")
     from pyarrow import parquet
 
@@ -54,7 +54,7 @@ def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
     units = {"units_per_em": "font unit", "ascender": "font unit", "descender": "font unit", "axes": "user space"}
     schema = []
     for field in fields(plan.fonts[0]):
-        if field.name != "path":
+        if field.name not in ("path", "at"):
             values = [getattr(font, field.name) for font in plan.fonts]
             columns[field.name] = pa.array(values, kinds[field.name])
             unit = units.get(field.name)
@@ -161,7 +161,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield ""
     counts = ", ".join([f"{count} {status}" for status, count in summary.fonts.items() if count])
     failed = f"{counted(summary.failed, 'glyph')} failed"
-    yield f"`fonts.parquet` (the configuration `fonts`) has a row for each face: {counts}; {failed}."
+    yield f"`fonts.parquet` (the configuration `fonts`) has a row for each face at each location: {counts}; {failed}."
     yield "Fonts that share name, style and version with an earlier one name it in `same_as`."
     yield ""
     yield "## How it was made"

@@ -29,7 +29,7 @@ class Made(NamedTuple):
 
     Attributes:
         rows: an Arrow table as an IPC stream. glyphs: number of glyphs in it.
-        failed: name of each glyph that has no rows, and why; "" where the name is not known.
+        failed: name of each glyph that has no rows, and why.
     """
 
     rows: bytes
@@ -64,6 +64,18 @@ def make_rows(job: RowsJob, tasks: Sequence[Task]) -> Made:
     with pa.ipc.new_stream(sink, table.schema) as writer:
         writer.write_table(table.combine_chunks())
     return Made(sink.getvalue().to_pybytes(), len(tasks) - len(failed), [failed[number] for number in sorted(failed)])
+
+
+def names_of(tasks: Sequence[Task], spec: DatasetSpec) -> list[str]:
+    """The names of glyphs of one font, of which a worker was lost: by opening the font here, if it can be opened."""
+    from ..batch.worker import source_of
+
+    place = tasks[0].font.place
+    try:
+        names, gids = source_of(*place).glyph_names, _selected(place, spec)
+        return [names[gids[task.at]] for task in tasks]
+    except (GlyphsplineError, IndexError):  # the file has been changed or removed
+        return [f"#{task.at}" for task in tasks]
 
 
 @lru_cache(maxsize=1)

@@ -19,7 +19,7 @@ from ..errors import OptionError, OutputError
 from ..extras import need
 from . import store
 from .card import card, fonts_file
-from .chunk_rows import Made, RowsJob, empty_table, make_rows
+from .chunk_rows import Made, RowsJob, empty_table, make_rows, names_of
 from .dataset_spec import DatasetSpec
 from .dataset_summary import Summary
 from .plan import CHUNK, Plan, Shard, Task, plan_of, record_text
@@ -137,7 +137,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     totals: dict[int, OfFont] = {}
     done = sum(shard.glyphs for shard in held)
     failed = sum(of_font.failed for fonts in held.values() for of_font in fonts.values())
-    numbers = {(font.sha256, font.face): k for k, font in enumerate(plan.fonts) if font.taken}
+    numbers = {font.key: k for k, font in enumerate(plan.fonts) if font.taken}
     results = in_order(pool, RowsJob(plan.spec, limits), chain.from_iterable(map(plan.chunks, left)))
 
     def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
@@ -146,7 +146,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
         while following < shard.glyphs:
             tasks, made = next(results)
             following += len(tasks)
-            yield numbers[tasks[0].font.sha256, tasks[0].font.face], made
+            yield numbers[tasks[0].font.key], made
             done, failed = done + len(tasks), failed + len(made.failed)
             if observer:
                 observer(done, plan.glyphs, failed)
@@ -187,15 +187,13 @@ def in_order(pool: Executor, job: RowsJob, chunks: Iterable[Sequence[Task]]) -> 
             yield chunk
 
     for tasks, result in spread(pool, make_rows, job, few()):
-        made = _failed(tasks, result.message) if isinstance(result, Exception) else result
+        if isinstance(result, Exception):
+            made = Made(b"", 0, [(name, result.message) for name in names_of(tasks, job.spec)])
+        else:
+            made = result
         waiting[tasks[0].number] = tasks, made
         while due and due[0] in waiting:
             ready = waiting.pop(due[0])
             for _ in ready[0]:
                 due.popleft()
             yield ready
-
-
-def _failed(tasks: Sequence[Task], reason: str) -> Made:
-    """Of glyphs that cost a worker: their names are not known here."""
-    return Made(b"", 0, [(f"#{task.at}", reason) for task in tasks])

@@ -10,6 +10,7 @@ from ..fitting.options import Options
 
 Rows: TypeAlias = Literal["glyph", "contour"]
 Normalise: TypeAlias = Literal["em", "units"]
+Instances: TypeAlias = Literal["default", "named"]
 
 MOST_POINTS = 4096
 """Points of a contour, and pixels of a raster's side."""
@@ -32,6 +33,7 @@ class DatasetSpec:
         raster: height and width in pixels of a grey picture of the glyph; None: there is none.
         characters, scripts, licences: only glyphs of these characters, scripts (ISO 15924), and fonts whose licence
             (SPDX identifier, or "unknown") is one of these; empty: all.
+        instances: where the outlines of a variable font are taken: at its default, or at each of its named instances.
         coverage: share of ``characters`` that a font needs to be taken, 0 to 1.
         seed: of the split. validation, test: shares of the families in these splits; the rest is for training.
     """
@@ -44,6 +46,7 @@ class DatasetSpec:
     characters: str = ""
     scripts: tuple[str, ...] = ()
     licences: tuple[str, ...] = ()
+    instances: Instances = "default"
     coverage: float = 0.0
     seed: int = 0
     validation: float = 0.1
@@ -52,6 +55,7 @@ class DatasetSpec:
     def __post_init__(self) -> None:
         require_choice("rows", self.rows, get_args(Rows))
         require_choice("normalise", self.normalise, get_args(Normalise))
+        require_choice("instances", self.instances, get_args(Instances))
         for name, least in (("points", 3), ("raster", 8)):
             value = getattr(self, name)
             good = value is None or (isinstance(value, int) and least <= value <= MOST_POINTS)

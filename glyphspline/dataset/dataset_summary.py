@@ -36,7 +36,7 @@ class Summary:
     """Counts of a data set.
 
     Attributes:
-        splits: by name. fonts: faces by status: taken, left out, duplicate, failed.
+        splits: by name. fonts: faces, at each of their locations, by status: taken, left out, duplicate, failed.
         licences: fonts and rows by licence. failed: glyphs that have no rows, and some of them: (font, glyph, reason).
         unread: the first few fonts that failed: (file, reason). seconds: that the run took.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from ..curves.bspline import Spline
 from ..errors import GlyphsplineError
 from ..outlines.outline import Contour, FontMetrics, Outline
-from ..types import FloatArray
+from ..types import FloatArray, counted
 from .schema import SCHEMA_VERSION
 
 
@@ -28,6 +28,10 @@ class Loaded:
     outline: Outline
     splines: tuple[tuple[Spline, ...], ...] | None
     points: tuple[FloatArray, ...]
+
+    def __repr__(self) -> str:
+        splines = "no splines" if self.splines is None else counted(sum(map(len, self.splines)), "spline")
+        return f"<Loaded {self.outline}, {splines}, {counted(sum(map(len, self.points)), 'point')}>"
 
 
 def load(row: Mapping[str, Any]) -> Loaded:

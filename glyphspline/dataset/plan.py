@@ -61,7 +61,8 @@ class Plan:
     """A data set before it is made.
 
     Attributes:
-        spec: what it holds. fonts: all faces, in the order of rows first, by split, hash and face; then the others.
+        spec: what it holds. fonts: all faces at their locations, in the order of rows first, by split, hash, face and
+            location; then the others.
     """
 
     spec: DatasetSpec
@@ -98,7 +99,7 @@ class Plan:
     def record(self) -> dict[str, Any]:
         """The content of ``dataset.json``, from which a run with other options or fonts is told apart."""
         options = None if self.spec.options is None else asdict(self.spec.options)
-        fonts = [[f.sha256, f.face, f.file, f.status] for f in self.fonts]
+        fonts = [[*f.key, f.file, f.status] for f in self.fonts]
         return {
             "glyphspline": __version__,
             "versions": versions(),
@@ -134,13 +135,13 @@ def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]
 def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
     """The plan for fonts that were scanned, in any order. Fonts of the same bytes are taken once."""
     fonts: list[FontFacts] = []
-    by_hash: dict[tuple[str, int], FontFacts] = {}
+    by_key: dict[Any, FontFacts] = {}
     by_name: dict[tuple[str, str, str], FontFacts] = {}
-    for font in sorted(found, key=lambda f: (f.sha256 or "", f.face, f.file, str(f.path))):
+    for font in sorted(found, key=lambda f: (*f.key, f.file, str(f.path))):
         if font.sha256 is None or font.status == "failed":
             fonts.append(font)
             continue
-        first = by_hash.setdefault((font.sha256, font.face), font)
+        first = by_key.setdefault(font.key, font)
         if first is not font:
             reason = "has the same bytes as another file"
             font = replace(font, status="duplicate", reason=reason, same_as=first.sha256, split=None, taken=0)
@@ -150,7 +151,7 @@ def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
             font = font if same is font else replace(font, same_as=same.sha256)
         fonts.append(font)
     order = {split: k for k, split in enumerate(SPLITS)}
-    fonts.sort(key=lambda f: (order.get(f.split or "", len(order)), f.sha256 or "", f.face, f.file))
+    fonts.sort(key=lambda f: (order.get(f.split or "", len(order)), *f.key, f.file))
     return Plan(spec, tuple(fonts))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
@@ -32,13 +32,15 @@ EMBEDDING = {0: "installable", 2: "restricted", 4: "preview and print", 8: "edit
 
 @dataclass(frozen=True)
 class FontFacts:
-    """One face of a font file at its default location.
+    """One face of a font file at one location.
 
     Attributes:
         path: where it is; not written. file: its name without folders. face: its index in the file.
+        at: axis tag and value for each axis, as ``location`` is; empty at the default. Not written.
         sha256: of the file. postscript_name, version: of the name table, as family and style; None where it is silent.
-        weight_class, width_class: of OS/2, 400 and 5 being usual. italic: whether the font says so.
-        axes: of a variable font, as "wght=100:400:900" (least, default, most). location: the default's, "wght=400".
+        weight_class, width_class: of OS/2, 400 and 5 being usual, or of the location on the axes wght and wdth.
+        italic: whether the font says so.
+        axes: of a variable font, as "wght=100:400:900" (least, default, most). location: as "wght=400,wdth=100".
         embedding: what OS/2 allows. licence: SPDX identifier, guessed. licence_text, licence_url: names 13 and 14.
         scripts: of its characters, by ISO 15924.
         coverage: share of the characters asked for that it has; None if none are.
@@ -52,6 +54,7 @@ class FontFacts:
     path: Path
     file: str
     face: int = 0
+    at: tuple[tuple[str, float], ...] = ()
     sha256: str | None = None
     family: str | None = None
     style: str | None = None
@@ -82,7 +85,12 @@ class FontFacts:
     @property
     def place(self) -> Place:
         """As a worker opens it."""
-        return self.path, self.face, ()
+        return self.path, self.face, self.at
+
+    @property
+    def key(self) -> tuple[str, int, tuple[tuple[str, float], ...]]:
+        """Hash of the file, face and location: the same for fonts with the same glyphs."""
+        return self.sha256 or "", self.face, self.at
 
 
 class ScanJob(NamedTuple):
@@ -109,7 +117,7 @@ def _faces(path: Path, spec: DatasetSpec) -> Iterator[FontFacts]:
         try:
             source = open_source(path, face)
             faces = source.num_faces
-            yield facts_of(source, spec)
+            yield from facts_of(source, spec)
         except GlyphsplineError as error:
             yield unread(path, error.message, face)
         except Exception as error:  # broken tables raise any of a dozen types
@@ -117,16 +125,31 @@ def _faces(path: Path, spec: DatasetSpec) -> Iterator[FontFacts]:
         face += 1
 
 
-def facts_of(source: Source, spec: DatasetSpec) -> FontFacts:
-    """The facts of an opened font."""
+def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
+    """The facts of an opened font, at each location where glyphs are taken."""
+    from ..readers import Font
+
+    tables = source.tables() if isinstance(source, Font) else None
     facts = FontFacts(
-        source.path.absolute(), source.path.name, source.face_index, source.sha256, source.family, source.style,
-        axes=tuple(f"{a.tag}={a.minimum:g}:{a.default:g}:{a.maximum:g}" for a in source.axes),
-        location=",".join(f"{a.tag}={a.default:g}" for a in source.axes) or None,
+        source.path.absolute(), source.path.name, source.face_index, sha256=source.sha256, family=source.family,
+        style=source.style, axes=tuple(f"{a.tag}={a.minimum:g}:{a.default:g}:{a.maximum:g}" for a in source.axes),
         units_per_em=source.metrics.units_per_em, ascender=source.metrics.ascender,
         descender=source.metrics.descender, glyphs=len(source.glyph_names), characters=len(source.cmap),
-        scripts=scripts_of_font(source), **{"licence": UNKNOWN} | _of_tables(source),
+        scripts=scripts_of_font(source), **{"licence": UNKNOWN} | _of_names(tables),
     )  # fmt: skip
+    facts = chosen(facts, source, spec)
+    default = {axis.tag: axis.default for axis in source.axes}
+    named = source.instances if spec.instances == "named" else {}
+    for style, location in (named or {source.style: default}).items():
+        at = {**default, **location}
+        place = ",".join(f"{tag}={value:g}" for tag, value in at.items()) or None
+        yield replace(
+            facts, style=style, location=place, at=() if at == default else tuple(at.items()), **_classes(tables, at)
+        )
+
+
+def chosen(facts: FontFacts, source: Source, spec: DatasetSpec) -> FontFacts:
+    """The facts with what the filters say of the font: how many of its glyphs are taken, or why none are."""
     asked = set(map(ord, spec.characters))
     if asked:
         facts = replace(facts, coverage=len(asked & source.cmap.keys()) / len(asked))
@@ -140,25 +163,38 @@ def facts_of(source: Source, spec: DatasetSpec) -> FontFacts:
     return replace(facts, taken=taken, split=split_of(source.family, spec))
 
 
-def _of_tables(source: Source) -> dict[str, Any]:
-    """What the tables ``name`` and ``OS/2`` say."""
-    tables = getattr(source, "tables", None)
-    if tables is None:
+def _of_names(tables: Any) -> dict[str, Any]:
+    """What the table ``name`` says; nothing of a source without tables."""
+    names = None if tables is None else tables.get("name")
+    if names is None:
         return {}
-    font = tables()
-    names, os2 = font.get("name"), font.get("OS/2")
-    found: dict[str, Any] = {}
-    if names is not None:
-        copyright, found["version"], found["postscript_name"], text, url = (
-            _printable(names.getDebugName(number)) for number in (0, 5, 6, 13, 14)
-        )
-        found["licence"] = licence_of(text, url, copyright)
-        found["licence_text"] = text and text[:LONGEST_TEXT]
-        found["licence_url"] = url and url[:LONGEST_TEXT]
-    if os2 is not None:
-        found |= {"weight_class": os2.usWeightClass, "width_class": os2.usWidthClass}
-        found |= {"italic": bool(os2.fsSelection & 1), "embedding": EMBEDDING.get(os2.fsType & 15)}
-    return found
+    copyright, version, postscript_name, text, url = (
+        _printable(names.getDebugName(number)) for number in (0, 5, 6, 13, 14)
+    )
+    return {
+        "version": version,
+        "postscript_name": postscript_name,
+        "licence": licence_of(text, url, copyright),
+        "licence_text": text and text[:LONGEST_TEXT],
+        "licence_url": url and url[:LONGEST_TEXT],
+    }
+
+
+def _classes(tables: Any, location: Mapping[str, float]) -> dict[str, Any]:
+    """What the table ``OS/2`` says, or would say of the font at a location."""
+    os2 = None if tables is None else tables.get("OS/2")
+    if os2 is None:
+        return {}
+    if location:
+        from fontTools.varLib import set_default_weight_width_slant
+
+        set_default_weight_width_slant(tables, location)
+    return {
+        "weight_class": os2.usWeightClass,
+        "width_class": os2.usWidthClass,
+        "italic": bool(os2.fsSelection & 1) or location.get("ital", 0.0) > 0.0,
+        "embedding": EMBEDDING.get(os2.fsType & 15),
+    }
 
 
 def _printable(text: str | None) -> str | None:
