@@ -324,6 +324,7 @@ def test_licences_choose_and_are_told(tmp_path: Path) -> None:
         (("GPL- General Public License version 2 or later AND OFL-Open Font License",), "OFL-1.1 OR GPL-2.0-or-later"),
         (("GNU General Public License, version 3, with font exception",), "GPL-3.0-only WITH Font-exception-2.0"),
         (("released under GNU GPL v2.0",), "GPL-2.0-only"),
+        (("http://ipafont.ipa.go.jp/ipa_font_license_v1.html",), "IPA"),
         (("GNU Lesser General Public License v3",), "LGPL-3.0-only"),
         ((None, None, "These fonts are in the public domain"), "LicenseRef-public-domain"),
         (("All rights reserved", None, "Released under the MIT License"), "MIT"),

@@ -16,7 +16,7 @@ PATTERNS = (
     ("Ubuntu-font-1.0", r"Ubuntu Font Licen[sc]e"),
     ("Bitstream-Vera", r"Bitstream Vera|dejavu[\w.-]*/(?:wiki/index\.php/)?License|dejavu-fonts\.org/wiki/License"),
     ("LicenseRef-Liberation-Font-License", r"Liberation Fonts? licen[sc]e|LiberationFontLicense"),
-    ("IPA", r"IPA Font Licen[sc]e"),
+    ("IPA", r"IPA Font Licen[sc]e|ipa_font_license"),
     ("Arphic-1999", r"Arphic Public Licen[sc]e"),
     ("CC0-1.0", r"\bCC0\b|creativecommons\.org/publicdomain/zero"),
     ("CC-BY-SA-4.0", r"creativecommons\.org/licenses/by-sa/4\.0"),
