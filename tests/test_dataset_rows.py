@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.integrals import area
-from glyphspline.dataset import loading
 from glyphspline.dataset import schema as columns
 from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.dataset.rows import fits_of, table_of
@@ -346,10 +345,19 @@ def test_a_newer_row_is_refused_and_a_missing_column_is_named() -> None:
         gs.load({name: value for name, value in row.items() if name != "source_points"})
 
 
-def test_a_newer_program_reads_an_older_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    (row,) = table_of([outline(polygon_contour(L_SHAPE))], None, UNFITTED).to_pylist()
-    monkeypatch.setattr(loading, "SCHEMA_VERSION", columns.SCHEMA_VERSION + 1)
-    assert gs.load(row).outline.name == "A"
+def test_rows_of_the_first_schema_are_read() -> None:
+    """``rows-of-schema-1.parquet`` was written by ``dataset --characters O --normalise units`` of 0.1.0, and stays."""
+    (row,) = pq.read_table(Path(__file__).parent / "rows-of-schema-1.parquet").to_pylist()
+    assert row["schema_version"] == 1
+    loaded = gs.load(row)
+    (expected,) = canonical_outlines(font_outlines(text="O"))
+    assert (loaded.outline.name, loaded.outline.unicodes) == ("O", (79,))
+    for one, other in zip(loaded.outline.arrays, expected.arrays, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert loaded.splines is not None
+    assert [[len(spline.control_points) for spline in own] for own in loaded.splines] == [
+        [len(points) for points in own] for own in row["control_points"]
+    ]
 
 
 # Pictures
@@ -390,7 +398,7 @@ def test_the_notebook_runs_and_keeps_no_outputs() -> None:
     os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(path.parent)}}).execute()
     said = "".join(output.get("text", "") for cell in code for output in cell.outputs)
-    assert "o of DejaVuSans \u2192" in said
+    assert "o of DejaVu Sans Book \u2192" in said
     assert "<Outline 'g'" in said
     shown = [kind for cell in code for output in cell.outputs for kind in output.get("data", {})]
     assert shown.count("image/png") == 2
