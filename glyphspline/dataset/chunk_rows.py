@@ -153,6 +153,6 @@ def empty_table(spec: DatasetSpec) -> Any:
     """A table of no rows, with all columns."""
     from pathlib import Path
 
-    from .rows import table_of
+    from .schema import schema
 
-    return with_font(table_of([], [], spec), [], FontFacts(Path(), ""), spec)
+    return with_font(schema(spec).empty_table(), [], FontFacts(Path(), ""), spec)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, BinaryIO, NamedTuple, TypeAlias
 
 import numpy as np
@@ -119,12 +120,20 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
             held[font] = held.get(font, OfFont()).plus(new)
             yield table
 
-    plain = [field.name for field in schema if not pa.types.is_nested(field.type)]  # the least point says nothing
+    # Coordinates hardly repeat, and the least of them says nothing.
+    plain = [field.name for field in schema if not pa.types.is_nested(field.type)]
+    how = {"compression": "zstd", "use_dictionary": plain, "write_statistics": plain}
 
     def write(file: BinaryIO) -> None:
-        with parquet.ParquetWriter(file, schema, compression="zstd", write_statistics=plain) as writer:
+        # A thread writes one row group while this one gives work to the workers and collects the rows of the next.
+        with parquet.ParquetWriter(file, schema, **how) as writer, ThreadPoolExecutor(1) as thread:
+            written: Future[None] | None = None
             for group in _groups(tables(), schema):
-                writer.write_table(group, row_group_size=ROW_GROUP)
+                if written is not None:
+                    written.result()
+                written = thread.submit(writer.write_table, group, row_group_size=ROW_GROUP)
+            if written is not None:
+                written.result()
             facts = json.dumps({str(font): of_font for font, of_font in held.items()}, ensure_ascii=False)
             writer.add_key_value_metadata({FACTS: facts.encode(), MARK: mark.encode()})
 
