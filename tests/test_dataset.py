@@ -495,6 +495,34 @@ def test_row_groups_are_bounded(tmp_path: Path) -> None:
         assert 0 < sizes[-1] <= 10
 
 
+def test_large_rows_make_small_groups_and_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "CHUNK_BYTES", 1 << 20)
+    monkeypatch.setattr(shards, "GROUP_BYTES", 1 << 20)
+    spec = replace(PLAIN, raster=512)
+    for jobs in (0, 2):
+        gs.dataset(FONTS / "kouzan-gyosho.ttf", tmp_path / str(jobs), spec, jobs=jobs)
+    (file,) = (tmp_path / "0" / "data").iterdir()
+    found = pq.ParquetFile(file).metadata
+    groups = [found.row_group(k).num_rows for k in range(found.num_row_groups)]
+    assert groups == [6, 6, 6], "a chunk has three rows of 512² pixels, and the second one fills a megabyte"
+    assert contents(tmp_path / "0") == contents(tmp_path / "2")
+
+
+def test_a_glyph_of_more_contours_than_real_ones_have_fails_alone(tmp_path: Path) -> None:
+    tables = TTFont(FONTS / "edge-cases.ttf", recalcBBoxes=False)
+    name, pen = tables.getGlyphOrder()[3], TTGlyphPen(None)
+    for k in range(150):
+        pen.moveTo((k, 0))
+        pen.lineTo((k, 10))
+        pen.lineTo((k + 1, 0))
+        pen.closePath()
+    tables["glyf"][name] = glyph = pen.glyph()
+    glyph.recalcBounds(tables["glyf"])
+    tables.save(tmp_path / "many.ttf")
+    summary = gs.dataset(tmp_path / "many.ttf", tmp_path / "set", replace(PLAIN, points=2000), jobs=0)
+    assert summary.failures == [("many.ttf", name, "150 contours of 2000 points, more than the 200000 points allowed")]
+
+
 def test_metrics_are_in_the_unit_that_is_asked_for(tmp_path: Path) -> None:
     for normalise in ("em", "units"):
         spec = replace(PLAIN, normalise=normalise, characters="A")

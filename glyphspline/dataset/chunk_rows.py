@@ -52,6 +52,7 @@ def make_rows(job: RowsJob, tasks: Sequence[Task]) -> Made:
         try:
             if isinstance(outline, GlyphsplineError):
                 raise outline
+            check_points(outline, job)
             vertices = 0.0 if job.spec.options is None else vertices_of([outline], job.spec.options)[0]
             read.append(Read(task, outline, cost_of(outline, vertices, job.limits)))  # type: ignore[arg-type]
         except GlyphsplineError as error:
@@ -64,6 +65,19 @@ def make_rows(job: RowsJob, tasks: Sequence[Task]) -> Made:
     with pa.ipc.new_stream(sink, table.schema) as writer:
         writer.write_table(table.combine_chunks())
     return Made(sink.getvalue().to_pybytes(), len(tasks) - len(failed), [failed[number] for number in sorted(failed)])
+
+
+def check_points(outline: Outline, job: RowsJob) -> None:
+    """Refuse a glyph of more contours than any real one has.
+
+    Raises:
+        GlyphsplineError: its points are more than vertices may be, and it has more than a hundred contours.
+    """
+    contours, points = len(outline.contours), job.spec.points or 0
+    if contours > 100 and contours * points > job.limits.vertices:
+        raise GlyphsplineError(
+            f"{contours} contours of {points} points, more than the {job.limits.vertices} points allowed"
+        )
 
 
 def names_of(tasks: Sequence[Task], spec: DatasetSpec) -> list[str]:

@@ -52,6 +52,11 @@ class DatasetSpec:
     validation: float = 0.1
     test: float = 0.1
 
+    @property
+    def glyph_bytes(self) -> int:
+        """About what points, tangents, curvature and pixels of a glyph with eight contours need in memory."""
+        return 8 * 20 * (self.points or 64) + (self.raster or 0) ** 2
+
     def __post_init__(self) -> None:
         require_choice("rows", self.rows, get_args(Rows))
         require_choice("normalise", self.normalise, get_args(Normalise))

@@ -19,8 +19,8 @@ from .scan import SPLITS, FontFacts
 SHARD = 10_000
 """Glyphs in a shard, at most: of Latin letters some 30 MB, with 64 points a contour and their fit."""
 
-CHUNK = 100
-"""Glyphs that a worker makes rows of at a time."""
+CHUNK, CHUNK_BYTES = 100, 1 << 23
+"""Glyphs that a worker makes rows of at a time, and bytes that these need, at most."""
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
 """Those whose versions decide the bytes of shards."""
@@ -89,9 +89,10 @@ class Plan:
     def chunks(self, shard: Shard) -> Iterator[list[Task]]:
         """The tasks of a shard in order, in chunks of one font each."""
         number = shard.start
+        size = max(1, min(CHUNK, CHUNK_BYTES // self.spec.glyph_bytes))
         for piece in shard.pieces:
-            for first in range(piece.first, piece.last, CHUNK):
-                last = min(first + CHUNK, piece.last)
+            for first in range(piece.first, piece.last, size):
+                last = min(first + size, piece.last)
                 yield [Task(number + k - first, self.fonts[piece.font], k) for k in range(first, last)]
                 number += last - first
 

@@ -14,8 +14,9 @@ from ..types import BoolArray, IntArray
 from . import store
 from .chunk_rows import Made
 
-ROW_GROUP = 2000
-"""Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger."""
+ROW_GROUP, GROUP_BYTES = 2000, 1 << 26
+"""Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger. A group of so
+many bytes ends sooner, with a chunk."""
 
 NAMED = 3
 """Glyphs of a font that failed and are named, in each shard."""
@@ -142,16 +143,17 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
 
 
 def _groups(tables: Iterable[Any], schema: Any) -> Iterator[Any]:
-    """The rows of tables in tables of ``ROW_GROUP``, the last one shorter."""
+    """The rows of tables in tables of ``ROW_GROUP``, or fewer if these are large; the last one is shorter."""
     pa = need("parquet")
-    waiting, count = [schema.empty_table()], 0
+    waiting, count, size = [schema.empty_table()], 0, 0
     for table in tables:
         waiting.append(table)
-        count += table.num_rows
-        while count >= ROW_GROUP:
+        count, size = count + table.num_rows, size + table.nbytes
+        while count >= ROW_GROUP or size >= GROUP_BYTES:
             whole = pa.concat_tables(waiting).combine_chunks()
             yield whole.slice(0, ROW_GROUP)
-            waiting, count = [whole.slice(ROW_GROUP)], count - ROW_GROUP
+            rest = whole.slice(ROW_GROUP)
+            waiting, count, size = [rest], rest.num_rows, rest.nbytes
     if count:
         yield pa.concat_tables(waiting).combine_chunks()
 
