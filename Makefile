@@ -20,8 +20,9 @@ lint: venv
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# As many tests at a time as there are cores.
 test: lint
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 # The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look).
 paper: venv

@@ -14,6 +14,7 @@ from .checks.kinds import Thresholds
 from .comparing.compare import compare
 from .comparing.difference import Apart, Difference, Turn
 from .curves.bspline import Spline
+from .dataset.dataset_spec import DatasetSpec
 from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
 from .fitting.convert import convert, convert_many
 from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
@@ -27,8 +28,12 @@ from .outlines.outline import Contour, FontMetrics, Outline
 from .outlines.sampling import sample
 
 display.install()
+globals().pop("dataset")  # the package of that name: the attribute is the function, imported on demand
 
 if TYPE_CHECKING:
+    from .dataset.dataset_run import dataset as dataset
+    from .dataset.loading import Loaded as Loaded
+    from .dataset.loading import load as load
     from .layout.along_path import along as along
     from .layout.bent import bend as bend
     from .layout.path import Path as Path
@@ -49,9 +54,12 @@ if TYPE_CHECKING:
 _ON_DEMAND = {
     "Font": ".readers",
     "Layout": ".layout.placed",
+    "Loaded": ".dataset.loading",
     "Path": ".layout.path",
     "along": ".layout.along_path",
     "bend": ".layout.bent",
+    "dataset": ".dataset.dataset_run",
+    "load": ".dataset.loading",
     "open_path": ".layout.path_file",
     "open_font": ".readers",
     "open_source": ".readers",
@@ -84,6 +92,7 @@ __all__ = [
     "AxisKinks",
     "Contour",
     "ContourResult",
+    "DatasetSpec",
     "DesignAxis",
     "Difference",
     "Finding",
@@ -96,6 +105,7 @@ __all__ = [
     "Kink",
     "KinkReport",
     "Layout",
+    "Loaded",
     "MasterContour",
     "Masters",
     "MastersContourResult",
@@ -118,11 +128,13 @@ __all__ = [
     "convert",
     "convert_many",
     "convert_masters",
+    "dataset",
     "interpolate",
     "interpolate_many",
     "interpolate_vertex",
     "kinks",
     "layout",
+    "load",
     "open_font",
     "open_path",
     "open_source",

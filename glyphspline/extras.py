@@ -14,6 +14,7 @@ EXTRAS = {
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),
     "cluster": ("--scheduler", "distributed"),
+    "remote": ("a URL", "fsspec"),
     "fontspector": ("the plug-in of fontspector", "fontspectorapi"),
     "view": ("the viewer", "starlette", "uvicorn"),
 }

@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 VERSIONS = tuple(f"3.{minor}" for minor in (11, 12, 13, 14))
-EXTRAS = ("overlaps", "parquet", "cluster", "fontspector", "view", "notebook")
+EXTRAS = ("overlaps", "parquet", "cluster", "remote", "fontspector", "view", "notebook")
 
 
 LOOK = """

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.batch.masters_run import MastersSummary, redrawn_glyph
-from glyphspline.batch.store import from_text, to_text
+from glyphspline.batch.result_text import from_text, to_text
 from glyphspline.cli.commands import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns

@@ -21,6 +21,7 @@ COMMANDS = {
     "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],
     "sources": ["convert", "made.glyphs", "--text", "O"],
     "cluster": ["convert", FONT, "--text", "O", "--scheduler", "tcp://127.0.0.1:1"],
+    "remote": ["convert", "s3://fonts/made.ttf", "--text", "O"],
     "view": ["view", FONT, "--no-browser"],
 }
 

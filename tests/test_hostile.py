@@ -104,7 +104,8 @@ def bomb(depth: int) -> tuple[list[T2CharString], T2CharString]:
     return subroutines, T2CharString(program=[600, -bias, "callsubr", "endchar"])
 
 
-def test_a_glyph_that_never_ends_is_killed_and_the_others_are_there(tmp_path: Path) -> None:
+def endless_font(path: Path) -> None:
+    """A font of three glyphs, one of which is never read to its end."""
     plain = T2CharStringPen(600, None)
     plain.moveTo((0, 0))
     plain.curveTo((0, 300), (300, 300), (300, 0))
@@ -117,7 +118,11 @@ def test_a_glyph_that_never_ends_is_killed_and_the_others_are_there(tmp_path: Pa
     for subroutine in subroutines:
         private.Subrs.append(subroutine)
     builder.font.recalcBBoxes = False  # it would draw the glyph
-    builder.save(tmp_path / "endless.otf")
+    builder.save(path)
+
+
+def test_a_glyph_that_never_ends_is_killed_and_the_others_are_there(tmp_path: Path) -> None:
+    endless_font(tmp_path / "endless.otf")
     font = open_font(tmp_path / "endless.otf")
     spec = RunSpec(Options(step=50.0), limits=Limits(seconds=2.0))
     summary = convert_font(font, font.glyph_names, tmp_path / "out", spec, jobs=2)

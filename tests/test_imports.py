@@ -40,9 +40,10 @@ PLAN = {
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"comparing", "report"},
+    "dataset": WRITERS | {"report", "batch"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"comparing", "report", "batch", "viewer"},
+    "cli": WRITERS | {"comparing", "report", "batch", "dataset", "viewer"},
     "fontspector": WRITERS | {"cli"},
     "__main__": {"cli"},
 }

@@ -121,3 +121,34 @@ def test_workers_do_not_import_from_the_current_folder(tmp_path: Path) -> None:
         env=os.environ | {"PYTHONPATH": str(root)}, timeout=120,
     )  # fmt: skip
     assert (done.stdout, done.stderr) == ("3\n", "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no timer that ends a process")
+def test_a_hung_process_whose_owner_was_killed_ends_itself(tmp_path: Path) -> None:
+    script = tmp_path / "killed.py"
+    script.write_text(
+        "import os, signal, time\n"
+        "from glyphspline.batch.pool import WorkerPool\n"
+        "if __name__ == '__main__':\n"
+        "    pool = WorkerPool(1, 2.0)\n"
+        "    print(pool.submit(os.getpid).result(60), flush=True)\n"
+        "    pool.submit(time.sleep, 600)\n"
+        "    time.sleep(0.5)\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    with open(tmp_path / "hung", "wb") as said:  # the end of a pipe would be that of the hung process
+        subprocess.run(
+            [sys.executable, str(script)], stdout=said, check=False, timeout=120,
+            env=os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent)},
+        )  # fmt: skip
+    hung, until = int((tmp_path / "hung").read_text()), time.monotonic() + 60
+    assert is_there(hung)
+    while is_there(hung) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not is_there(hung)
+
+
+def is_there(process: int) -> bool:
+    """Whether it runs; one that has ended may wait for somebody to ask how."""
+    asked = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True, check=False)
+    return asked.stdout.strip()[:1] not in ("", "Z")

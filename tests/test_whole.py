@@ -12,7 +12,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.batch import OutputError, RunSpec, convert_font
-from glyphspline.batch.store import from_text, to_text
+from glyphspline.batch.result_text import from_text, to_text
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font

@@ -1,95 +1,265 @@
-"""Runs on a dask.distributed cluster: the bytes of fonts are sent to the workers, and the files are sent back.
+"""Runs on a dask.distributed cluster: the bytes of fonts are sent to the workers, results and files are sent back.
 
-dask repeats the calls of a lost worker. Its workers cannot be killed from here, so the time limit does not apply; the
-limits of size do.
+A worker of the cluster makes calls in processes of its own (:class:`.pool.WorkerPool`), one a thread. A call that hangs
+or crashes there ends such a process and never the worker, so that it fails as it does without a cluster. dask repeats
+the calls of a worker that is lost.
 """
 
 from __future__ import annotations
 
+import io
+import multiprocessing
+import pickle
+import shutil
 import tempfile
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, Future
-from dataclasses import replace
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError, Executor, Future
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..errors import GlyphsplineError
 from ..extras import need
 from .files import write_whole
-from .job import Job, Task
-from .pool import WorkerLostError
+from .pool import WorkerLostError, WorkerPool
+from .spec import Limits
 
 Files = dict[str, bytes]
+"""What a call has written: content by path in the output folder."""
 
 PATIENCE = "10s"
 """Time limit for a scheduler to answer."""
 
+KEPT = 8
+"""Fonts kept in the memory of the cluster, and on each worker's disk, beside those of calls in flight."""
+
+OUT = "out"
+"""Stands for the output folder in a call, as a number does for a font."""
+
+
+class Processes(NamedTuple):
+    """The processes that make calls in a worker of the cluster.
+
+    Attributes:
+        seconds: time limit between signs of life. preload: modules to import before the first call.
+    """
+
+    seconds: float
+    preload: tuple[str, ...]
+
 
 class ClusterExecutor(Executor):
-    """Calls of :func:`.worker.work` and :func:`.worker.survey` on the workers of a scheduler.
+    """Calls ``function(job, tasks)`` on the workers of a scheduler.
+
+    Paths anywhere in ``job`` and ``tasks`` are those of font files, which go to the cluster by content, each once; in
+    the result they are what they are here. If the job has an output folder, ``job.out``, the call gets an empty one
+    with the same folders in it, and what it writes there is written here before its future is done.
 
     Args:
         address: of the scheduler, as in ``tcp://10.0.0.1:8786``.
+        seconds: time limit between signs of life, after which a call is ended.
+        preload: modules to import before the first call; None: all that have compiled code in them.
 
     Raises:
         GlyphsplineError: distributed is not installed, or nothing answers at the address.
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] | None = None) -> None:
         distributed = need("cluster")
         try:
             self._client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
+        if preload is None:
+            from .warm import EVERYTHING, module_names
+
+            preload = module_names(EVERYTHING)
+        self._processes = Processes(seconds, tuple(preload))
         self._inner = self._client.get_executor(pure=False)
-        self._fonts: dict[Path, Any] = {}
+        self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()
         self._max_workers = max(1, sum(self._client.nthreads().values()))
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call ``fn(job, tasks)`` there; its files are written here before the future is done."""
-        job, tasks = args
-        if not job.path.is_file():
-            raise GlyphsplineError("only font files can go to a cluster", font=str(job.path))
-        if job.path not in self._fonts:
-            self._fonts[job.path] = self._client.scatter(job.path.read_bytes(), broadcast=True, hash=True)
+        """Call ``fn(job, tasks)`` there.
+
+        Raises:
+            GlyphsplineError: a path is not that of a font file.
+        """
+        out = getattr(args[0], "out", None) if args else None
+        paths: dict[Path, int | str] = {}
+        call = packed((fn, args), paths, out)
+        fonts = [self._sent(path) for path in paths if path != out]
+        folders = [] if out is None else [item.name for item in out.iterdir() if item.is_dir()]
         future: Future[Any] = Future()
         future.set_running_or_notify_cancel()
-        inner = self._inner.submit(call_there, fn, self._fonts[job.path], job, tasks)
-        inner.add_done_callback(lambda done: take_back(done, job.out, future))
+        inner = self._inner.submit(
+            call_there, self._processes, call, folders, [name for name, _ in fonts], *[content for _, content in fonts]
+        )
+        inner.add_done_callback(lambda done: take_back(done, paths, out, future))
         return future
+
+    def _sent(self, path: Path) -> tuple[str, Any]:
+        """The name of a font, and its bytes in the cluster; sent again if all workers that had them are gone."""
+        if path not in self._fonts or self._fonts[path][1].status != "finished":
+            content = path.read_bytes()
+            there = self._client.scatter(content, broadcast=True, hash=True)
+            self._fonts[path] = f"{sha256(content).hexdigest()}/{path.name}", there
+        self._fonts.move_to_end(path)
+        while len(self._fonts) > KEPT:  # the cluster keeps those that calls in flight need
+            self._fonts.popitem(last=False)
+        return self._fonts[path]
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Disconnect from the cluster; calls in flight are cancelled."""
         self._client.close()
 
 
-def call_there(fn: Callable[..., Any], font: bytes, job: Job, tasks: Sequence[Task]) -> tuple[Any, Files]:
-    """Make the call on a worker of the cluster; returns its result and the files it has written."""
-    path = local_font(font, job.path.suffix)
-    with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
+class _Packer(pickle.Pickler):
+    """Writes names instead of paths."""
+
+    def __init__(self, file: io.BytesIO, named: Callable[[Path], int | str | None]) -> None:
+        super().__init__(file, pickle.HIGHEST_PROTOCOL)
+        self.named = named
+
+    def persistent_id(self, obj: Any) -> int | str | None:
+        return self.named(obj) if isinstance(obj, Path) else None
+
+
+class _Unpacker(pickle.Unpickler):
+    """Reads what :class:`_Packer` has written, with other paths."""
+
+    def __init__(self, file: io.BytesIO, paths: Mapping[int | str, Path]) -> None:
+        super().__init__(file)
+        self.paths = paths
+
+    def persistent_load(self, pid: Any) -> Path:
+        return self.paths[pid]
+
+
+def packed(value: Any, paths: dict[Path, int | str], out: Path | None) -> bytes:
+    """A value in bytes, with names for the output folder and for font files; fills in what is called how."""
+
+    def named(path: Path) -> int | str:
+        if path not in paths:
+            if path != out and not path.is_file():
+                raise GlyphsplineError("only font files can go to a cluster", font=str(path))
+            paths[path] = OUT if path == out else sum(name != OUT for name in paths.values())
+        return paths[path]
+
+    file = io.BytesIO()
+    _Packer(file, named).dump(value)
+    return file.getvalue()
+
+
+def make_call(call: bytes, paths: Mapping[int | str, Path]) -> bytes:
+    """Make a call with the paths of this machine; its result has names for them again."""
+    function, arguments = _Unpacker(io.BytesIO(call), paths).load()
+    names = {path: name for name, path in paths.items()}
+    file = io.BytesIO()
+    _Packer(file, names.get).dump(function(*arguments))
+    return file.getvalue()
+
+
+@dataclass
+class Workshop:
+    """The processes and fonts of a worker of the cluster, kept between calls.
+
+    Attributes:
+        pool: what makes the calls. folder: of font files.
+        calls: number of them in flight. fonts: names of files, last used last, and how many calls in flight use each.
+    """
+
+    pool: WorkerPool
+    folder: Path
+    calls: int = 0
+    fonts: OrderedDict[str, int] = field(default_factory=OrderedDict)
+
+    def close(self) -> None:
+        """End the processes and remove the fonts."""
+        self.pool.shutdown()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+_workshops: dict[Processes, Workshop] = {}
+_lock = threading.Lock()
+
+
+def call_there(
+    processes: Processes, call: bytes, folders: Sequence[str], names: Sequence[str], *fonts: bytes
+) -> tuple[bytes, Files]:
+    """Make a call in a process of this worker of the cluster; returns its result and the files it has written."""
+    worker = need("cluster").get_worker()
+    scratch = worker.local_directory  # dask empties it, after a kill too
+    with (
+        workshop(processes, worker.state.nthreads, scratch) as shop,
+        kept(shop, dict(zip(names, fonts, strict=True))) as paths,
+        tempfile.TemporaryDirectory(prefix="glyphspline-", dir=scratch) as folder,
+    ):
         out = Path(folder)
-        for name in job.spec.folders:
+        for name in folders:
             (out / name).mkdir()
-        result = fn(replace(job, path=path, out=out), tasks)
+        result = shop.pool.submit(make_call, call, {OUT: out, **dict(enumerate(paths))}).result()
         files = {f"{file.parent.name}/{file.name}": file.read_bytes() for file in sorted(out.glob("*/*"))}
     return result, files
 
 
-def local_font(font: bytes, suffix: str) -> Path:
-    """A file with the font's bytes, shared by all calls on this machine."""
-    path = Path(tempfile.gettempdir()) / f"glyphspline-{sha256(font).hexdigest()}{suffix}"
-    if not path.is_file() or path.is_symlink() or path.read_bytes() != font:
-        write_whole(str(path), font)
-    return path
+@contextmanager
+def workshop(processes: Processes, size: int, scratch: str) -> Iterator[Workshop]:
+    """The processes, new ones if there are none of this kind; idle ones of other kinds are ended then."""
+    with _lock:
+        for other, shop in list(_workshops.items()):
+            if not shop.calls and (other != processes or shop.pool.is_closed):
+                _workshops.pop(other).close()
+        if processes not in _workshops:
+            # dask starts its workers as daemonic, which may have no children: these would outlive it. Ours end with it,
+            # since their pipes close.
+            multiprocessing.current_process().daemon = False
+            pool = WorkerPool(size, processes.seconds, processes.preload)
+            _workshops[processes] = Workshop(pool, Path(tempfile.mkdtemp(prefix="glyphspline-fonts-", dir=scratch)))
+        shop = _workshops[processes]
+        shop.calls += 1
+    try:
+        yield shop
+    finally:
+        with _lock:
+            shop.calls -= 1
 
 
-def take_back(done: Any, out: Path, future: Future[Any]) -> None:
+@contextmanager
+def kept(shop: Workshop, fonts: Mapping[str, bytes]) -> Iterator[list[Path]]:
+    """Files of fonts, in the order given; of those that no call uses some are kept."""
+    with _lock:
+        for name, content in fonts.items():
+            if name not in shop.fonts:
+                (shop.folder / name).parent.mkdir(exist_ok=True)
+                write_whole(f"{shop.folder}/{name}", content)
+            shop.fonts[name] = shop.fonts.get(name, 0) + 1
+            shop.fonts.move_to_end(name)
+    try:
+        yield [shop.folder / name for name in fonts]
+    finally:
+        with _lock:
+            for name in fonts:
+                shop.fonts[name] -= 1
+            unused = [name for name, calls in shop.fonts.items() if not calls]
+            for name in unused[: max(0, len(shop.fonts) - KEPT)]:
+                del shop.fonts[name]
+                (shop.folder / name).unlink(missing_ok=True)
+
+
+def take_back(done: Any, paths: Mapping[Path, int | str], out: Path | None, future: Future[Any]) -> None:
     """Write the files of a finished call, then finish its future."""
     try:
-        result, files = done.result()
+        packed, files = done.result()
+        result = _Unpacker(io.BytesIO(packed), {name: path for path, name in paths.items()}).load()
         for name, content in files.items():
             write_whole(f"{out}/{name}", content)
+    except CancelledError:  # of the cluster's, whose workers with the font are gone
+        future.set_exception(WorkerLostError("its workers died"))
     except Exception as error:
         lost = type(error).__name__ == "KilledWorker"
         future.set_exception(WorkerLostError("its workers died") if lost else error)

@@ -13,6 +13,7 @@ from ..errors import GlyphsplineError
 from ..readers.open import STDIN, AnySource, open_source
 from ..readers.opentype.tables import Location
 from .file_names import LONGEST_NAME
+from .remote import fetch_fonts, local_path
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
 """Suffixes of fonts in a folder. A file given by its own name may have any suffix."""
@@ -23,17 +24,22 @@ def find_fonts(inputs: Iterable[str]) -> list[Path]:
 
     Args:
         inputs: files, UFO folders, other folders (searched to the bottom; one without fonts that holds SVG drawings is
-            a font of these), globs (``**`` too), ``-`` for standard input, and ``@list``: a text file with one of these
-            a line, relative to where the command was called; empty lines and lines with ``#`` are ignored.
+            a font of these), globs (``**`` too), URLs of fonts, folders and globs, ``-`` for standard input, and
+            ``@list``: a text file with one of these a line, relative to where the command was called; empty lines and
+            lines with ``#`` are ignored. What is behind a URL is copied to the user's cache.
 
     Raises:
-        GlyphsplineError: an input does not exist, or a list cannot be read.
+        GlyphsplineError: an input does not exist or cannot be fetched, or a list cannot be read.
     """
     return sorted({path for item in inputs for path in _found(item)})
 
 
 def _found(item: str) -> Iterator[Path]:
-    path = Path(item)
+    local = local_path(item)
+    if local is None:
+        yield from fetch_fonts(item, SUFFIXES)
+        return
+    item, path = local, Path(local)
     if item.startswith("@"):
         yield from find_fonts(_listed(Path(item[1:])))
     elif item == STDIN or is_ufo(path):

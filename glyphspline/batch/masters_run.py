@@ -31,9 +31,9 @@ from .job import Done, Place, Task
 from .lock import locked
 from .manifest import Journal, Record, finish, recorded_lines
 from .pool import sign_of_life
+from .result_text import from_text, to_text
 from .schedule import chunks_of, spread
 from .spec import RESULTS, RunSpec, describe, write_run
-from .store import from_text, to_text
 from .summary import CHANGED, NO_FACTS, listed
 from .whole import file_stem
 from .worker import reason

@@ -10,6 +10,7 @@ the time of two or three glyphs.
 from __future__ import annotations
 
 import gc
+import math
 import multiprocessing
 import os
 import signal
@@ -48,13 +49,28 @@ class WorkerStartError(GlyphsplineError):
     """A process died before its first call; others would too."""
 
 
+ORPHANED = 2.0
+"""Times the time limit after which a process ends itself: the one that would have ended it has been killed."""
+
 _last_sign: Any = None
+_limit = 0.0
 
 
 def sign_of_life() -> None:
     """Restart the time limit: a long call calls this between its parts."""
     if _last_sign is not None:
         _last_sign.value = time.monotonic()
+        _end_after(ORPHANED * _limit)
+
+
+LONGEST_TIMER = 1e8
+"""Seconds, three years: what a timer of any system can hold."""
+
+
+def _end_after(seconds: float) -> None:
+    """Have the system end this process; 0: not any more. It does so in the midst of native code too."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, 0.0 if seconds == math.inf else min(seconds, LONGEST_TIMER))
 
 
 def start_forkserver(preload: Sequence[str]) -> None:
@@ -92,13 +108,13 @@ def kill_server() -> None:
             os.kill(server, signal.SIGKILL)
 
 
-def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
+def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> None:
     """The main loop of a worker process: receive calls and send results until the pipe is closed.
 
     Calls and time limits begin after all imports, which usually happen before the fork.
     """
-    global _last_sign
-    _last_sign = sign
+    global _last_sign, _limit
+    _last_sign, _limit = sign, seconds
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
     for name in preload:
         import_module(name)
@@ -112,16 +128,17 @@ def _serve(calls: Any, sign: Any, preload: Sequence[str]) -> None:
                 answer = (True, function(*arguments))
             except Exception as error:
                 answer = (False, error)
+            _end_after(0.0)
             calls.send(answer)
 
 
 class _Worker:
     """One process, its end of the pipe, and its calls; the first of them is running."""
 
-    def __init__(self, context: Any, preload: Sequence[str]) -> None:
+    def __init__(self, context: Any, seconds: float, preload: Sequence[str]) -> None:
         self.sign = context.RawValue("d", 0.0)
         self.calls, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs, self.sign, preload), daemon=True)
+        self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
         self.process.start()
         theirs.close()
         self.ready = False
@@ -167,6 +184,11 @@ class WorkerPool(Executor):
         self._workers: list[_Worker] = []
         self._thread = threading.Thread(target=self._manage, daemon=True)
         self._thread.start()
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it takes no more calls: it was closed, or its processes could not start."""
+        return self._closing
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call of a function that can be pickled."""
@@ -229,7 +251,7 @@ class WorkerPool(Executor):
         """Start as many processes as there are calls, up to the size."""
         wanted = max(self._expected, len(self._queue) + sum(len(worker.has) for worker in self._workers))
         while len(self._workers) < min(self._max_workers, wanted):
-            self._workers.append(_Worker(self._context, self._preload))
+            self._workers.append(_Worker(self._context, self._seconds, self._preload))
 
     def _receive(self, worker: _Worker) -> None:
         try:
@@ -255,7 +277,7 @@ class WorkerPool(Executor):
     def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
         """Replace a lost process: its running call gets the error, its next call is queued again."""
         worker.end()
-        self._workers[self._workers.index(worker)] = _Worker(self._context, self._preload)
+        self._workers[self._workers.index(worker)] = _Worker(self._context, self._seconds, self._preload)
         if worker.has:
             worker.has.popleft()[0].set_exception(error)
         self._queue.extendleft(reversed(worker.has))

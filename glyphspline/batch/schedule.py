@@ -54,6 +54,7 @@ def workers(
     expected: int = 0,
     masters: bool = False,
     also: Sequence[str] = (),
+    scheduler: str | None = None,
 ) -> Executor:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
@@ -62,10 +63,18 @@ def workers(
         options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
         also: names of modules of :mod:`.warm`, whose code is needed without options.
+        scheduler: address of a dask cluster, whose workers are used instead.
+
+    Raises:
+        GlyphsplineError: nothing answers at the address.
     """
+    preload = [*modules_for(options, formats, masters), *module_names(also)]
+    if scheduler is not None:
+        from .cluster import ClusterExecutor
+
+        return ClusterExecutor(scheduler, seconds, preload)
     if jobs == 0:
         return InProcess()
-    preload = [*modules_for(options, formats, masters), *module_names(also)]
     return WorkerPool(jobs or os.cpu_count() or 1, seconds, preload, expected)
 
 
@@ -89,8 +98,9 @@ def spread(
 ) -> Iterator[tuple[Sequence[Task], Result | WorkerLostError | TimeLimitError]]:
     """Call a function on chunks of glyphs; yield each chunk with its result as it completes.
 
-    Only a few chunks are in flight at a time. If a worker is lost or killed, the glyphs of its chunk are
-    tried one by one, so that only the glyph that causes it fails.
+    Only a few chunks are in flight at a time. ``chunks`` may yield an empty one while others are in flight: none is
+    to be begun now, and it is asked again when one completes. If a worker is lost or killed, the glyphs of its chunk
+    are tried one by one, so that only the glyph that causes it fails.
     """
     again: deque[tuple[Sequence[Task], int]] = deque()
     fresh = ((chunk, 1) for chunk in chunks)

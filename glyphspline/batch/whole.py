@@ -16,8 +16,8 @@ from ..types import rounded_up
 from ..writers.formats import format_named
 from .files import PARTIAL, write_whole, writing
 from .manifest import entries_of
+from .result_text import from_text
 from .spec import OF_RUNS, RESULTS, RunSpec
-from .store import from_text
 
 
 def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:

@@ -34,8 +34,8 @@ from .entry import contour_texts, journal_line, manifest_line
 from .files import write_whole
 from .job import Done, Job, Task, failed
 from .pool import sign_of_life
+from .result_text import to_text
 from .spec import POLYGON, RESULTS, Limits, suffix_of
-from .store import to_text
 from .summary import NO_FACTS, Facts, facts_of
 
 Location = tuple[tuple[str, float], ...]

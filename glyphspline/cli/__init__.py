@@ -1,4 +1,4 @@
-"""The command line: ``glyphspline convert | check | diff | atlas | info | report | view | demo | warm``."""
+"""The command line: ``glyphspline convert | dataset | check | diff | atlas | info | report | view | demo | warm``."""
 
 from __future__ import annotations
 

@@ -38,8 +38,8 @@ method_option = partial(typer.Option, rich_help_panel="The method, in the paper'
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
 FONTS_HELP = (
-    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, or @file "
-    "with one a line."
+    "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, URLs, or "
+    "@file with one a line."
 )
 
 
@@ -74,6 +74,12 @@ def place(text: Any) -> Path:
     if not str(text):
         raise typer.BadParameter("it is empty: give a folder, or . for this one")
     return Path(text)
+
+
+def place_or_url(text: Any) -> str:
+    """A path or a URL, as it is written."""
+    place(text)
+    return str(text)
 
 
 def configured(context: typer.Context, path: Path | None) -> Path | None:

@@ -15,6 +15,7 @@ from ..writers.settings import Settings
 from ..writers.svg.appearance import Appearance
 from . import arguments as opt
 from . import interruption
+from .dataset_command import dataset
 from .messages import errors, listen, printable, say, stop
 from .progress import progress
 from .running import check_masters, convert_fonts, convert_masters, run, workplace
@@ -120,6 +121,9 @@ def convert(
         if as_json:
             typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
     raise typer.Exit(1 if any(run.failed for run in runs) else 0)
+
+
+app.command()(dataset)
 
 
 @app.command()

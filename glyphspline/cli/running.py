@@ -28,15 +28,11 @@ LOOKED_AT = 64
 @contextmanager
 def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
     """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
-    if scheduler is not None:
-        from ..batch.cluster import ClusterExecutor
+    from ..batch.schedule import workers
 
-        executor: Executor = ClusterExecutor(scheduler)
-    else:
-        from ..batch.schedule import workers
-
-        executor = workers(jobs, spec.limits.seconds, spec.options, spec.formats, masters=spec.masters)
-    with executor:
+    with workers(
+        jobs, spec.limits.seconds, spec.options, spec.formats, masters=spec.masters, scheduler=scheduler
+    ) as executor:
         yield executor
 
 

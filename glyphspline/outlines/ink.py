@@ -20,7 +20,8 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
 
     Curvature times this is positive where the ink is convex, whichever way a font draws its outer contours: TrueType
     clockwise, PostScript counter-clockwise. A contour that runs counter-clockwise has its ink to the left, unless it is
-    the counter of a clockwise one, where the others wind the other way round it.
+    the counter of a clockwise one, where the others wind the other way round it. That is looked at in the middle of one
+    segment, whichever point the contour begins at: contours may share the ends of theirs.
     """
     count = len(contours.offsets) - 1
     chords, starts = np.empty((CHORDS * len(contours.degrees), 2)), CHORDS * contours.offsets
@@ -38,10 +39,16 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
             x, y = own[i - 1, 0] - own[0, 0], own[i - 1, 1] - own[0, 1]
             area += x * (own[i, 1] - own[0, 1]) - y * (own[i, 0] - own[0, 0])
         sides[c] = -1.0 if area < 0.0 else 1.0
+        if len(own) == 0:
+            continue
+        at = CHORDS // 2
+        for i in range(at, len(own), CHORDS):
+            if own[i, 0] + own[i, 1] < own[at, 0] + own[at, 1]:
+                at = i
         around = 0
         for other in range(count):
-            if other != c and len(own) > 1:  # a point inside a segment: contours may share the ends of theirs
-                around += _winding(chords[starts[other] : starts[other + 1]], own[1, 0], own[1, 1])
+            if other != c:
+                around += _winding(chords[starts[other] : starts[other + 1]], own[at, 0], own[at, 1])
         if around * sides[c] < 0.0:
             sides[c] = -sides[c]
     return sides

@@ -10,7 +10,6 @@ from ..errors import GlyphsplineError
 from ..extras import has
 from ..outlines.masters import DesignAxis
 from ..outlines.outline import Outline
-from .designspace import Designspace
 from .open import STDIN, is_font, open_source, standard_input
 from .opentype.face import Face, open_faces
 from .opentype.tables import Location
@@ -48,7 +47,7 @@ def face_facts(face: Face | Source) -> dict[str, Any]:
         "style": face.style,
         **asdict(face.metrics),
         "axes": [axis_facts(axis) for axis in face.axes],
-        "instances": face.instances if isinstance(face, Face | Designspace) else {},
+        "instances": {name: dict(place) for name, place in face.instances.items()},
         "location": dict(face.location),
         "glyphs": glyphs,
         "characters": characters,

@@ -39,6 +39,7 @@ class Source(ABC):
         face_index: which font of a collection; 0 otherwise. num_faces: number of fonts.
         location: place in the design space, axis tag to user-space value; empty at the default.
         axes: of the design space; empty if there is none. Their mappings are known to :meth:`masters`.
+        instances: named instances, name to location.
         family, style: never empty.
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
@@ -54,6 +55,7 @@ class Source(ABC):
     num_faces: int = 1
     location: Mapping[str, float] = MappingProxyType({})
     axes: tuple[DesignAxis, ...] = ()
+    instances: Mapping[str, Mapping[str, float]] = MappingProxyType({})
     shaper: Any = None
     outer: int = 0
     family: str

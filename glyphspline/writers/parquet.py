@@ -27,48 +27,36 @@ source_kept
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import fields
-from itertools import islice
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..extras import need
-from ..fitting.results import ContourResult, GlyphResult, Measures
+import numpy as np
+
+from ..fitting.results import GlyphResult, end_to_end
 from ..readers import Source
+from .arrow_columns import arrow, fit_columns, fit_types, measure_columns, measure_types, source_columns, source_types
 
 SCHEMA_VERSION = 1
 
 ROWS = 512
-"""Contours in a row group: those held in memory while writing."""
+"""Contours in a row group: those held in memory while writing, and the rest of a glyph."""
 
 
 def schema() -> Any:
     """The table's columns as an Arrow schema, with its version as metadata."""
     pa = arrow()
-    point = pa.list_(pa.float64(), 2)
-    columns = [
-        ("font", pa.string()),
-        ("style", pa.string()),
-        ("glyph", pa.string()),
-        ("gid", pa.uint32()),
-        ("codepoints", pa.list_(pa.uint32())),
-        ("advance", pa.float64()),
-        ("units_per_em", pa.float64()),
-        ("contour", pa.uint32()),
-        ("polygon", pa.list_(point)),
-        ("closed", pa.list_(pa.bool_())),
-        ("degree", pa.list_(pa.uint8())),
-        ("knots", pa.list_(pa.list_(pa.float64()))),
-        ("control_points", pa.list_(pa.list_(point))),
-        ("footpoints", pa.list_(pa.list_(pa.float64()))),
-        ("bezier_degrees", pa.list_(pa.uint8())),
-        ("bezier_points", pa.list_(point)),
-        ("source_degrees", pa.list_(pa.uint8())),
-        ("source_points", pa.list_(point)),
-    ]
-    types = {"int": pa.int64(), "float": pa.float64(), "bool": pa.bool_()}
-    columns += [(field.name, types[str(field.type).split(" | ")[0]]) for field in fields(Measures)]
+    of_glyph = {
+        "font": pa.string(),
+        "style": pa.string(),
+        "glyph": pa.string(),
+        "gid": pa.uint32(),
+        "codepoints": pa.list_(pa.uint32()),
+        "advance": pa.float64(),
+        "units_per_em": pa.float64(),
+        "contour": pa.uint32(),
+    }
+    columns = of_glyph | fit_types() | source_types() | measure_types()
     return pa.schema(columns, metadata={"glyphspline.schema": str(SCHEMA_VERSION)})
 
 
@@ -78,55 +66,40 @@ def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any) -> int
     Raises:
         GlyphsplineError: pyarrow, of the extra ``parquet``, is not installed.
     """
-    pa = arrow()
+    arrow()
     from pyarrow.parquet import ParquetWriter
 
-    layout, count, table = schema(), 0, rows(source, glyphs)
-    with ParquetWriter(str(file) if isinstance(file, Path) else file, layout, compression="zstd") as writer:
-        while batch := list(islice(table, ROWS)):
-            writer.write_table(pa.Table.from_pylist(batch, schema=layout))
-            count += len(batch)
-    return count
+    count, waiting, held = 0, list[GlyphResult](), 0
+    with ParquetWriter(str(file) if isinstance(file, Path) else file, schema(), compression="zstd") as writer:
+        for glyph in glyphs:
+            waiting.append(glyph)
+            held += len(glyph.contours)
+            if held >= ROWS:
+                writer.write_table(rows(source, waiting), row_group_size=ROWS)
+                count, waiting, held = count + held, [], 0
+        if held:
+            writer.write_table(rows(source, waiting), row_group_size=ROWS)
+    return count + held
 
 
-def rows(source: Source, glyphs: Iterable[GlyphResult]) -> Iterator[dict[str, Any]]:
-    """A row for each contour."""
-    for glyph in glyphs:
-        outline = glyph.outline
-        of_glyph = {
-            "font": source.family,
-            "style": source.style,
-            "glyph": outline.name,
-            "gid": outline.gid,
-            "codepoints": list(outline.unicodes),
-            "advance": outline.advance,
-            "units_per_em": outline.metrics.units_per_em,
-        }
-        for index, contour in enumerate(glyph.contours):
-            yield of_glyph | {"contour": index} | row(contour)
-
-
-def row(contour: ContourResult) -> dict[str, Any]:
-    """The columns of the contour itself."""
-    splines = [interpolation.spline for interpolation in contour.interpolations]
-    return vars(contour.measures) | {
-        "polygon": contour.polygon.tolist(),
-        "closed": [spline.closed for spline in splines],
-        "degree": [spline.degree for spline in splines],
-        "knots": [spline.knots.tolist() for spline in splines],
-        "control_points": [spline.control_points.tolist() for spline in splines],
-        "footpoints": [interpolation.parameters.tolist() for interpolation in contour.interpolations],
-        "bezier_degrees": contour.curve.degrees.tolist(),
-        "bezier_points": contour.curve.points.tolist(),
-        "source_degrees": contour.source.degrees.tolist(),
-        "source_points": contour.source.points.tolist(),
+def rows(source: Source, glyphs: list[GlyphResult]) -> Any:
+    """An Arrow table with a row for each contour."""
+    pa, layout = arrow(), schema()
+    found, offsets = end_to_end(glyphs)
+    units = np.ones(len(found))
+    columns = fit_columns(found, units) | source_columns(found, units) | measure_columns(found, units)
+    outlines = [glyph.outline for glyph in glyphs]
+    of_glyph = {
+        "font": [source.family] * len(glyphs),
+        "style": [source.style] * len(glyphs),
+        "glyph": [outline.name for outline in outlines],
+        "gid": [outline.gid for outline in outlines],
+        "codepoints": [outline.unicodes for outline in outlines],
+        "advance": [outline.advance for outline in outlines],
+        "units_per_em": [outline.metrics.units_per_em for outline in outlines],
     }
-
-
-def arrow() -> Any:
-    """The module pyarrow.
-
-    Raises:
-        GlyphsplineError: it is not installed.
-    """
-    return need("parquet")
+    owner = np.repeat(np.arange(len(glyphs)), np.diff(offsets))
+    for name, values in of_glyph.items():
+        columns[name] = pa.array(values, layout.field(name).type).take(pa.array(owner))
+    columns["contour"] = pa.array(np.arange(len(found)) - offsets[owner], pa.uint32())
+    return pa.Table.from_arrays([columns[name] for name in layout.names], schema=layout)

@@ -7,7 +7,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-SUITES = ("core", "startup", "faithful", "batch", "check", "formats", "text", "viewer")
+SUITES = ("core", "startup", "faithful", "batch", "check", "formats", "text", "dataset", "dataset_runs", "viewer")
 
 
 def main() -> None:

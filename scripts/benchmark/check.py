@@ -2,23 +2,21 @@
 
 Times are of this process, without workers unless said, from opening a font to the last finding or difference, which is
 looked at. The least of several rounds counts, as in :mod:`.batch`. Fonts that are not installed have no rows.
-
-Memory is the proportional set size, in which a page of memory that n processes share counts 1/n for each: summed over
-the processes of a run, and of the largest of them.
+Memory is as in :mod:`.watched`.
 """
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from time import perf_counter, sleep
+from time import perf_counter
 
 import matplotlib
 
 from .batch import FIRST, FONT, GLYPHS, least
 from .measure import Row, in_words
+from .watched import run_watched
 
 LATIN = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 OTHER_LATIN = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
@@ -29,8 +27,6 @@ ANCHORED = Path("/usr/share/fonts/truetype/lxgw-wenkai/LXGWWenKai-Light.ttf")
 """A face of quadratics with flat contours in nine glyphs of ten."""
 
 ROUNDS = 3
-PAUSE = 0.1
-"""Seconds between two looks at the memory of a run."""
 
 
 def rows() -> list[Row]:
@@ -114,42 +110,9 @@ def read_by_fonttools(path: Path, gids: Sequence[int] | None) -> int:
 def whole_face() -> list[Row]:
     """The command over all glyphs of the CJK face with two workers: seconds and memory."""
     command = [sys.executable, "-m", "glyphspline", "check", str(FONT), "--jobs", "2", "--quiet"]
-    seconds, total, largest = run_watched(command)
-    note = f"largest process {largest:.0f} MB"
+    run = run_watched(command)
+    note = f"largest process {run.largest:.0f} MB"
     return [
-        Row(f"check of {FONT.name}, whole, `--jobs 2`", seconds, "s", 30, more=False),
-        Row("memory of the same, summed over its processes", total, "MB", 400, more=False, note=note),
+        Row(f"check of {FONT.name}, whole, `--jobs 2`", run.seconds, "s", 30, more=False),
+        Row("memory of the same, summed over its processes", run.total, "MB", 400, more=False, note=note),
     ]
-
-
-def run_watched(command: Sequence[str]) -> tuple[float, float, float]:
-    """Run a command; its seconds, and the most memory that its processes took, and that one of them took, in MB."""
-    total = largest = 0.0
-    start = perf_counter()
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
-        while process.poll() is None:
-            sizes = [memory(pid) for pid in family(process.pid)]
-            total, largest = max(total, sum(sizes)), max(largest, *sizes)
-            sleep(PAUSE)
-        seconds = perf_counter() - start
-    if process.returncode:
-        raise subprocess.CalledProcessError(process.returncode, list(command))
-    return seconds, total, largest
-
-
-def family(pid: int) -> list[int]:
-    """A process and its descendants."""
-    try:
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-    except OSError:  # it has ended
-        children = []
-    return [pid, *(each for child in children for each in family(int(child)))]
-
-
-def memory(pid: int) -> float:
-    """Proportional set size of a process in MB; 0 of one that has ended."""
-    try:
-        lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
-    except OSError:
-        return 0.0
-    return sum(int(line.split()[1]) for line in lines if line.startswith("Pss:")) / 1e3

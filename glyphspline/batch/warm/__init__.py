@@ -46,7 +46,7 @@ SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 EVERYTHING = (
     "interpolation", "drawings", "g1", "sharp", "smooth", "sharp_best", "smooth_best", "fixed", "stacked", "checks",
-    "comparing", "unfitted", "rest",
+    "comparing", "unfitted", "points", "rest",
 )  # fmt: skip
 """All modules of this package. Together they compile every function there is. The first ones share little, so that
 processes that begin at the same time seldom compile the same function."""

@@ -28,7 +28,7 @@ def axes_of(tables: TTFont) -> tuple[DesignAxis, ...]:
     )
 
 
-def instances_of(tables: TTFont) -> dict[str, dict[str, float]]:
+def instances_of(tables: TTFont) -> Mapping[str, Mapping[str, float]]:
     """The named instances, such as "Bold", with their locations."""
     instances = tables["fvar"].instances if "fvar" in tables else ()
     named = ((_name(tables, instance.subfamilyNameID), instance) for instance in instances)

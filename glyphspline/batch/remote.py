@@ -1,0 +1,307 @@
+"""Files behind URLs, through fsspec: object stores such as S3, and for reading whatever else fsspec knows.
+
+Credentials come from the environment or from a profile of the provider, as its own tools read them, and are written
+nowhere.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from hashlib import file_digest
+from pathlib import Path, PurePosixPath
+from typing import Any, TypeVar
+from urllib.parse import unquote, urlsplit
+from urllib.request import url2pathname
+
+from ..errors import FontError, GlyphsplineError, OutputError
+from ..extras import need
+
+WHOLE = frozenset({"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"})
+"""Protocols of stores that have a file whole or not at all."""
+
+PATIENCE = 60.0
+"""Seconds for which a store that does not answer is asked again."""
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.5, 8.0
+"""Seconds between attempts; each pause is twice the one before."""
+
+PASSING = ("ConnectionError", "TimeoutError", "HTTPClientError", "ClientConnectionError", "ServerTimeoutError")
+"""Errors of a connection, by the names of their classes: libraries of providers have types of their own."""
+
+AT_A_TIME = 8
+"""Files fetched at the same time."""
+
+Value = TypeVar("Value")
+
+
+def is_url(name: str) -> bool:
+    """Whether a name is a URL; ``C:/`` is not."""
+    return re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", name) is not None
+
+
+def local_path(name: str) -> str | None:
+    """The path that a name stands for: itself, or that of a ``file://`` URL; None of another URL."""
+    if not is_url(name):
+        return name
+    return url2pathname(urlsplit(name).path) if name.lower().startswith("file://") else None
+
+
+def shown(url: str) -> str:
+    """A URL for a message, without a user's name and without a query, which may be a signature."""
+    protocol, _, rest = url.partition("://")
+    host, slash, path = rest.partition("/")
+    path = path.partition("?")[0] if protocol.lower() in ("http", "https") else path
+    return f"{protocol}://{host.rpartition('@')[2]}{slash}{path}"
+
+
+def file_system(url: str) -> tuple[Any, str]:
+    """The file system of a URL, and the path in it.
+
+    Raises:
+        GlyphsplineError: fsspec or what it needs for the URL is not installed; there is no such protocol; or the URL
+            has credentials in it, which messages and records would repeat.
+    """
+    need("remote")
+    from fsspec.core import url_to_fs
+
+    if "@" in url.partition("://")[2].partition("/")[0]:
+        raise GlyphsplineError(
+            "credentials do not belong into a URL, but into the environment or a profile of the provider",
+            font=shown(url),
+        )
+    try:
+        system, path = url_to_fs(url, use_listings_cache=False)
+    except ImportError as error:
+        raise GlyphsplineError(f"{error}: pip install 'glyphspline[remote]' brings s3fs", font=shown(url)) from error
+    except Exception as error:
+        raise GlyphsplineError(f"is no URL that can be used: {error}", font=shown(url)) from error
+    return system, str(path)
+
+
+def asked(url: str, action: Callable[[], Value], kind: type[GlyphsplineError] = OutputError) -> Value:
+    """What an action on a store returns; while the store does not answer, it is tried again for a minute.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        GlyphsplineError: of that kind; the store refuses, or does not answer.
+    """
+    until, pause = time.monotonic() + PATIENCE, FIRST_PAUSE
+    while True:
+        try:
+            return action()
+        except (FileNotFoundError, GlyphsplineError):
+            raise
+        except Exception as error:  # each provider's library has its own
+            passing = any(base.__name__ in PASSING for base in type(error).__mro__)
+            if not passing or time.monotonic() + pause > until:
+                said = " ".join(str(error).split()) or type(error).__name__
+                raise kind(
+                    f"the store {'does not answer' if passing else 'refuses'}: {said}", font=shown(url)
+                ) from error
+        time.sleep(pause)
+        pause = min(2 * pause, LONGEST_PAUSE)
+
+
+def check_whole(url: str) -> None:
+    """Refuse to write where others could see half a file.
+
+    Raises:
+        OutputError: the URL is not that of an object store.
+    """
+    if (scheme := urlsplit(url).scheme.lower()) not in WHOLE:
+        stores = ", ".join(sorted(WHOLE))
+        raise OutputError(f"{scheme}:// is not written to, only folders and object stores: {stores}", font=shown(url))
+
+
+def put(url: str, content: bytes | Path) -> None:
+    """Write bytes or a copy of a file, in one put.
+
+    Raises:
+        OutputError: it cannot be written; a file of this name remains unchanged.
+    """
+    check_whole(url)
+    system, path = file_system(url)
+    try:
+        if isinstance(content, bytes):
+            asked(url, lambda: system.pipe_file(path, content))
+        else:
+            asked(url, lambda: system.put_file(str(content), path))
+    except FileNotFoundError as error:
+        raise OutputError(f"cannot be written: {error}", font=shown(url)) from error
+
+
+def info(url: str, kind: type[GlyphsplineError] = OutputError) -> dict[str, Any] | None:
+    """What the store says of a file or folder: ``type`` and ``size``; None if there is none.
+
+    Raises:
+        GlyphsplineError: of that kind; the store refuses, or does not answer.
+    """
+    system, path = file_system(url)
+    try:
+        return dict(asked(url, lambda: system.info(path), kind))
+    except FileNotFoundError:
+        return None
+
+
+def names(url: str) -> list[str]:
+    """The names of a folder's files, sorted; empty if there is no such folder.
+
+    Raises:
+        OutputError: the store refuses, or does not answer.
+    """
+    system, path = file_system(url)
+    try:
+        found = asked(url, lambda: system.ls(path, detail=True))
+    except FileNotFoundError:
+        return []
+    return sorted(PurePosixPath(item["name"]).name for item in found if item["type"] == "file")
+
+
+def remove(url: str) -> None:
+    """Remove a file.
+
+    Raises:
+        OutputError: the store refuses, or does not answer.
+    """
+    system, path = file_system(url)
+    with missing(url, OutputError):
+        asked(url, lambda: system.rm_file(path))
+
+
+class RemoteFile(io.RawIOBase):
+    """A file behind a URL open for reading at any place; only what is read is fetched.
+
+    Raises:
+        OutputError: there is no such file, or the store refuses or does not answer.
+    """
+
+    def __init__(self, url: str) -> None:
+        self._url = url
+        self._system, self._path = file_system(url)
+        found = info(url)
+        if found is None:
+            raise OutputError("there is no such file", font=shown(url))
+        self._size, self._at = int(found["size"]), 0
+
+    def readable(self) -> bool:
+        """It is."""
+        return True
+
+    def seekable(self) -> bool:
+        """It is."""
+        return True
+
+    def tell(self) -> int:
+        """The place of the next byte read."""
+        return self._at
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move to a place; returns it."""
+        self._at = max(0, offset + (0, self._at, self._size)[whence])
+        return self._at
+
+    def read(self, size: int | None = -1) -> bytes:
+        """The next bytes: as many as there are, up to ``size``."""
+        end = self._size if size is None or size < 0 else min(self._at + size, self._size)
+        if end <= self._at:
+            return b""
+        with missing(self._url, OutputError):
+            content: bytes = asked(self._url, lambda: self._system.cat_file(self._path, start=self._at, end=end))
+        self._at += len(content)
+        return content
+
+    def readall(self) -> bytes:
+        """All bytes that follow."""
+        return self.read()
+
+    def readinto(self, buffer: Any) -> int:
+        """Read bytes into a buffer; returns their number."""
+        content = self.read(len(buffer))
+        buffer[: len(content)] = content
+        return len(content)
+
+
+@contextmanager
+def missing(url: str, kind: type[GlyphsplineError]) -> Iterator[None]:
+    """Turn a FileNotFoundError within into an error of a kind."""
+    try:
+        yield
+    except FileNotFoundError as error:
+        raise kind("there is no such file", font=shown(url)) from error
+
+
+def fetch_fonts(url: str, suffixes: frozenset[str]) -> list[Path]:
+    """Copies of the fonts behind a URL, in the user's cache, each in a folder named by its content.
+
+    Args:
+        url: of a file, a folder (searched to the bottom) or a glob. suffixes: of fonts in a folder.
+
+    Raises:
+        FontError: there are none, or the store refuses or does not answer.
+        OutputError: the cache cannot be written to.
+    """
+    system, path = file_system(url)
+    is_web = urlsplit(url).scheme.lower() in ("http", "https")
+    with missing(url, FontError):
+        if not is_web and re.search(r"[*?[]", path):
+            found = sorted(asked(url, lambda: system.glob(path), FontError))
+        elif not is_web and asked(url, lambda: system.info(path), FontError)["type"] == "directory":
+            every = asked(url, lambda: system.find(path), FontError)
+            found = sorted(item for item in every if PurePosixPath(item).suffix.lower() in suffixes)
+        else:
+            found = [path]
+        if not found:
+            raise FontError("there are no fonts", font=shown(url))
+        folder = cache_folder()
+        with ThreadPoolExecutor(AT_A_TIME) as threads:
+            return list(threads.map(lambda item: _fetched(url, system, item, folder), found))
+
+
+def _fetched(url: str, system: Any, path: str, folder: Path) -> Path:
+    """A copy of a file in a folder named by its content."""
+    handle, partial = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
+    os.close(handle)
+    try:
+        asked(url, lambda: system.get_file(path, partial), FontError)
+        with open(partial, "rb") as file:
+            digest = file_digest(file, "sha256").hexdigest()
+        place = folder / digest / file_name(path)
+        if not place.is_file():
+            place.parent.mkdir(exist_ok=True)
+            os.replace(partial, place)
+        return place
+    finally:
+        Path(partial).unlink(missing_ok=True)
+
+
+def file_name(path: str) -> str:
+    """The name of a file behind a URL, such as any system has it."""
+    last = (
+        unquote(urlsplit(path).path if path.startswith(("http://", "https://")) else path)
+        .rstrip("/")
+        .rpartition("/")[2]
+    )
+    name = re.sub(r'[\\/:*?"<>|\x00-\x1f]', "_", last)[-100:]
+    return name if name.strip(".") else "font"
+
+
+def cache_folder() -> Path:
+    """The folder of fetched fonts: ``glyphspline/fonts`` in the user's cache.
+
+    Raises:
+        OutputError: it cannot be made.
+    """
+    home = os.environ.get("LOCALAPPDATA") if os.name == "nt" else os.environ.get("XDG_CACHE_HOME")
+    folder = Path(home or os.path.expanduser("~/.cache")) / "glyphspline" / "fonts"
+    try:
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    except OSError as error:
+        raise OutputError(f"cannot be made: {error.strerror or error}", font=str(folder)) from error
+    return folder

@@ -1,0 +1,199 @@
+"""A data set made of fonts: scanned, planned, and written shard after shard."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from itertools import chain
+from pathlib import Path
+
+from ..batch.font_search import find_fonts
+from ..batch.schedule import AHEAD, pool_size, spread, workers
+from ..batch.spec import Limits, differences
+from ..errors import OptionError, OutputError
+from ..extras import need
+from . import store
+from .card import card, fonts_file
+from .chunk_rows import Made, RowsJob, empty_table, make_rows, names_of
+from .dataset_spec import DatasetSpec
+from .dataset_summary import Summary
+from .plan import CHUNK, Plan, Shard, Task, plan_of, record_text
+from .scan import FontFacts, ScanJob, scan_files, unread
+from .shards import OfFont, Shapes, add_shapes, finished, write_shard
+
+RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
+"""Files beside the folder of shards."""
+
+SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
+
+Observer = Callable[[int, int, int], None]
+"""Called with the number of glyphs done, of all glyphs, and of those that failed."""
+
+
+def dataset(
+    fonts: str | Path | Iterable[str | Path],
+    out: str | Path,
+    spec: DatasetSpec | None = None,
+    *,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    scheduler: str | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> Summary:
+    """Make a data set of the glyphs of fonts: a folder of Parquet files that ``datasets.load_dataset`` opens.
+
+    The same fonts and options give the same bytes, whatever ``jobs`` is and however often the run was interrupted:
+    called again, it goes on after the last shard that is finished. Memory does not grow with the number of glyphs, but
+    for 8 bytes for each distinct shape, by which duplicates are found, twice that for moments, and the facts of fonts.
+
+    Fonts and glyphs that are broken cost only themselves: ``fonts.parquet`` says what failed and why.
+
+    Args:
+        fonts: files, folders, globs, URLs and lists of fonts as for the command line; see :func:`.find_fonts`.
+        out: the folder, which is created if it does not exist, or its URL in an object store: ``s3://bucket/letters``.
+        spec: what the data set holds.
+        jobs: worker processes; None takes all cores, 0 does everything in this process.
+        executor: used instead of worker processes; it is not closed.
+        scheduler: address of a dask cluster, whose workers are used instead: ``tcp://10.0.0.1:8786``.
+        restart: remove the files of an earlier run first.
+        observer: called after each chunk of glyphs.
+
+    Raises:
+        OutputError: the folder cannot be written, another run writes to it, or it holds a data set of other options,
+            fonts or versions and ``restart`` is not given, or something else.
+        GlyphsplineError: there are no fonts, a list of them cannot be read, or pyarrow is not installed.
+
+    Example:
+        >>> import glyphspline as gs
+        >>> summary = gs.dataset("fonts_test", "outputs/letters", gs.DatasetSpec(points=32))  # doctest: +SKIP
+    """
+    started = time.perf_counter()
+    need("parquet")
+    spec = spec or DatasetSpec()
+    folder = store.place_of(out)
+    given = [fonts] if isinstance(fonts, str | Path) else fonts
+    found = find_fonts(map(str, given))
+    if not found:
+        raise OptionError("no fonts found")
+    with store.alone(folder):
+        options = spec.options
+        unfitted = ["points", "unfitted"] if options is None else ["points"]
+        limits = Limits()
+        pool = executor or workers(
+            jobs, limits.seconds, options, expected=len(found), also=unfitted, scheduler=scheduler
+        )
+        with nullcontext() if executor else pool:
+            plan = plan_of(spec, list(_scanned(pool, spec, found)))
+            _prepare(folder, plan, restart)
+            summary = _written(folder, plan, pool, limits, observer)
+    summary.seconds = time.perf_counter() - started
+    return summary
+
+
+def _scanned(pool: Executor, spec: DatasetSpec, paths: Sequence[Path]) -> Iterator[FontFacts]:
+    """The facts of all fonts, in no order."""
+    for chunk, result in spread(pool, scan_files, ScanJob(spec), [[path.absolute()] for path in paths]):
+        yield from [unread(path, result.message) for path in chunk] if isinstance(result, Exception) else result
+
+
+def _prepare(out: str, plan: Plan, restart: bool) -> None:
+    """Make sure that what is in the folder is of this run, or nothing."""
+    shards = store.listing(f"{out}/data")
+    if restart:
+        for name in shards:
+            if SHARD_NAME.fullmatch(name):
+                store.remove(f"{out}/data/{name}")
+        for name in (RECORD, FONTS, CARD):
+            if store.exists(f"{out}/{name}"):
+                store.remove(f"{out}/{name}")
+    elif store.exists(f"{out}/{RECORD}"):
+        with store.read(f"{out}/{RECORD}") as file:
+            try:
+                old = dict(json.loads(file.read()))
+            except (ValueError, TypeError) as error:
+                raise OutputError(f"cannot be read: {error}", font=f"{out}/{RECORD}") from error
+        changed = differences(old, json.loads(record_text(plan)))
+        if changed:
+            raise OutputError("holds another data set; --restart does it anew:\n  " + "\n  ".join(changed), font=out)
+    elif shards or store.exists(f"{out}/{CARD}"):
+        raise OutputError("holds files that are of no run: give another folder, or --restart", font=out)
+    store.listing(out)  # removes what an interrupted run has left
+    store.put(f"{out}/{RECORD}", record_text(plan))
+
+
+def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Observer | None) -> Summary:
+    """Write the shards that are not finished, then the table of fonts and the card."""
+    paths = {shard: f"{out}/{shard.name}" for shard in plan.shards}
+    held = {
+        shard: found for shard, path in paths.items() if (found := finished(path, mark_of(shard, plan))) is not None
+    }
+    left = [shard for shard in plan.shards if shard not in held]
+    totals: dict[int, OfFont] = {}
+    done = sum(shard.glyphs for shard in held)
+    failed = sum(of_font.failed for fonts in held.values() for of_font in fonts.values())
+    numbers = {font.key: k for k, font in enumerate(plan.fonts) if font.taken}
+    results = in_order(pool, RowsJob(plan.spec, limits), chain.from_iterable(map(plan.chunks, left)))
+
+    def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
+        nonlocal done, failed
+        following = 0
+        while following < shard.glyphs:
+            tasks, made = next(results)
+            following += len(tasks)
+            yield numbers[tasks[0].font.key], made
+            done, failed = done + len(tasks), failed + len(made.failed)
+            if observer:
+                observer(done, plan.glyphs, failed)
+
+    shapes = Shapes()
+    schema = empty_table(plan.spec).schema
+    for shard in plan.shards:
+        fonts = held.get(shard)
+        if fonts is None:
+            fonts = write_shard(paths[shard], of_shard(shard), shapes, mark_of(shard, plan), schema)
+        elif left and shard.start < left[-1].start:
+            add_shapes(paths[shard], shapes)
+        for number, of_font in fonts.items():
+            totals[number] = totals.get(number, OfFont()).plus(of_font)
+    sizes = {shard: store.size(path) for shard, path in paths.items()}
+    summary = Summary.of(plan, totals, sizes)
+    store.put(f"{out}/{FONTS}", fonts_file(plan, totals))
+    store.put(f"{out}/{CARD}", card(plan, summary, schema).encode())
+    return summary
+
+
+def mark_of(shard: Shard, plan: Plan) -> str:
+    """What a finished shard has in its footer, and no other file."""
+    return f"{plan.digest} {shard.name}"
+
+
+def in_order(pool: Executor, job: RowsJob, chunks: Iterable[Sequence[Task]]) -> Iterator[tuple[Sequence[Task], Made]]:
+    """The rows of glyphs in the order of the tasks, from workers that finish in any; a few chunks are waited for."""
+    due: deque[int] = deque()
+    waiting: dict[int, tuple[Sequence[Task], Made]] = {}
+    most = 2 * AHEAD * pool_size(pool) * CHUNK
+
+    def few() -> Iterator[Sequence[Task]]:
+        for chunk in chunks:
+            while len(due) >= most:
+                yield ()  # none now: the rows that come first are not there yet
+            due.extend([task.number for task in chunk])
+            yield chunk
+
+    for tasks, result in spread(pool, make_rows, job, few()):
+        if isinstance(result, Exception):
+            made = Made(b"", 0, [(name, result.message) for name in names_of(tasks, job.spec)])
+        else:
+            made = result
+        waiting[tasks[0].number] = tasks, made
+        while due and due[0] in waiting:
+            ready = waiting.pop(due[0])
+            for _ in ready[0]:
+                due.popleft()
+            yield ready

@@ -1,0 +1,172 @@
+"""What a run over fonts makes: fonts in a fixed order, their glyphs packed into shards."""
+
+from __future__ import annotations
+
+import json
+import platform
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from hashlib import sha256
+from importlib.metadata import version
+from typing import Any, NamedTuple
+
+from .._version import __version__
+from .dataset_spec import DatasetSpec
+from .scan import SPLITS, FontFacts
+
+SHARD = 10_000
+"""Glyphs in a shard, at most: of Latin letters some 30 MB, with 64 points a contour and their fit."""
+
+CHUNK, CHUNK_BYTES = 100, 1 << 23
+"""Glyphs that a worker makes rows of at a time, and bytes that these need, at most."""
+
+LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
+"""Those whose versions decide the bytes of shards."""
+
+
+class Task(NamedTuple):
+    """A glyph: its number in the run, its font, and its place among the glyphs of the font that are asked for."""
+
+    number: int
+    font: FontFacts
+    at: int
+
+
+class Piece(NamedTuple):
+    """Glyphs of a font in a shard: those asked for from ``first`` up to ``last``; ``font`` is its number."""
+
+    font: int
+    first: int
+    last: int
+
+
+class Shard(NamedTuple):
+    """A file of the data set: its name, and its glyphs, of which the first has the number ``start`` in the run."""
+
+    name: str
+    split: str
+    start: int
+    pieces: tuple[Piece, ...]
+
+    @property
+    def glyphs(self) -> int:
+        """Number of its glyphs."""
+        return sum(piece.last - piece.first for piece in self.pieces)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A data set before it is made.
+
+    Attributes:
+        spec: what it holds. fonts: all faces at their locations, in the order of rows first, by split, hash, face and
+            location; then the others.
+    """
+
+    spec: DatasetSpec
+    fonts: tuple[FontFacts, ...]
+
+    @cached_property
+    def shards(self) -> tuple[Shard, ...]:
+        """The files, in order."""
+        found: list[Shard] = []
+        start = 0
+        for split in SPLITS:
+            packs = list(_packs([(k, font) for k, font in enumerate(self.fonts) if font.split == split]))
+            for k, pieces in enumerate(packs):
+                shard = Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, start, pieces)
+                found.append(shard)
+                start += shard.glyphs
+        return tuple(found)
+
+    @property
+    def glyphs(self) -> int:
+        """Number of glyphs of all shards."""
+        return sum(shard.glyphs for shard in self.shards)
+
+    def chunks(self, shard: Shard) -> Iterator[list[Task]]:
+        """The tasks of a shard in order, in chunks of one font each."""
+        number = shard.start
+        size = max(1, min(CHUNK, CHUNK_BYTES // self.spec.glyph_bytes))
+        for piece in shard.pieces:
+            for first in range(piece.first, piece.last, size):
+                last = min(first + size, piece.last)
+                yield [Task(number + k - first, self.fonts[piece.font], k) for k in range(first, last)]
+                number += last - first
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The content of ``dataset.json``, from which a run with other options or fonts is told apart."""
+        options = None if self.spec.options is None else asdict(self.spec.options)
+        fonts = [[*f.key, f.file, f.status] for f in self.fonts]
+        return {
+            "glyphspline": __version__,
+            "versions": versions(),
+            "spec": asdict(self.spec) | {"options": options},
+            "fonts": {"count": len(fonts), "sha256": _digest(fonts)},
+            "shards": len(self.shards),
+        }
+
+    @cached_property
+    def digest(self) -> str:
+        """A hash of the record: shards of one run have the same."""
+        return _digest(self.record)
+
+
+def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]]:
+    """The glyphs of a split's fonts in packs of ``SHARD``."""
+    pack: list[Piece] = []
+    room = SHARD
+    for number, font in fonts:
+        first = 0
+        while first < font.taken:
+            last = min(font.taken, first + room)
+            pack.append(Piece(number, first, last))
+            room -= last - first
+            first = last
+            if not room:
+                yield tuple(pack)
+                pack, room = [], SHARD
+    if pack:
+        yield tuple(pack)
+
+
+def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
+    """The plan for fonts that were scanned, in any order. Fonts of the same bytes are taken once."""
+    fonts: list[FontFacts] = []
+    by_key: dict[Any, FontFacts] = {}
+    by_name: dict[tuple[str, str, str], FontFacts] = {}
+    for font in sorted(found, key=lambda f: (*f.key, f.file, str(f.path))):
+        if font.sha256 is None or font.status == "failed":
+            fonts.append(font)
+            continue
+        first = by_key.setdefault(font.key, font)
+        if first is not font:
+            reason = "has the same bytes as another file"
+            font = replace(font, status="duplicate", reason=reason, same_as=first.sha256, split=None, taken=0)
+        elif font.postscript_name and font.version:
+            name = (font.postscript_name, font.version, font.style or "")
+            same = by_name.setdefault(name, font)
+            font = font if same is font else replace(font, same_as=same.sha256)
+        fonts.append(font)
+    order = {split: k for k, split in enumerate(SPLITS)}
+    fonts.sort(key=lambda f: (order.get(f.split or "", len(order)), *f.key, f.file))
+    return Plan(spec, tuple(fonts))
+
+
+def versions() -> dict[str, str]:
+    """Versions of what decides the bytes of a data set, besides the processor."""
+    found = {"python": platform.python_version()}
+    found |= {name: version(name) for name in LIBRARIES}
+    return found | {"unicode": unicodedata.unidata_version}
+
+
+def _digest(value: Any) -> str:
+    return sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def record_text(plan: Plan) -> bytes:
+    """``dataset.json``."""
+    return (json.dumps(plan.record, indent=1, ensure_ascii=False) + "\n").encode()

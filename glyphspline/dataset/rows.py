@@ -1,0 +1,153 @@
+"""Rows of a data set: glyphs or contours as an Arrow table, made from flat arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from hashlib import blake2b
+from typing import Any
+
+import numpy as np
+
+from ..errors import GlyphsplineError, OptionError
+from ..fitting.convert import convert_many, unfitted
+from ..fitting.measures import check_coordinates
+from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
+from ..outlines.canonical_outlines import canonical_outlines
+from ..outlines.outline import Outline
+from ..outlines.resampling import Resampled, at_vertices, resampled
+from ..outlines.sampling import CORNER_ANGLE
+from ..types import FloatArray, IntArray
+from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
+from .dataset_spec import DatasetSpec
+from .grey_pictures import rasters
+from .schema import SCHEMA_VERSION, schema
+
+SHAPE_STEPS = 10_000
+"""Steps an em to which coordinates are rounded before outlines are compared."""
+
+
+def fits_of(outlines: Sequence[Outline], spec: DatasetSpec) -> list[GlyphResult | GlyphsplineError]:
+    """The fit of outlines by the options of ``spec``, whatever way their font stores them; errors in their places.
+
+    Overlaps are removed first, if the options say so; what is fitted then is as :func:`.canonical_outlines` has it.
+
+    Raises:
+        OptionError: the spec has no options.
+    """
+    if spec.options is None:
+        raise OptionError("a fit needs options")
+    united = unfitted(outlines, spec.options)
+    whole = [result.outline for result in united if isinstance(result, GlyphResult)]
+    found = iter(convert_many(canonical_outlines(whole), replace(spec.options, remove_overlaps=False), errors="return"))
+    return [next(found) if isinstance(result, GlyphResult) else result for result in united]
+
+
+def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] | None, spec: DatasetSpec) -> Any:
+    """Rows of the glyphs of one font, or of some of them, with the columns of :mod:`.schema`.
+
+    Args:
+        outlines: as their font has them.
+        results: of :func:`fits_of`, for each one that is no error; None, or None for each, where nothing is fitted.
+        spec: what the rows hold; its filters and split are not looked at.
+
+    Returns:
+        A ``pyarrow.Table``: a row for each outline, or for each of their contours, in order.
+
+    Raises:
+        GlyphsplineError: a coordinate is not finite or far too large; or pyarrow, of the extra ``parquet``, is not
+            installed.
+
+    Example:
+        >>> from glyphspline import open_font
+        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
+        >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
+        >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
+        2
+    """
+    pa, layout = arrow(), schema(spec)
+    fitted = [result for result in results or () if result is not None]
+    glyphs = fitted or as_glyphs(canonical_outlines(outlines))
+    if len(glyphs) != len(outlines):
+        raise ValueError(f"{len(fitted)} results for {len(outlines)} outlines")
+    found, offsets = end_to_end(glyphs)
+    check_coordinates(found.source)
+    ems = np.array([glyph.outline.metrics.units_per_em for glyph in glyphs], dtype=np.float64)
+    scales = ems if spec.normalise == "em" else np.ones(len(glyphs))
+    owner = np.repeat(np.arange(len(glyphs)), np.diff(offsets))
+    factors = 1.0 / scales[owner]
+    columns = _point_columns(found, factors, bool(fitted), spec) | source_columns(found, factors)
+    if fitted:
+        columns |= fit_columns(found, factors) | measure_columns(found, factors)
+    of_glyph = _glyph_columns([glyph.outline for glyph in glyphs], scales)
+    hashed = offsets if spec.rows == "glyph" else np.arange(len(found) + 1)
+    if spec.raster is not None:
+        of_glyph["raster"] = rasters([glyph.outline for glyph in glyphs], found.source, offsets, spec.raster)
+    if spec.rows == "glyph":
+        columns = {name: nested(column, offsets) for name, column in columns.items()}
+    else:
+        of_glyph = {name: column.take(pa.array(owner)) for name, column in of_glyph.items()}
+        columns["contour"] = pa.array(np.arange(len(found)) - offsets[owner], pa.uint32())
+    columns |= of_glyph
+    columns["shape"] = pa.array(shapes(found, ems[owner], hashed), pa.string())
+    rows = len(hashed) - 1
+    columns |= {field.name: pa.nulls(rows, field.type) for field in layout if field.name not in columns}  # no fit
+    return pa.Table.from_arrays([columns[name] for name in layout.names], schema=layout)
+
+
+def shapes(found: ConvertedContours, ems: FloatArray, offsets: IntArray) -> list[str | None]:
+    """For each group of source contours a hash of its coordinates in em, rounded; None for no contours.
+
+    Args:
+        ems: (C,) units per em. offsets: (R + 1,) where the contours of each group begin.
+    """
+    source = found.source
+    points = np.rint(source.points * (SHAPE_STEPS / np.repeat(ems, np.diff(source.starts)))[:, None]).astype("<i4")
+    degrees = source.degrees.astype(np.uint8)
+    degrees[source.offsets[:-1]] += 8  # where a contour begins
+    hashes: list[str | None] = []
+    starts, firsts = source.starts[offsets].tolist(), source.offsets[offsets].tolist()
+    for k in range(len(offsets) - 1):
+        if firsts[k] == firsts[k + 1]:
+            hashes.append(None)
+            continue
+        hashed = blake2b(degrees[firsts[k] : firsts[k + 1]].tobytes(), digest_size=16)
+        hashed.update(points[starts[k] : starts[k + 1]].tobytes())
+        hashes.append(hashed.hexdigest())
+    return hashes
+
+
+def _point_columns(found: ConvertedContours, factors: FloatArray, fitted: bool, spec: DatasetSpec) -> dict[str, Any]:
+    """Points of each contour with tangents, curvature and corners."""
+    pa = arrow()
+    angle = np.radians(spec.options.corner_angle if fitted and spec.options is not None else CORNER_ANGLE)
+    at: Resampled
+    if spec.points is None:
+        at = at_vertices(found.curves, found.polygons, angle)
+    else:
+        at = resampled(found.curves, spec.points, angle)
+    each = np.repeat(factors, np.diff(at.offsets))
+    curvature = (at.curvature / each).astype(np.float32)
+    columns = {
+        "points": pairs((at.points * each[:, None]).astype(np.float32)),
+        "tangents": pairs(at.tangents.astype(np.float32)),
+        "curvature": pa.array(curvature, mask=~np.isfinite(curvature)),
+        "corner": pa.array(at.corners),
+    }
+    if spec.points is None:
+        return {name: nested(column, at.offsets) for name, column in columns.items()}
+    return {name: pa.FixedSizeListArray.from_arrays(column, spec.points) for name, column in columns.items()}
+
+
+def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str, Any]:
+    """What a glyph is called, and its metrics."""
+    pa = arrow()
+    return {
+        "schema_version": pa.array(np.full(len(outlines), SCHEMA_VERSION, dtype=np.uint16)),
+        "glyph": pa.array([outline.name for outline in outlines], pa.string()),
+        "gid": pa.array([outline.gid for outline in outlines], pa.uint32()),
+        "codepoints": pa.array([outline.unicodes for outline in outlines], pa.list_(pa.uint32())),
+        "characters": pa.array(["".join(map(chr, outline.unicodes)) for outline in outlines], pa.string()),
+        "advance": pa.array(np.array([outline.advance for outline in outlines], dtype=np.float64) / scales),
+        "em": pa.array(np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales),
+    }

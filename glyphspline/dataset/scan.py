@@ -1,0 +1,242 @@
+"""Facts of fonts: names, metrics, licence, scripts, and how many of their glyphs a data set takes."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from hashlib import blake2b
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..batch.job import Place
+from ..errors import GlyphsplineError
+from .dataset_spec import DatasetSpec
+from .licences import UNKNOWN, licence_of
+
+if TYPE_CHECKING:
+    from ..readers import Source
+
+SPLITS = ("train", "validation", "test")
+"""In the order in which rows are written."""
+
+NO_SCRIPT = frozenset({"Zyyy", "Zinh", "Zzzz"})
+"""Common, inherited and unknown."""
+
+LONGEST_TEXT = 500
+"""Characters kept of a licence's text: the whole of some has 40,000."""
+
+EMBEDDING = {0: "installable", 2: "restricted", 4: "preview and print", 8: "editable"}
+"""What the lowest four bits of fsType in the table OS/2 say."""
+
+
+@dataclass(frozen=True)
+class FontFacts:
+    """One face of a font file at one location.
+
+    Attributes:
+        path: where it is; not written. file: its name without folders. face: its index in the file.
+        at: axis tag and value for each axis, as ``location`` is; empty at the default. Not written.
+        sha256: of the file. postscript_name, version: of the name table, as family and style; None where it is silent.
+        weight_class, width_class: of OS/2, 400 and 5 being usual, or of the location on the axes wght and wdth.
+        italic: whether the font says so.
+        axes: of a variable font, as "wght=100:400:900" (least, default, most). location: as "wght=400,wdth=100".
+        embedding: what OS/2 allows. licence: SPDX identifier, guessed. licence_text, licence_url: names 13 and 14.
+        scripts: of its characters, by ISO 15924.
+        coverage: share of the characters asked for that it has; None if none are.
+        split: None of a font that is not taken.
+        status: "taken", "left out" (by a filter), "duplicate" (of a file with the same bytes), or "failed".
+        reason: why it is not taken. same_as: sha256 of the first font that is called and numbered the same, if the
+            bytes differ; such a font is taken.
+        taken: number of its glyphs that are asked for.
+    """
+
+    path: Path
+    file: str
+    face: int = 0
+    at: tuple[tuple[str, float], ...] = ()
+    sha256: str | None = None
+    family: str | None = None
+    style: str | None = None
+    postscript_name: str | None = None
+    version: str | None = None
+    weight_class: int | None = None
+    width_class: int | None = None
+    italic: bool | None = None
+    axes: tuple[str, ...] = ()
+    location: str | None = None
+    units_per_em: float | None = None
+    ascender: float | None = None
+    descender: float | None = None
+    glyphs: int | None = None
+    characters: int | None = None
+    embedding: str | None = None
+    licence: str | None = None
+    licence_text: str | None = None
+    licence_url: str | None = None
+    scripts: tuple[str, ...] = ()
+    coverage: float | None = None
+    split: str | None = None
+    status: str = "taken"
+    reason: str | None = None
+    same_as: str | None = None
+    taken: int = 0
+
+    @property
+    def place(self) -> Place:
+        """As a worker opens it."""
+        return self.path, self.face, self.at
+
+    @property
+    def key(self) -> tuple[str, int, tuple[tuple[str, float], ...]]:
+        """Hash of the file, face and location: the same for fonts with the same glyphs."""
+        return self.sha256 or "", self.face, self.at
+
+
+class ScanJob(NamedTuple):
+    """What a worker needs to look at fonts."""
+
+    spec: DatasetSpec
+
+
+def scan_files(job: ScanJob, paths: Sequence[Path]) -> list[FontFacts]:
+    """The facts of all faces of font files, in a worker. A file that cannot be read is a fact too."""
+    return [facts for path in paths for facts in _faces(path, job.spec)]
+
+
+def unread(path: Path, reason: str, face: int = 0) -> FontFacts:
+    """A font that cannot be read."""
+    return FontFacts(path, path.name, face, status="failed", reason=reason)
+
+
+def _faces(path: Path, spec: DatasetSpec) -> Iterator[FontFacts]:
+    from ..readers import open_source
+
+    face, faces = 0, 1
+    while face < faces:
+        try:
+            source = open_source(path, face)
+            faces = source.num_faces
+            yield from facts_of(source, spec)
+        except GlyphsplineError as error:
+            yield unread(path, error.message, face)
+        except Exception as error:  # broken tables raise any of a dozen types
+            yield unread(path, f"a broken font: {type(error).__name__}: {error}", face)
+        face += 1
+
+
+def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
+    """The facts of an opened font, at each location where glyphs are taken."""
+    from ..readers import Font
+
+    tables = source.tables() if isinstance(source, Font) else None
+    facts = FontFacts(
+        source.path.absolute(), source.path.name, source.face_index, sha256=source.sha256, family=source.family,
+        style=source.style, axes=tuple(f"{a.tag}={a.minimum:g}:{a.default:g}:{a.maximum:g}" for a in source.axes),
+        units_per_em=source.metrics.units_per_em, ascender=source.metrics.ascender,
+        descender=source.metrics.descender, glyphs=len(source.glyph_names), characters=len(source.cmap),
+        scripts=scripts_of_font(source), **{"licence": UNKNOWN} | _of_names(tables),
+    )  # fmt: skip
+    facts = chosen(facts, source, spec)
+    default = {axis.tag: axis.default for axis in source.axes}
+    named = source.instances if spec.instances == "named" else {}
+    for style, location in (named or {source.style: default}).items():
+        at = {**default, **location}
+        place = ",".join(f"{tag}={value:g}" for tag, value in at.items()) or None
+        yield replace(
+            facts, style=style, location=place, at=() if at == default else tuple(at.items()), **_classes(tables, at)
+        )
+
+
+def chosen(facts: FontFacts, source: Source, spec: DatasetSpec) -> FontFacts:
+    """The facts with what the filters say of the font: how many of its glyphs are taken, or why none are."""
+    asked = set(map(ord, spec.characters))
+    if asked:
+        facts = replace(facts, coverage=len(asked & source.cmap.keys()) / len(asked))
+    if spec.licences and facts.licence not in spec.licences:
+        return replace(facts, status="left out", reason=f"its licence is {facts.licence}")
+    if facts.coverage is not None and facts.coverage < spec.coverage:
+        return replace(facts, status="left out", reason=f"has {facts.coverage:.3g} of the characters")
+    taken = len(selected(source, spec))
+    if not taken:
+        return replace(facts, status="left out", reason="has none of the glyphs")
+    return replace(facts, taken=taken, split=split_of(source.family, spec))
+
+
+def _of_names(tables: Any) -> dict[str, Any]:
+    """What the table ``name`` says; nothing of a source without tables."""
+    names = None if tables is None else tables.get("name")
+    if names is None:
+        return {}
+    copyright, version, postscript_name, text, url = (
+        _printable(names.getDebugName(number)) for number in (0, 5, 6, 13, 14)
+    )
+    return {
+        "version": version,
+        "postscript_name": postscript_name,
+        "licence": licence_of(text, url, copyright),
+        "licence_text": text and text[:LONGEST_TEXT],
+        "licence_url": url and url[:LONGEST_TEXT],
+    }
+
+
+def _classes(tables: Any, location: Mapping[str, float]) -> dict[str, Any]:
+    """What the table ``OS/2`` says, or would say of the font at a location."""
+    os2 = None if tables is None else tables.get("OS/2")
+    if os2 is None:
+        return {}
+    if location:
+        from fontTools.varLib import set_default_weight_width_slant
+
+        set_default_weight_width_slant(tables, location)
+    return {
+        "weight_class": os2.usWeightClass,
+        "width_class": os2.usWidthClass,
+        "italic": bool(os2.fsSelection & 1) or location.get("ital", 0.0) > 0.0,
+        "embedding": EMBEDDING.get(os2.fsType & 15),
+    }
+
+
+def _printable(text: str | None) -> str | None:
+    """A text of a font on one line, without characters that do something to a page or a terminal; None if empty."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text or "").split()) or None
+
+
+def script_of(code: int) -> str:
+    """The script of a character by ISO 15924."""
+    from fontTools.unicodedata import script
+
+    return str(script(chr(code)))
+
+
+def category_of(code: int) -> str:
+    """The general category of a character: "Lu"."""
+    return unicodedata.category(chr(code))
+
+
+def scripts_of_font(source: Source) -> tuple[str, ...]:
+    """The scripts of a font's characters, sorted, without those that all scripts share."""
+    return tuple(sorted({script_of(code) for code in source.cmap} - NO_SCRIPT))
+
+
+def selected(source: Source, spec: DatasetSpec) -> list[int]:
+    """Indices of the glyphs that are asked for, ascending; without a filter all, those without a character too."""
+    if not (spec.characters or spec.scripts):
+        return list(range(len(source.glyph_names)))
+    asked = set(map(ord, spec.characters))
+    names = {
+        name
+        for code, name in source.cmap.items()
+        if (not asked or code in asked) and (not spec.scripts or script_of(code) in spec.scripts)
+    }
+    return [gid for gid, name in enumerate(source.glyph_names) if name in names]
+
+
+def split_of(family: str, spec: DatasetSpec) -> str:
+    """The split of all fonts of a family: its name and the seed decide, whatever other fonts there are."""
+    name = " ".join(unicodedata.normalize("NFKC", family).casefold().split())
+    digest = blake2b(f"{spec.seed}:{name}".encode(), digest_size=8).digest()
+    share = int.from_bytes(digest, "big") / 2**64
+    if share < spec.test:
+        return "test"
+    return "validation" if share < spec.test + spec.validation else "train"

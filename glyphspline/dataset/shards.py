@@ -1,0 +1,186 @@
+"""Shards: rows in order, in row groups of bounded size; a finished shard says itself what it holds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, BinaryIO, NamedTuple, TypeAlias
+
+import numpy as np
+
+from ..extras import need
+from ..types import BoolArray, IntArray
+from . import store
+from .chunk_rows import Made
+
+ROW_GROUP, GROUP_BYTES = 2000, 1 << 26
+"""Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger. A group of so
+many bytes ends sooner, with a chunk."""
+
+NAMED = 3
+"""Glyphs of a font that failed and are named, in each shard."""
+
+FACTS, MARK = b"glyphspline.shard", b"glyphspline.run"
+"""Keys of the metadata in a shard's footer: what it holds, and of which run it is."""
+
+Held: TypeAlias = "dict[int, OfFont]"
+"""What a finished shard holds of each font, by the font's number in the plan."""
+
+
+class OfFont(NamedTuple):
+    """What a shard, or a data set, has of a font.
+
+    Attributes:
+        glyphs: those with rows. rows: their number. duplicates: of them. failed: glyphs without rows.
+        reasons: (glyph, reason) of the first few of those.
+    """
+
+    glyphs: int = 0
+    rows: int = 0
+    duplicates: int = 0
+    failed: int = 0
+    reasons: tuple[tuple[str, str], ...] = ()
+
+    def plus(self, other: OfFont) -> OfFont:
+        """The sum of two."""
+        return OfFont(
+            self.glyphs + other.glyphs,
+            self.rows + other.rows,
+            self.duplicates + other.duplicates,
+            self.failed + other.failed,
+            (*self.reasons, *other.reasons)[:NAMED],
+        )
+
+
+class Shapes:
+    """The shapes that rows have had so far: 8 bytes each, and twice that while sorted runs are merged."""
+
+    def __init__(self) -> None:
+        self._runs: list[IntArray] = []
+
+    def repeated(self, shapes: IntArray) -> BoolArray:
+        """(n,) whether an earlier row has the shape, of this call or of one before; all are known from now on."""
+        unique, first, which = np.unique(shapes, return_index=True, return_inverse=True)
+        known = np.zeros(len(unique), dtype=np.bool_)
+        for run in self._runs:
+            at = np.minimum(np.searchsorted(run, unique), len(run) - 1)
+            known |= run[at] == unique
+        if not known.all():
+            self._runs.append(unique[~known])
+        while len(self._runs) > 1 and len(self._runs[-2]) <= 2 * len(self._runs[-1]):
+            last, before = self._runs.pop(), self._runs.pop()
+            merged = np.concatenate([before, last])
+            merged.sort(kind="stable")
+            self._runs.append(merged)
+        found: BoolArray = known[which] | (first[which] != np.arange(len(shapes)))
+        return found
+
+    def __len__(self) -> int:
+        return sum(map(len, self._runs))
+
+
+def numbers_of(column: Any) -> tuple[IntArray, BoolArray]:
+    """Shapes as 64-bit numbers, and which rows have one: a shape is a hash in hexadecimal."""
+    texts = column.to_pylist()
+    has = np.array([text is not None for text in texts], dtype=np.bool_)
+    numbers = [int(text[:16], 16) for text in texts if text is not None]
+    return np.array(numbers, dtype=np.uint64).view(np.int64), has
+
+
+def marked(table: Any, shapes: Shapes) -> tuple[Any, int]:
+    """The table with the column of duplicates filled, and their number; a row without a shape is none."""
+    pa = need("parquet")
+    numbers, has = numbers_of(table["shape"])
+    values = np.zeros(table.num_rows, dtype=np.bool_)
+    values[has] = shapes.repeated(numbers)
+    at = table.schema.get_field_index("duplicate")
+    return table.set_column(at, table.schema.field(at), pa.array(values)), int(values.sum())
+
+
+def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mark: str, schema: Any) -> Held:
+    """Write a shard whole.
+
+    Args:
+        made: the rows of its chunks in order, each with the number of its font. shapes: of the rows before it; those
+            of the shard are added. mark: see :func:`finished`. schema: of the rows.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    pa = need("parquet")
+    from pyarrow import parquet
+
+    held: Held = {}
+
+    def tables() -> Iterator[Any]:
+        for font, chunk in made:
+            table = pa.ipc.open_stream(chunk.rows).read_all() if chunk.rows else schema.empty_table()
+            table, duplicates = marked(table, shapes)
+            new = OfFont(chunk.glyphs, table.num_rows, duplicates, len(chunk.failed), tuple(chunk.failed[:NAMED]))
+            held[font] = held.get(font, OfFont()).plus(new)
+            yield table
+
+    # Coordinates hardly repeat, and the least of them says nothing.
+    plain = [field.name for field in schema if not pa.types.is_nested(field.type)]
+    how = {"compression": "zstd", "use_dictionary": plain, "write_statistics": plain}
+
+    def write(file: BinaryIO) -> None:
+        # A thread writes one row group while this one gives work to the workers and collects the rows of the next.
+        with parquet.ParquetWriter(file, schema, **how) as writer, ThreadPoolExecutor(1) as thread:
+            written: Future[None] | None = None
+            for group in _groups(tables(), schema):
+                if written is not None:
+                    written.result()
+                written = thread.submit(writer.write_table, group, row_group_size=ROW_GROUP)
+            if written is not None:
+                written.result()
+            facts = json.dumps({str(font): of_font for font, of_font in held.items()}, ensure_ascii=False)
+            writer.add_key_value_metadata({FACTS: facts.encode(), MARK: mark.encode()})
+
+    store.put(path, write)
+    return held
+
+
+def _groups(tables: Iterable[Any], schema: Any) -> Iterator[Any]:
+    """The rows of tables in tables of ``ROW_GROUP``, or fewer if these are large; the last one is shorter."""
+    pa = need("parquet")
+    waiting, count, size = [schema.empty_table()], 0, 0
+    for table in tables:
+        waiting.append(table)
+        count, size = count + table.num_rows, size + table.nbytes
+        while count >= ROW_GROUP or size >= GROUP_BYTES:
+            whole = pa.concat_tables(waiting).combine_chunks()
+            yield whole.slice(0, ROW_GROUP)
+            rest = whole.slice(ROW_GROUP)
+            waiting, count, size = [rest], rest.num_rows, rest.nbytes
+    if count:
+        yield pa.concat_tables(waiting).combine_chunks()
+
+
+def finished(path: str, mark: str) -> Held | None:
+    """What a shard holds that has this mark, of run and shard; None if there is no file, or another."""
+    pa = need("parquet")
+    from pyarrow import parquet
+
+    if not store.exists(path):
+        return None
+    try:
+        with store.read(path) as file:
+            metadata = parquet.read_metadata(file).metadata or {}
+        if metadata.get(MARK) != mark.encode():
+            return None
+        facts = json.loads(metadata[FACTS])
+        return {int(k): OfFont(a, b, c, d, tuple((n, why) for n, why in e)) for k, (a, b, c, d, e) in facts.items()}
+    except (pa.ArrowException, KeyError, ValueError, TypeError):
+        return None
+
+
+def add_shapes(path: str, shapes: Shapes) -> None:
+    """Add the shapes of a finished shard, one row group after the other."""
+    from pyarrow import parquet
+
+    with store.read(path) as file:
+        whole = parquet.ParquetFile(file)
+        for k in range(whole.num_row_groups):
+            shapes.repeated(numbers_of(whole.read_row_group(k, columns=["shape"])["shape"])[0])

@@ -1,0 +1,246 @@
+"""Outlines as they are whatever way a font stores them: start points, directions and order of contours by rule.
+
+Two fonts may store one shape with other start points, the other way round (TrueType and PostScript do), or with
+contours in another order. Here all of these become one outline, number for number:
+
+- The ink is to the left: outer contours run counter-clockwise, holes clockwise, under the non-zero rule. A contour that
+  encloses as much to its left as to its right runs the way in which its list of points is lexicographically less, or
+  its list of degrees.
+- A contour begins at the joint with the least x + y, at the lower left; of several at the leftmost.
+- Contours are in order of the least x + y of their curves: an outer contour comes before its holes.
+
+Segments of no length, and contours of fewer than three distinct points, are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.cubics import jet
+from ..curves.integrals import area
+from ..types import BoolArray, FloatArray, IntArray
+from .contour_arrays import ContourArrays, joined, offsets_of
+from .ink import ink_sides
+from .outline import Contours, Outline
+from .segments import contour_cubics, lasting
+
+NO_AREA = 1e-9
+"""Area relative to the square of a contour's extent below which its sign is rounding."""
+
+
+def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
+    """The same shapes in the one way of storing them that this module says."""
+    given = joined([outline.arrays for outline in outlines])
+    glyphs = offsets_of([outline.arrays.num_contours for outline in outlines])
+    found, keys, kept = _canonical(given, glyphs)
+    owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))
+    order = np.lexsort((*keys.T[::-1], owner))
+    order = order[kept[order]]
+    if not (len(order) == len(kept) and (np.diff(order) == 1).all()):
+        found = _in_order(found, order)
+    ends = np.searchsorted(owner[order], np.arange(len(outlines) + 1))
+    return [
+        replace(outline, contours=Contours(found.part(first, last)))
+        for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
+    ]
+
+
+@compiled
+def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays, FloatArray, BoolArray]:
+    """Contours with their start and direction by rule, in the given order.
+
+    Args:
+        glyphs: (G + 1,) where the contours of each glyph begin.
+
+    Returns:
+        the contours, which have no segments if they enclose nothing; (C, 4) what they are ordered by; (C,) whether they
+        enclose something.
+    """
+    count = len(contours.offsets) - 1
+    points, degrees = np.empty_like(contours.points), np.empty_like(contours.degrees)
+    offsets, starts = np.zeros(count + 1, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
+    keys, kept = np.zeros((count, 4)), np.zeros(count, dtype=np.bool_)
+    for g in range(len(glyphs) - 1):
+        a, b = glyphs[g], glyphs[g + 1]
+        if a == b:
+            continue
+        first, begin = contours.offsets[a], contours.starts[a]
+        own = ContourArrays(
+            contours.points[begin : contours.starts[b]], contours.degrees[first : contours.offsets[b]],
+            contours.offsets[a : b + 1] - first, contours.starts[a : b + 1] - begin,
+        )  # fmt: skip
+        sides = ink_sides(own)
+        for c in range(a, b):
+            cubics = contour_cubics(contours, c)
+            p, d = _lasting_part(contours, c, cubics)
+            offsets[c + 1], starts[c + 1] = offsets[c], starts[c]
+            if not _encloses(p):
+                continue
+            kept[c] = True
+            ink, extent = area(cubics), _extent(p)
+            backward, its_degrees = _reversed(p, d)
+            if abs(ink) <= NO_AREA * extent * extent:
+                s, t = _first_joint(p, d), _first_joint(backward, its_degrees)
+                reverse = _compare(backward, its_degrees, t, p, d, s) < 0
+            else:
+                reverse = sides[c - a] < 0.0
+            if reverse:
+                p, d = backward, its_degrees
+            n, m = len(p), len(d)
+            s = _first_joint(p, d)
+            i = np.sum(d[:s])
+            for k in range(n):
+                points[starts[c] + k, 0], points[starts[c] + k, 1] = p[(i + k) % n, 0], p[(i + k) % n, 1]
+            for k in range(m):
+                degrees[offsets[c] + k] = d[(s + k) % m]
+            offsets[c + 1], starts[c + 1] = offsets[c] + m, starts[c] + n
+    found = ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)
+    for c in range(count):
+        if kept[c]:
+            cubics = contour_cubics(found, c)
+            place = lower_left(cubics)
+            s = min(int(place), len(cubics) - 1)
+            x, y, _, _, _, _ = jet(cubics, s, place - s)
+            keys[c, 0], keys[c, 1], keys[c, 2], keys[c, 3] = x + y, x, -abs(area(cubics)), len(cubics)
+    return found, keys, kept
+
+
+@compiled(internal=True)
+def lower_left(cubics: FloatArray) -> float:
+    """Place of the point of a closed chain (m, 4, 2) with the least x + y; of several the leftmost, then the first."""
+    best, left, place = np.inf, np.inf, 0.0
+    for j in range(len(cubics)):
+        p = cubics[j, 0, 0] + cubics[j, 0, 1]
+        q = cubics[j, 1, 0] + cubics[j, 1, 1]
+        r = cubics[j, 2, 0] + cubics[j, 2, 1]
+        s = cubics[j, 3, 0] + cubics[j, 3, 1]
+        if min(min(p, q), min(r, s)) > best:
+            continue  # convex hull property
+        if p < best or (p == best and cubics[j, 0, 0] < left):
+            best, left, place = p, cubics[j, 0, 0], float(j)
+        a, b, c = s - p + 3.0 * (q - r), r - 2.0 * q + p, q - p  # the derivative is 3 (a x² + 2 b x + c)
+        square = b * b - a * c
+        if square <= 0.0:
+            continue
+        root = -(b + np.copysign(np.sqrt(square), b))
+        for k in range(2):
+            above, below = (root, a) if k == 0 else (c, root)
+            if not 1e-9 * abs(below) < abs(above) < (1.0 - 1e-9) * abs(below) or above * below < 0.0:
+                continue
+            at = above / below
+            x, y, _, _, _, _ = jet(cubics, j, at)
+            if x + y < best:
+                best, left, place = x + y, x, j + at
+    return place
+
+
+@compiled(internal=True)
+def _lasting_part(contours: ContourArrays, c: int, cubics: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Points and degrees of contour c without its segments of no length."""
+    points = contours.points[contours.starts[c] : contours.starts[c + 1]]
+    degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
+    kept = lasting(cubics)
+    if len(kept) == len(degrees):
+        return points, degrees
+    found, its, n, i, k = np.empty_like(points), np.empty(len(kept), dtype=np.int64), 0, 0, 0
+    for j in range(len(degrees)):
+        if k < len(kept) and kept[k] == j:
+            for r in range(degrees[j]):
+                found[n, 0], found[n, 1] = points[i + r, 0], points[i + r, 1]
+                n += 1
+            its[k] = degrees[j]
+            k += 1
+        i += degrees[j]
+    return found[:n], its
+
+
+@compiled(internal=True)
+def _encloses(points: FloatArray) -> bool:
+    """Whether three of the points are distinct."""
+    second = -1
+    for i in range(1, len(points)):
+        if points[i, 0] != points[0, 0] or points[i, 1] != points[0, 1]:
+            if second < 0:
+                second = i
+            elif points[i, 0] != points[second, 0] or points[i, 1] != points[second, 1]:
+                return True
+    return False
+
+
+@compiled(internal=True)
+def _extent(points: FloatArray) -> float:
+    """The larger side of the box around the points."""
+    most = 0.0
+    for axis in range(2):
+        low = high = points[0, axis]
+        for i in range(1, len(points)):
+            low, high = min(low, points[i, axis]), max(high, points[i, axis])
+        most = max(most, high - low)
+    return most
+
+
+@compiled(internal=True)
+def _reversed(points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
+    """A contour in the opposite direction, from the same first joint."""
+    n = len(points)
+    found = np.empty_like(points)
+    for i in range(n):
+        found[i, 0], found[i, 1] = points[-i % n, 0], points[-i % n, 1]
+    return found, degrees[::-1].copy()
+
+
+@compiled(internal=True)
+def _first_joint(points: FloatArray, degrees: IntArray) -> int:
+    """The joint from which the contour begins: by what follows, if it passes there twice."""
+    best = 0
+    for s in range(1, len(degrees)):
+        if _compare(points, degrees, s, points, degrees, best) < 0:
+            best = s
+    return best
+
+
+@compiled(internal=True)
+def _compare(one: FloatArray, degrees: IntArray, s: int, other: FloatArray, its_degrees: IntArray, t: int) -> int:
+    """-1, 0 or 1: which of two contours of as many points, from its joint s or t on, is lexicographically less.
+
+    Points are compared by x + y, and then by x; contours through the same points by their degrees.
+    """
+    n, m = len(one), len(degrees)
+    i, j = np.sum(degrees[:s]), np.sum(its_degrees[:t])
+    for k in range(n):
+        ax, ay = one[(i + k) % n, 0], one[(i + k) % n, 1]
+        bx, by = other[(j + k) % n, 0], other[(j + k) % n, 1]
+        if ax + ay != bx + by:
+            return -1 if ax + ay < bx + by else 1
+        if ax != bx:
+            return -1 if ax < bx else 1
+    for k in range(m):
+        a, b = degrees[(s + k) % m], its_degrees[(t + k) % m]
+        if a != b:
+            return -1 if a < b else 1
+    return 0
+
+
+@compiled
+def _in_order(contours: ContourArrays, order: IntArray) -> ContourArrays:
+    """The contours of the given indices."""
+    count = len(order)
+    offsets, starts = np.zeros(count + 1, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
+    points, degrees = np.empty_like(contours.points), np.empty_like(contours.degrees)
+    for k in range(count):
+        c = order[k]
+        first, last = contours.starts[c], contours.starts[c + 1]
+        for i in range(last - first):
+            for axis in range(2):
+                points[starts[k] + i, axis] = contours.points[first + i, axis]
+        starts[k + 1] = starts[k] + last - first
+        first, last = contours.offsets[c], contours.offsets[c + 1]
+        for i in range(last - first):
+            degrees[offsets[k] + i] = contours.degrees[first + i]
+        offsets[k + 1] = offsets[k] + last - first
+    return ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)

@@ -1,0 +1,256 @@
+"""Points of a fixed number at equal arc lengths of contours, with tangents and curvature, compiled.
+
+Arc length is integrated, not summed along chords: each segment is cut in halves until Gauss and Legendre's rule of
+eight nodes over a part agrees with that over its two halves to ``EXACT`` of the segment's control polygon. A place is
+found by Newton's method in the part that holds it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled
+from ..curves.cubics import directions, jet, nearest_place, turns
+from ..types import BoolArray, FloatArray, IntArray
+from .canonical_outlines import lower_left
+from .contour_arrays import ContourArrays, Polylines
+from .segments import contour_cubics
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+EXACT = 1e-9
+"""Error of the length of a part of a segment, relative to the length of the segment's control polygon."""
+
+DEPTH = 24
+"""Most halvings of a segment: about a cusp, what is left then is too short to matter."""
+
+STILL = 1e-9
+"""Speed relative to the control polygon's length below which a place has no curvature."""
+
+
+class Resampled(NamedTuple):
+    """Points of C contours end to end.
+
+    Attributes:
+        points: (N, 2). tangents: (N, 2) of length 1, in the contour's direction; at a corner, of what follows.
+        curvature: (N,) signed, in 1/unit, positive where the contour turns left; NaN at a cusp.
+        corners: (N,) whether the point is the nearest, along the contour, of some corner.
+        offsets: (C + 1,) where each contour begins in the points.
+        lengths: (C,) arc lengths.
+    """
+
+    points: FloatArray
+    tangents: FloatArray
+    curvature: FloatArray
+    corners: BoolArray
+    offsets: IntArray
+    lengths: FloatArray
+
+
+@compiled
+def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resampled:
+    """``count`` points of each contour at equal arc lengths, from the one with the least x + y on.
+
+    Args:
+        contours: of segments that have lengths. count: at least 1.
+        corner_angle: turn in radians from which a joint is a corner.
+    """
+    C = len(contours.offsets) - 1
+    points, tangents, curvature = np.empty((C * count, 2)), np.empty((C * count, 2)), np.empty(C * count)
+    corners, lengths = np.zeros(C * count, dtype=np.bool_), np.empty(C)
+    for c in range(C):
+        cubics = contour_cubics(contours, c)
+        m, at = len(cubics), c * count
+        table, places, firsts = _lengths(cubics)
+        total = lengths[c] = table[-1]
+        start = lower_left(cubics)
+        s = min(int(start), m - 1)
+        k = firsts[s]
+        while k + 1 < firsts[s + 1] and places[k + 1] <= start - s:
+            k += 1
+        first = table[k] + _length(cubics, s, places[k], start - s)
+        for i in range(count):
+            along = first + total * (i / count)
+            if i == 0:
+                x = start - s
+            else:
+                if along >= total:
+                    along -= total
+                k = _part_of(table, along)
+                s = int(np.searchsorted(firsts, k, side="right")) - 1
+                end = places[k + 1] if k + 1 < firsts[s + 1] else 1.0
+                x = _place(cubics, s, places[k], end, along - table[k], table[k + 1] - table[k])
+            curvature[at + i] = _frame(cubics, s, x, points[at + i], tangents[at + i])
+            if contours.degrees[contours.offsets[c] + s] == 1:
+                curvature[at + i] = 0.0  # a line raised to a cubic has a rounding there
+        turned = turns(cubics, 0.0)
+        for j in range(m):
+            if abs(turned[j]) >= corner_angle:
+                along = (table[firsts[j]] - first) / total * count
+                corners[at + int(np.floor(along + 0.5)) % count] = True
+    return Resampled(points, tangents, curvature, corners, count * np.arange(C + 1), lengths)
+
+
+@compiled
+def at_vertices(contours: ContourArrays, polygons: Polylines, corner_angle: float) -> Resampled:
+    """The vertices of C polygons, with the tangents and curvatures of the contours where these are nearest.
+
+    Each begins with its vertex of the least x + y. ``corners`` are the vertices nearest to corners of the contours.
+    """
+    C = len(contours.offsets) - 1
+    N = len(polygons.points)
+    points, tangents, curvature = np.empty((N, 2)), np.empty((N, 2)), np.empty(N)
+    corners, lengths = np.zeros(N, dtype=np.bool_), np.empty(C)
+    near = np.empty(2)
+    for c in range(C):
+        cubics = contour_cubics(contours, c)
+        m = len(cubics)
+        table, _, _ = _lengths(cubics)
+        lengths[c] = table[-1]
+        a, n = polygons.offsets[c], polygons.offsets[c + 1] - polygons.offsets[c]
+        own = polygons.points[a : a + n]
+        first = 0
+        for i in range(1, n):
+            ahead = own[i, 0] + own[i, 1] - own[first, 0] - own[first, 1]
+            if ahead < 0.0 or (ahead == 0.0 and own[i, 0] < own[first, 0]):
+                first = i
+        for i in range(n):
+            x, y = own[(first + i) % n, 0], own[(first + i) % n, 1]
+            s, at = -1, 0.0
+            for j in range(m):
+                if cubics[j, 0, 0] == x and cubics[j, 0, 1] == y:
+                    s = j
+                    break
+            if s < 0:
+                place = nearest_place(cubics, 0.0, float(m), x, y)
+                s = min(int(place), m - 1)
+                at = place - s
+            curvature[a + i] = _frame(cubics, s, at, near, tangents[a + i])
+            if contours.degrees[contours.offsets[c] + s] == 1:
+                curvature[a + i] = 0.0
+            points[a + i, 0], points[a + i, 1] = x, y
+        turned = turns(cubics, 0.0)
+        for j in range(m):
+            if abs(turned[j]) >= corner_angle:
+                best, least = 0, np.inf
+                for i in range(n):
+                    dx, dy = points[a + i, 0] - cubics[j, 0, 0], points[a + i, 1] - cubics[j, 0, 1]
+                    if dx * dx + dy * dy < least:
+                        best, least = i, dx * dx + dy * dy
+                corners[a + best] = True
+    return Resampled(points, tangents, curvature, corners, polygons.offsets, lengths)
+
+
+@compiled(internal=True)
+def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Parts of segments whose lengths are exact.
+
+    Returns:
+        (P + 1,) arc length along the chain where each of P parts begins, and at the end; (P,) local parameter where it
+        begins; (m + 1,) the first part of each segment, and P.
+    """
+    m = len(cubics)
+    table, places, count = np.empty(4 * m + 64), np.empty(4 * m + 64), 0
+    firsts = np.empty(m + 1, dtype=np.int64)
+    todo = np.empty((DEPTH + 2, 4))  # from, to, length, depth
+    total = 0.0
+    for s in range(m):
+        firsts[s] = count
+        scale = 0.0
+        for k in range(3):
+            dx, dy = cubics[s, k + 1, 0] - cubics[s, k, 0], cubics[s, k + 1, 1] - cubics[s, k, 1]
+            scale += np.sqrt(dx * dx + dy * dy)
+        todo[0, 0], todo[0, 1], todo[0, 2], todo[0, 3] = 0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0.0
+        left = 1
+        while left > 0:
+            left -= 1
+            a, b, whole, depth = todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3]
+            middle = 0.5 * (a + b)
+            one, two = _length(cubics, s, a, middle), _length(cubics, s, middle, b)
+            if abs(one + two - whole) > EXACT * scale and depth < DEPTH:
+                todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3] = middle, b, two, depth + 1
+                left += 1
+                todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3] = a, middle, one, depth + 1
+                left += 1
+                continue
+            if count + 2 > len(table):
+                more, more_places = np.empty(2 * len(table)), np.empty(2 * len(table))
+                more[:count], more_places[:count] = table[:count], places[:count]
+                table, places = more, more_places
+            table[count], places[count] = total, a
+            count += 1
+            total += one + two
+    firsts[m] = count
+    table[count] = total
+    return table[: count + 1], places[:count], firsts
+
+
+@compiled(internal=True)
+def _length(cubics: FloatArray, s: int, a: float, b: float) -> float:
+    """Length of a part of segment s by Gauss and Legendre's rule."""
+    ax, ay = cubics[s, 1, 0] - cubics[s, 0, 0], cubics[s, 1, 1] - cubics[s, 0, 1]
+    bx, by = cubics[s, 2, 0] - cubics[s, 1, 0] - ax, cubics[s, 2, 1] - cubics[s, 1, 1] - ay
+    cx, cy = cubics[s, 3, 0] - cubics[s, 2, 0] - ax - 2 * bx, cubics[s, 3, 1] - cubics[s, 2, 1] - ay - 2 * by
+    half, total = 0.5 * (b - a), 0.0
+    for k in range(len(NODES)):
+        x = a + half * (1.0 + NODES[k])
+        dx, dy = ax + x * (2.0 * bx + x * cx), ay + x * (2.0 * by + x * cy)
+        total += WEIGHTS[k] * np.sqrt(dx * dx + dy * dy)
+    return 3.0 * half * total
+
+
+@compiled(internal=True)
+def _part_of(table: FloatArray, along: float) -> int:
+    """The part that holds an arc length: the last that begins at or before it."""
+    low, high = 0, len(table) - 2
+    while low < high:
+        middle = (low + high + 1) // 2
+        if table[middle] <= along:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+@compiled(internal=True)
+def _place(cubics: FloatArray, s: int, a: float, b: float, along: float, length: float) -> float:
+    """The parameter in [a, b] of segment s at so much arc length from a: Newton's method, and bisection about cusps."""
+    if not length > 0.0:
+        return a
+    low, high = a, b
+    x = a + (b - a) * min(max(along / length, 0.0), 1.0)
+    for _ in range(60):
+        ahead = _length(cubics, s, a, x) - along
+        if abs(ahead) <= EXACT * length:
+            break
+        if ahead > 0.0:
+            high = x
+        else:
+            low = x
+        _, _, dx, dy, _, _ = jet(cubics, s, x)
+        x -= ahead / np.sqrt(dx * dx + dy * dy)
+        if not low < x < high:
+            x = 0.5 * (low + high)
+    return x
+
+
+@compiled(internal=True)
+def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: FloatArray) -> float:
+    """Put down point and unit tangent at a parameter of segment s; returns the curvature."""
+    point[0], point[1], dx, dy, ex, ey = jet(cubics, s, x)
+    speed, scale = np.sqrt(dx * dx + dy * dy), 0.0
+    for k in range(3):
+        scale += abs(cubics[s, k + 1, 0] - cubics[s, k, 0]) + abs(cubics[s, k + 1, 1] - cubics[s, k, 1])
+    if speed > STILL * scale:
+        tangent[0], tangent[1] = dx / speed, dy / speed
+        return (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
+    ax, ay, bx, by = directions(cubics, s, 0.0)
+    if x < 0.5 and x > 1e-6:
+        ax, ay = ex, ey  # a cusp inside: what follows it goes where the second derivative points
+    elif x >= 0.5:
+        ax, ay = (bx, by) if x > 1.0 - 1e-6 else (ex, ey)
+    size = np.sqrt(ax * ax + ay * ay)
+    tangent[0], tangent[1] = ax / size, ay / size
+    return np.nan
