@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -19,6 +18,8 @@ from hypothesis import strategies as st
 import glyphspline as gs
 from glyphspline.curves.integrals import area
 from glyphspline.dataset import schema as columns
+from glyphspline.dataset.chunk_rows import empty_table
+from glyphspline.dataset.columns import ABOUT
 from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.dataset.rows import fits_of, table_of
 from glyphspline.dataset.schema import contour_types, schema
@@ -326,9 +327,10 @@ def test_coordinates_that_are_no_numbers_are_refused() -> None:
 
 
 def test_every_column_is_documented_and_has_its_unit() -> None:
-    documented = set(re.findall(r"\w+", columns.__doc__ or ""))
     layout = schema(DatasetSpec(rows="contour", raster=8))
-    assert {name for name in layout.names if name not in Measures.__dataclass_fields__} <= documented
+    assert empty_table(DatasetSpec(rows="contour", raster=8)).schema.names == list(ABOUT)
+    page = (FONTS.parent / "docs" / "datasets.md").read_text(encoding="utf-8")
+    assert "\n".join(f"| `{name}` | {about} |" for name, about in ABOUT.items()) in page
     assert layout.field("points").metadata == {b"unit": b"em"}
     assert layout.field("curvature").metadata == {b"unit": b"1/em"}
     assert layout.field("area_change").metadata == {b"unit": b"em^2"}

@@ -11,6 +11,7 @@ from typing import Any
 from ..extras import need
 from ..fitting.options import Options
 from ..types import counted
+from .columns import ABOUT
 from .dataset_spec import FIT, DatasetSpec
 from .dataset_summary import Summary
 from .licences import UNKNOWN
@@ -145,7 +146,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
             )
     yield ""
     yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape"
-    yield "that was trained on, or that stands twice in the split itself."
+    yield "that was trained on, or that stands twice in the split itself. Leave them out to test on new shapes."
     yield ""
     yield "## Licences"
     yield ""
@@ -180,11 +181,14 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     if (version := metadata.get(b"glyphspline.dataset.schema")) is not None:
         yield f"Schema version {version.decode()}."
         yield ""
-    yield "| column | type | unit |"
-    yield "|---|---|---|"
+    if spec.rows == "glyph":
+        yield "Of what a contour has, a row has a list with an item for each contour."
+        yield ""
+    yield "| column | type | unit | what it holds |"
+    yield "|---|---|---|---|"
     for field in schema:
         unit = (field.metadata or {}).get(b"unit", b"").decode()
-        yield f"| {field.name} | {_kind(str(field.type))} | {unit} |"
+        yield f"| {field.name} | {_kind(str(field.type))} | {unit} | {ABOUT[field.name]} |"
 
 
 def _kind(text: str) -> str:

@@ -1,45 +1,13 @@
 """The columns of a data set's rows, without those of their fonts: schema version 1.
 
-With ``rows="glyph"`` each column marked * is a list with an item for each contour; with ``rows="contour"`` it is that
-item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever way the font has them. Lengths
-are in em or in font units (*normalise*), y up; the metadata of each field says its unit.
+:mod:`.columns` says what they hold.
 
-================== ======================== ============================================================================
-schema_version     uint16                   of the row
-glyph, gid         string, uint32           glyph name and index
-codepoints         list<uint32>             its characters, ascending
-characters         string                   the same as text
-advance            double
-em                 double                   in the row's unit of length: 1, or units per em
-shape              string                   hash of the outline in em, rounded to 1/10,000 em: equal shapes have equal
-                                            ones; null where there is no contour
-contour            uint32                   with rows="contour": which of the glyph, from 0
-points *           list<point>              at equal arc lengths of the exact curve, from its point with the least x + y
-                                            on; the curve is the fit, if there is one, or else the outline. Or, with
-                                            ``points=None``, the vertices of the polygon, or the points where segments
-                                            meet, from that with the least x + y on
-tangents *         list<point>              of length 1, at the points; at a corner, of what follows it
-curvature *        list<float>              signed, at the points: positive where the contour turns left, as an outer
-                                            contour does where it is convex; null at a cusp
-corner *           list<bool>               whether the point is the nearest, along the contour, of a corner
-source_degrees *   list<uint8>              of the Bézier segments of the outline
-source_points *    list<point>              their points, each shared end once
-polygon *          list<point>              of the fit, as in :mod:`..writers.parquet`; null where nothing is fitted,
-                                            like all that follow but the raster
-closed *           list<bool>
-degree *           list<uint8>
-knots *            list<list<double>>
-control_points *   list<list<point>>
-footpoints *       list<list<double>>
-bezier_degrees *   list<uint8>
-bezier_points *    list<point>
-vertices *, …,     as in :class:`.Measures` null where it was not computed
-source_kept *
-raster             list<list<uint8>>        grey picture of the outline, first row on top: 255 where ink covers a pixel
-================== ======================== ============================================================================
+With ``rows="glyph"`` each column of :func:`contour_types` is a list with an item for each contour; with
+``rows="contour"`` it is that item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever
+way the font has them. Lengths are in em or in font units (*normalise*), y up; the metadata of each field says its unit.
 
 A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points,
-and the rows of a raster, have a fixed size in the schema too.
+and the rows of a raster, have a fixed size in the schema too. A measure is null where it was not computed.
 """
 
 from __future__ import annotations
