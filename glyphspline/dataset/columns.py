@@ -26,7 +26,7 @@ OF_CONTOURS = {
     "corner": "whether the point is the nearest, along the contour, of a corner",
     "source_degrees": "of the Bézier segments of the outline",
     "source_points": "their points (x, y), each shared end once",
-    "polygon": "points of the outline that the fit passes through; null without a fit, as what follows",
+    "polygon": "points of the outline that the fit passes through; null without a fit, as all down to `source_kept`",
     "closed": "of each spline of the contour: whether it is closed",
     "degree": "of each spline",
     "knots": "of each spline",
