@@ -152,8 +152,11 @@ def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
     assert contents(tmp_path / "set") == contents(tmp_path / "new")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "README.md").write_text("mine")
-    with pytest.raises(gs.OutputError, match="of no run"):
-        gs.dataset(FONTS / "variable.ttf", tmp_path / "other", PLAIN, jobs=0)
+    for restart in (False, True):
+        with pytest.raises(gs.OutputError, match="of no data set"):
+            gs.dataset(FONTS / "variable.ttf", tmp_path / "other", PLAIN, jobs=0, restart=restart)
+        (tmp_path / "other" / "dataset.json").write_text('{"name": "mine too"}')
+    assert [path.name for path in sorted((tmp_path / "other").iterdir())] == ["README.md", "dataset.json"]
 
 
 class Scrambled(Executor):

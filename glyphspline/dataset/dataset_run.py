@@ -11,6 +11,7 @@ from concurrent.futures import Executor
 from contextlib import nullcontext
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from ..batch.font_search import find_fonts
 from ..batch.schedule import AHEAD, pool_size, spread, workers
@@ -66,7 +67,7 @@ def dataset(
 
     Raises:
         OutputError: the folder cannot be written, another run writes to it, or it holds a data set of other options,
-            fonts or versions and ``restart`` is not given, or something else.
+            fonts or versions and ``restart`` is not given, or files that are of no data set.
         GlyphsplineError: there are no fonts, a list of them cannot be read, or pyarrow is not installed.
 
     Example:
@@ -104,27 +105,38 @@ def _scanned(pool: Executor, spec: DatasetSpec, paths: Sequence[Path]) -> Iterat
 
 def _prepare(out: str, plan: Plan, restart: bool) -> None:
     """Make sure that what is in the folder is of this run, or nothing."""
-    shards = store.listing(f"{out}/data")
-    if restart:
-        for name in shards:
-            if SHARD_NAME.fullmatch(name):
-                store.remove(f"{out}/data/{name}")
-        for name in (RECORD, FONTS, CARD):
+    shards = [name for name in store.listing(f"{out}/data") if SHARD_NAME.fullmatch(name)]
+    old = _record(out)
+    if old is None:
+        if shards or store.exists(f"{out}/{CARD}") or store.exists(f"{out}/{FONTS}"):
+            raise OutputError("holds files that are of no data set: give another folder", font=out)
+    elif restart:
+        for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, RECORD):
             if store.exists(f"{out}/{name}"):
                 store.remove(f"{out}/{name}")
-    elif store.exists(f"{out}/{RECORD}"):
-        with store.read(f"{out}/{RECORD}") as file:
-            try:
-                old = dict(json.loads(file.read()))
-            except (ValueError, TypeError) as error:
-                raise OutputError(f"cannot be read: {error}", font=f"{out}/{RECORD}") from error
-        changed = differences(old, json.loads(record_text(plan)))
-        if changed:
-            raise OutputError("holds another data set; --restart does it anew:\n  " + "\n  ".join(changed), font=out)
-    elif shards or store.exists(f"{out}/{CARD}"):
-        raise OutputError("holds files that are of no run: give another folder, or --restart", font=out)
+    elif changed := differences(old, json.loads(record_text(plan))):
+        raise OutputError("holds another data set; --restart does it anew:\n  " + "\n  ".join(changed), font=out)
     store.listing(out)  # removes what an interrupted run has left
     store.put(f"{out}/{RECORD}", record_text(plan))
+
+
+def _record(out: str) -> dict[str, Any] | None:
+    """The record of the data set in a folder; None if it has none.
+
+    Raises:
+        OutputError: a file of that name is no such record.
+    """
+    path = f"{out}/{RECORD}"
+    if not store.exists(path):
+        return None
+    with store.read(path) as file:
+        try:
+            record = json.loads(file.read())
+        except ValueError as error:
+            raise OutputError(f"cannot be read: {error}", font=path) from error
+    if not (isinstance(record, dict) and {"glyphspline", "spec"} <= record.keys()):
+        raise OutputError("is of no data set: give another folder", font=path)
+    return record
 
 
 def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Observer | None) -> Summary:
