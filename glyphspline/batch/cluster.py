@@ -13,6 +13,7 @@ import pickle
 import shutil
 import tempfile
 import threading
+import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
@@ -103,10 +104,16 @@ class ClusterExecutor(Executor):
         return future
 
     def _sent(self, path: Path) -> tuple[str, Any]:
-        """The name of a font, and its bytes in the cluster; sent again if all workers that had them are gone."""
-        if path not in self._fonts or self._fonts[path][1].status != "finished":
+        """The name of a font, and its bytes in the cluster, as the result of a call.
+
+        The cluster makes the result of a call again if the workers that had it are gone. Data that are scattered it
+        loses, and copies of them that a client releases and scatters again it has been seen to make without end.
+        """
+        if path not in self._fonts or self._fonts[path][1].status in ("cancelled", "error", "lost"):
             content = path.read_bytes()
-            there = self._client.scatter(content, broadcast=True, hash=True)
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", "Sending large graph")
+                there = self._client.submit(bytes, content, pure=False)
             self._fonts[path] = f"{sha256(content).hexdigest()}/{path.name}", there
         self._fonts.move_to_end(path)
         while len(self._fonts) > KEPT:  # the cluster keeps those that calls in flight need
