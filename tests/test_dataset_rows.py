@@ -19,7 +19,7 @@ import glyphspline as gs
 from glyphspline.curves.integrals import area
 from glyphspline.dataset import schema as columns
 from glyphspline.dataset.chunk_rows import empty_table
-from glyphspline.dataset.columns import ABOUT
+from glyphspline.dataset.dataset_columns import ABOUT
 from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.dataset.rows import fits_of, table_of
 from glyphspline.dataset.schema import contour_types, schema

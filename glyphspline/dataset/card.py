@@ -11,7 +11,7 @@ from typing import Any
 from ..extras import need
 from ..fitting.options import Options
 from ..types import counted
-from .columns import ABOUT
+from .dataset_columns import ABOUT
 from .dataset_spec import FIT, DatasetSpec
 from .dataset_summary import Summary
 from .licences import UNKNOWN

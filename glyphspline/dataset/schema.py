@@ -1,6 +1,6 @@
 """The columns of a data set's rows, without those of their fonts: schema version 1.
 
-:mod:`.columns` says what they hold.
+:mod:`.dataset_columns` says what they hold.
 
 With ``rows="glyph"`` each column of :func:`contour_types` is a list with an item for each contour; with
 ``rows="contour"`` it is that item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever
