@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.integrals import area
+from glyphspline.dataset import loading
 from glyphspline.dataset import schema as columns
 from glyphspline.dataset.chunk_rows import empty_table
 from glyphspline.dataset.dataset_columns import ABOUT
@@ -345,6 +346,12 @@ def test_a_newer_row_is_refused_and_a_missing_column_is_named() -> None:
         gs.load(row | {"schema_version": 99})
     with pytest.raises(gs.GlyphsplineError, match="source_points"):
         gs.load({name: value for name, value in row.items() if name != "source_points"})
+
+
+def test_a_newer_program_reads_an_older_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    (row,) = table_of([outline(polygon_contour(L_SHAPE))], None, UNFITTED).to_pylist()
+    monkeypatch.setattr(loading, "SCHEMA_VERSION", columns.SCHEMA_VERSION + 1)
+    assert gs.load(row).outline.name == "A"
 
 
 def test_rows_of_the_first_schema_are_read() -> None:

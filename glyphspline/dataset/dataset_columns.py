@@ -36,10 +36,13 @@ OF_CONTOURS = {
     "bezier_points": "their points (x, y), each shared end once",
 }
 
-OF_FONTS = {
+OF_OUTLINES = {
     "raster": "with `--raster`: grey picture of the outline, first row on top, 255 where ink covers a pixel",
     "script": 'of the first character, by ISO 15924: "Latn", or "Zyyy" (common); null without one',
     "category": 'of the first character, by Unicode: "Lu"; null without one',
+}
+
+OF_FONTS = {
     "family": "of the name table, as the style",
     "style": "of the name table, or of the named instance",
     "weight": "of OS/2 or the location: 400 is regular",
@@ -53,11 +56,14 @@ OF_FONTS = {
     "split": "the same as the file's",
     "font": "sha256 of the file: with face and location the key of `fonts.parquet`",
     "face": "which of the file's fonts",
+}
+
+OF_SETS = {
     "duplicate": "whether an earlier row, in this split or one before it, has the same shape",
 }
 
 MEASURED = {name: measure.about for name, measure in QUANTITIES.items()}
 MEASURED["max_curvature"] = "of the sharpest bend: 1/radius"
 
-ABOUT = OF_GLYPHS | OF_CONTOURS | MEASURED | OF_FONTS
+ABOUT = OF_GLYPHS | OF_CONTOURS | MEASURED | OF_OUTLINES | OF_FONTS | OF_SETS
 """By name, in the order in which a table has them."""

@@ -23,7 +23,7 @@ from .card import card, fonts_file
 from .chunk_rows import Made, RowsJob, empty_table, make_rows, names_of
 from .dataset_spec import DatasetSpec
 from .dataset_summary import Summary
-from .plan import CHUNK, Plan, Shard, Task, plan_of, record_text
+from .plan import Plan, Shard, Task, chunk_size, plan_of, record_text
 from .scan import FontFacts, ScanJob, scan_files, unread
 from .shards import OfFont, Shapes, add_shapes, finished, write_shard
 
@@ -189,7 +189,7 @@ def in_order(pool: Executor, job: RowsJob, chunks: Iterable[Sequence[Task]]) -> 
     """The rows of glyphs in the order of the tasks, from workers that finish in any; a few chunks are waited for."""
     due: deque[int] = deque()
     waiting: dict[int, tuple[Sequence[Task], Made]] = {}
-    most = 2 * AHEAD * pool_size(pool) * CHUNK
+    most = 2 * AHEAD * pool_size(pool) * chunk_size(job.spec)
 
     def few() -> Iterator[Sequence[Task]]:
         for chunk in chunks:

@@ -88,8 +88,7 @@ class Plan:
 
     def chunks(self, shard: Shard) -> Iterator[list[Task]]:
         """The tasks of a shard in order, in chunks of one font each."""
-        number = shard.start
-        size = max(1, min(CHUNK, CHUNK_BYTES // self.spec.glyph_bytes))
+        number, size = shard.start, chunk_size(self.spec)
         for piece in shard.pieces:
             for first in range(piece.first, piece.last, size):
                 last = min(first + size, piece.last)
@@ -113,6 +112,11 @@ class Plan:
     def digest(self) -> str:
         """A hash of the record: shards of one run have the same."""
         return _digest(self.record)
+
+
+def chunk_size(spec: DatasetSpec) -> int:
+    """Glyphs that a worker makes rows of at a time."""
+    return max(1, min(CHUNK, CHUNK_BYTES // spec.glyph_bytes))
 
 
 def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]]:

@@ -96,8 +96,8 @@ def installed() -> list[Path]:
 
 def thousands(fonts: Sequence[Path], here: Path) -> list[Row]:
     """A set of the Latin glyphs of thousands of fonts, without a fit."""
-    made = many(fonts, here / "fonts")
-    run = command("dataset", made, "--out", here / "many", "--script", "Latn", "--no-fit", "--jobs", "2")
+    copies = many(fonts, here / "fonts")
+    run = command("dataset", copies, "--out", here / "many", "--script", "Latn", "--no-fit", "--jobs", "2")
     what = f"a set of the Latin glyphs of {FONTS} fonts, {rows_of(here / 'many')} rows, `--jobs 2`"
     return [
         Row(what, run.seconds, "s", more=False),
