@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import cycle
 from pathlib import Path
+from time import perf_counter
 
 from .batch import least
 from .check import ANCHORED, LATIN, OTHER_LATIN
@@ -45,7 +46,7 @@ def rows() -> list[Row]:
     """The table of what whole sets cost."""
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
-        found = [*against_convert(here), *workers(here)]
+        found = [*against_convert(here), processors(), *workers(here)]
         if fonts := installed():
             found += [*thousands(fonts, here), *of_a_million(fonts, here)]
     return found
@@ -66,6 +67,21 @@ def against_convert(here: Path) -> list[Row]:
     )
     note = f"{in_words(table)}, {in_words(svg)}"
     return [Row(f"a set of {LATIN.name} with the fit against `convert --format svg`", svg / table, "x", 0.8, note=note)]
+
+
+def processors() -> Row:
+    """Two processes that share nothing beside one, in loops of the same length: what two workers can be at most."""
+    loop = [sys.executable, "-c", "x = 0.0\nfor i in range(30_000_000): x += i * 0.5"]
+
+    def seconds(count: int) -> float:
+        start = perf_counter()
+        for process in [subprocess.Popen(loop) for _ in range(count)]:
+            process.wait()
+        return perf_counter() - start
+
+    one, two = least(ROUNDS, lambda _: seconds(1), lambda _: seconds(2))
+    what = "two processes that share nothing against one, in loops of Python"
+    return Row(what, 2 * one / two, "x", note=f"{in_words(one)}, {in_words(two)} for twice the work")
 
 
 def workers(here: Path) -> Iterator[Row]:
