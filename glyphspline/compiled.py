@@ -1,53 +1,123 @@
-"""Compiled functions: the one decorator, and the instructions of LLVM that Python has no words for.
+"""Compiled functions: the one decorator, and where their machine code is kept.
 
-Numba keeps the machine code beside the source files, or in the user's cache folder where these cannot be written, or
-where :mod:`.cache` says. It compares a function's own file, not the files of the functions it calls: after an edit, run
-``make clean``.
+Code comes out of the wheel if that has some for this Python, Numba and processor, or else out of a folder of this
+user's, to which new code is written. A file of code is named by the function, the types of its arguments, and a stamp
+of all it was made from: the source files of the function and of every compiled function below it, and the constants
+that they use. After an edit of any of these the name is another one, so that nothing ever has to be cleared.
+
+With Numba's ``NUMBA_DISABLE_JIT=1`` nothing is compiled: the functions run as Python, for debuggers and coverage.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar, overload
+import json
+import logging
+import os
+import pickle
+import stat
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache, cached_property, update_wrapper
+from hashlib import blake2b
+from inspect import getfile
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any, TypeVar
 
-from llvmlite import ir
-from numba import config, njit, types
-from numba.extending import intrinsic
+import numba
+import numpy as np
+from numba import njit, types
+from numba.core import caching, event
+from numba.core.ccallback import CFunc
+from numba.core.compiler import CompileResult
+from numba.core.runtime import nrt
+from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
 
-from . import cache
-from .compiling import watched
+numba_jit: Any = njit
+
+JIT = not numba.config.DISABLE_JIT  # type: ignore[attr-defined, unused-ignore]
+"""Whether functions are compiled: Numba's own switch."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-if _place := cache.settle():
-    config.CACHE_DIR = _place  # type: ignore[attr-defined, unused-ignore]  # numba may know the environment of before
+PACKAGE = Path(__file__).parent
+
+SHIPPED = PACKAGE / "_compiled"
+"""The compiled code of a platform wheel, never written to; ``made_for.json`` in it says what the code runs on."""
+
+PLACE = "NUMBA_CACHE_DIR"
+"""Environment variable: the folder for code compiled here."""
+
+QUIET = "GLYPHSPLINE_QUIET"
+"""Environment variable: set where nobody wants to read that code is being compiled."""
+
+MONTH = 30 * 86400.0
+"""Seconds for which code of earlier sources is kept: going back to a branch does not compile again."""
+
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+CONSTANTS = (bool, int, float, str, bytes, tuple, np.generic, np.ndarray)
+"""Types of the global values that are part of a function's code."""
 
 
-@overload
-def compiled(function: Function, /) -> Function: ...
-@overload
-def compiled(*, internal: bool) -> Callable[[Function], Function]: ...
-def compiled(function: Callable[..., Any] | None = None, /, *, internal: bool = False) -> Any:
-    """Compile a function at its first call, cache the machine code, and release the interpreter's lock while it runs.
+class Compiled:
+    """A function that is compiled for the types of its arguments at its first call, and kept.
 
-    Division by zero gives an infinity or NaN, as in NumPy. No ``fastmath``: fused or reassociated operations depend on
-    what is inlined, which differs between code just compiled and code out of the cache. The last bits of a result
-    would differ too, and at a threshold the result itself.
+    The interpreter's lock is released while it runs. Division by zero gives an infinity or NaN, as in NumPy. No
+    ``fastmath``: fused or reassociated operations depend on what is inlined, which differs between code just compiled
+    and code out of a file. The last bits of a result would differ too, and at a threshold the result itself.
 
-    Args:
-        function: called with scalars, arrays and named tuples of them.
-        internal: only compiled code calls the function. There is no entry point for Python then, and a call from Python
-            ends the process. Every entry point is optimised again in each caller: without them the first
-            ``interpolate`` compiles in four fifths of the time.
+    Code for callers in Python is made apart from code for compiled callers. With an entry for Python in every function,
+    each caller would optimise the entries of all functions below it once more.
     """
-    options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-    if internal:
-        options["no_cpython_wrapper"] = True
 
-    def decorate(function: Callable[..., Any]) -> Any:
-        return watched(njit(**options)(function))
+    def __init__(self, function: Callable[..., Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        everything.append(self)
 
-    return decorate if function is None else decorate(function)
+    @cached_property
+    def entry(self) -> Any:
+        """Numba's dispatcher for callers in Python."""
+        return self._dispatcher("entry")
+
+    @cached_property
+    def inner(self) -> Any:
+        """Numba's dispatcher for compiled callers."""
+        return self._dispatcher("inner", no_cpython_wrapper=True)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What Numba takes the function for."""
+        return types.Dispatcher(self.inner)
+
+    def _dispatcher(self, role: str, **options: bool) -> Any:
+        made: Any = numba_jit(**OPTIONS, **options)(self.py_func)
+        made._cache = _Files(self.py_func, role)
+        return made
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the code for the types of the arguments."""
+        return self.entry(*arguments)
+
+    def __reduce__(self) -> str:
+        return self.py_func.__qualname__
+
+
+if not JIT:
+    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as compiled code has it
+
+everything: list[Compiled] = []
+"""The compiled functions of the modules that are imported."""
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function at its first call with scalars, arrays and named tuples of them: see :class:`Compiled`."""
+    return Compiled(function) if JIT else function  # type: ignore[return-value, unused-ignore]
 
 
 def inlined(function: Function) -> Function:
@@ -60,110 +130,229 @@ def inlined(function: Function) -> Function:
     return decorated  # type: ignore[no-any-return, unused-ignore]
 
 
-def _fma(context: Any, a: Any, b: Any, c: Any) -> Any:
-    """a b + c, rounded once: half the instructions of a product and a sum.
+def callback(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator for functions of fixed types that C libraries call, at their attribute ``address``."""
 
-    A compiler that may fuse products by itself does so differently in code just compiled and in code out of the cache.
-    Asked for one by one, the fused operations are what IEEE 754 says they are.
+    def decorate(function: Callable[..., Any]) -> Any:
+        made: Any = CFunc(function, normalize_signature(signature), locals={}, options={})
+        made._cache = _Files(function, "callback")
+        made.compile()
+        return made
+
+    return decorate
+
+
+class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
+    """Numba's interface to the kept code of one function: a file for each signature."""
+
+    def __init__(self, function: Callable[..., Any], role: str) -> None:
+        module = function.__module__.removeprefix(f"{__package__}.")
+        self._function, self._role, self._name = function, role, f"{module}.{function.__qualname__}.{role}"
+
+    def load_overload(self, signature: Any, target_context: Any) -> CompileResult | None:
+        """The code for a signature; None if there is none."""
+        nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
+        target = target_context.codegen().magic_tuple()
+        for folder, made_for in ((SHIPPED, shipped_target(target)), (own_folder(), target)):
+            if folder is not None and made_for is not None:
+                with suppress(OSError):
+                    content = (folder / self._file(signature, made_for)).read_bytes()
+                    return CompileResult._rebuild(target_context, *pickle.loads(content))
+        return None
+
+    def save_overload(self, signature: Any, code: Any) -> None:
+        """Keep code, and delete that of sources of long ago."""
+        folder = own_folder()
+        if folder is None or code.library.has_dynamic_globals:
+            return
+        file = folder / self._file(signature, code.codegen.magic_tuple())
+        with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, suffix=".tmp", delete=False) as new:
+            try:
+                new.write(dumps(code._reduce()))
+                new.close()
+                os.replace(new.name, file)
+            except OSError:
+                os.unlink(new.name)
+        for old in folder.glob(f"{self._name}-*.nbc"):
+            with suppress(OSError):
+                if old.stat().st_mtime < time.time() - MONTH:
+                    old.unlink()
+
+    def _file(self, signature: Any, target: tuple[str, ...]) -> str:
+        words = [numba.__version__, sys.implementation.cache_tag, str(signature), *target, stamp(self._function)]
+        return f"{self._name}-{blake2b(repr(words).encode(), digest_size=16).hexdigest()}.nbc"
+
+
+@cache
+def shipped_target(target: tuple[str, str, str]) -> tuple[str, str, str] | None:
+    """What the wheel's code was compiled for, if a target (triple, processor, its features) runs it."""
+    return None if why_not_shipped(target) else tuple(_made_for()["target"])
+
+
+def why_not_shipped(target: tuple[str, str, str]) -> str:
+    """Why this process cannot use the wheel's code; empty if it can."""
+    made_for = _made_for()
+    if not made_for:
+        return "this copy of glyphspline has no compiled code"
+    if made_for["numba"] != numba.__version__:
+        return f"the wheel's code is for numba {made_for['numba']}, and this is numba {numba.__version__}"
+    lacking = [feature for feature in made_for["features"] if f"+{feature}" not in target[2].split(",")]
+    if made_for["python"] != sys.implementation.cache_tag or made_for["target"][0] != target[0] or lacking:
+        return "the wheel's code is for another processor" + (f", with {', '.join(lacking)}" if lacking else "")
+    return ""
+
+
+@cache
+def _made_for() -> dict[str, Any]:
+    try:
+        made_for: dict[str, Any] = json.loads((SHIPPED / "made_for.json").read_text())
+    except OSError:
+        return {}
+    return made_for
+
+
+@cache
+def own_folder() -> Path | None:
+    """The folder for code compiled here: the first of a few that can be written to; None: there is none.
+
+    The user's choice, or beside the source files, or among the user's caches, or a folder among the temporary files,
+    which processes started from now on use too.
     """
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fma(*arguments)
-
-    return types.float64(types.float64, types.float64, types.float64), code
-
-
-def _select(context: Any, condition: Any, a: Any, b: Any) -> Any:
-    """``a if condition else b`` of two numbers of one type, both computed, without a branch.
-
-    Python's conditional expression becomes a branch, and a loop with branches does not become SIMD.
-    """
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.select(*arguments)
-
-    if isinstance(condition, types.Boolean) and a == b:
-        return a(condition, a, b), code
+    if sys.platform == "win32":
+        caches = os.environ.get("LOCALAPPDATA", "~/AppData/Local")
+    elif sys.platform == "darwin":
+        caches = "~/Library/Caches"
+    else:
+        caches = os.environ.get("XDG_CACHE_HOME", "~/.cache")
+    chosen = [Path(os.environ[PLACE])] if os.environ.get(PLACE) else []
+    for folder in (*chosen, PACKAGE / "__pycache__" / "compiled", Path(os.path.expanduser(caches)) / "glyphspline"):
+        if _can_write(folder):
+            return folder
+    with suppress(OSError):
+        folder = temporary_folder()
+        os.environ[PLACE] = str(folder)
+        return folder
     return None
 
 
-def _wide_vectors(context: Any) -> Any:
-    """Do nothing, but compile the calling function for the widest vectors of the processor.
+def _can_write(folder: Path) -> bool:
+    """Whether files can be written to a folder, which is made if there is none. Rights alone do not tell."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
 
-    LLVM stays at half of AVX-512 otherwise; the passes of the interpolation gain a tenth.
+
+def temporary_folder() -> Path:
+    """A folder among the temporary files that only this user can write to, the same one at each call.
+
+    Code in it is executed, so a folder of this name that somebody else has made is not used; a new one is, which only
+    this process and its children know.
+
+    Raises:
+        OSError: there is no folder for temporary files.
     """
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        # llvmlite's own list of attributes has none with a value.
-        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
-        return context.get_dummy_value()
-
-    return types.none(), code
-
-
-def _borrowed(context: Any, value: Any) -> Any:
-    """The same array, or named tuple of such, without a count of references; slices are not counted either.
-
-    Counting is atomic, some 5 ns up and 5 ns down for each argument and each slice: half of the time that setting up a
-    polygon of ten vertices took. The owner keeps the array until the last use, by :func:`keep_alive`.
-    """
-
-    def uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-        if isinstance(kind, types.BaseTuple):
-            parts: Any = kind
-            for k, part in enumerate(parts):
-                own = uncounted(context, builder, part, builder.extract_value(value, k))
-                value = builder.insert_value(value, own, k)
-        if not isinstance(kind, types.Array):
-            return value
-        same = context.make_array(kind)(context, builder, value=value)
-        same.meminfo = same.meminfo.type(None)
-        same.parent = same.parent.type(None)
-        return same._getvalue()
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return uncounted(context, builder, value, arguments[0])
-
-    return (value(value), code) if isinstance(value, types.Array | types.BaseTuple) else None
+    if not hasattr(os, "getuid"):  # Windows: temporary files are in the user's own folder
+        folder = Path(tempfile.gettempdir()) / "glyphspline-compiled"
+        folder.mkdir(exist_ok=True)
+        return folder
+    folder = Path(tempfile.gettempdir()) / f"glyphspline-{os.getuid()}-compiled"
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = folder.lstat()
+    if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
+        return folder
+    return Path(tempfile.mkdtemp(prefix=f"{folder.name}-"))
 
 
-def _keep_alive(context: Any, owners: Any) -> Any:
-    """Do nothing, but use the arrays: they live at least until here."""
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return context.get_dummy_value()
-
-    return types.none(owners), code
-
-
-def _store(context: Any, address: Any, word: Any) -> Any:
-    """Write an unsigned integer, lowest byte first, to an address of any alignment.
-
-    Eight characters at a time, and no array whose references are counted: a counted one takes four times as long as
-    writing a number. The owner keeps the array until the last use.
-    """
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        address, word = arguments
-        builder.store(word, builder.inttoptr(address, ir.PointerType(word.type)), align=1)
-        return context.get_dummy_value()
-
-    return types.void(types.uint64, word), code
+@cache
+def stamp(function: Callable[..., Any]) -> str:
+    """A hash of what a function's code is made from: source files, and constants out of other files."""
+    files, constants = set(), set()
+    for one in below(function):
+        files.add(getfile(one))
+        for name, value in globals_of(one):
+            if str(getattr(value, "__module__", "")).startswith(
+                f"{__package__}."
+            ):  # named tuples, instructions of LLVM
+                files.add(str(sys.modules[value.__module__].__file__))
+            elif isinstance(value, CONSTANTS):
+                constants.add((name, value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()))
+    return blake2b(repr((OPTIONS, sorted(map(_digest, files)), sorted(constants))).encode()).hexdigest()
 
 
-def _load(context: Any, address: Any) -> Any:
-    """The uint64 at an address."""
+@cache
+def below(function: Callable[..., Any]) -> frozenset[Callable[..., Any]]:
+    """A function and all compiled functions that it calls, directly or not: their code is part of its own."""
+    found, left = set(), [function]
+    while left:
+        one = left.pop()
+        if one not in found:
+            found.add(one)
+            left += [value.py_func for _, value in globals_of(one) if hasattr(value, "py_func")]
+    return frozenset(found)
 
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.load(builder.inttoptr(arguments[0], ir.PointerType(ir.IntType(64))), align=1)
 
-    return types.uint64(types.uint64), code
+def globals_of(function: Any) -> Iterator[tuple[str, Any]]:
+    """Names and values of what a function's code refers to outside of it."""
+    names = set(_names(function.__code__))
+    cells = (cell.cell_contents for cell in function.__closure__ or ())
+    values = dict(zip(function.__code__.co_freevars, cells, strict=True))
+    values |= {name: function.__globals__[name] for name in names & function.__globals__.keys()}
+    for name, value in values.items():
+        yield name, value
+        if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):
+            yield from ((member, getattr(value, member)) for member in names & vars(value).keys())
 
 
-fma: Any = intrinsic(_fma)
-select: Any = intrinsic(_select)
-wide_vectors: Any = intrinsic(_wide_vectors)
-borrowed: Any = intrinsic(_borrowed)
-keep_alive: Any = intrinsic(_keep_alive)
-store: Any = intrinsic(_store)
-load: Any = intrinsic(_load)
+def _names(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)
+
+
+@cache
+def _digest(file: str) -> bytes:
+    return blake2b(Path(file).read_bytes()).digest()
+
+
+class _Listener(event.Listener):  # type: ignore[misc, unused-ignore]
+    """Says in one line that this process compiles, and why; counts functions."""
+
+    def __init__(self) -> None:
+        self.depth = self.count = 0
+        self.observers: list[Callable[[], None]] = []
+
+    def on_start(self, event: Any) -> None:
+        if not self.count and not os.environ.get(QUIET):
+            target = event.data["dispatcher"].targetctx.codegen().magic_tuple()
+            why = why_not_shipped(target) or "its sources are not those of the wheel's code"
+            words = "compiling once, up to two minutes (%s); kept in %s"
+            logging.getLogger(__package__).warning(words, why, own_folder() or "no folder, as none can be written to")
+        self.depth, self.count = self.depth + 1, self.count + 1
+        self._tell()
+
+    def on_end(self, event: Any) -> None:
+        self.depth -= 1
+        self._tell()
+
+    def _tell(self) -> None:
+        for observer in self.observers:
+            observer()
+
+
+_listener = _Listener()
+event.register("numba:compile", _listener)
+
+
+def observe(observer: Callable[[], None]) -> None:
+    """Call a function from now on whenever the compilation of another one begins or ends in this process."""
+    _listener.observers.append(observer)
+
+
+def progress() -> str:
+    """What this process compiles at the moment, in words; empty if nothing."""
+    return f"compiling once: {_listener.count} functions so far" if _listener.depth else ""

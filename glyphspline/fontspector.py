@@ -14,7 +14,6 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from .cache import settle
 from .checks.finding import Finding, severity
 from .errors import GlyphsplineError
 from .extras import need
@@ -36,7 +35,6 @@ def main() -> int:
     """The command ``glyphspline-fontspector``; returns its exit status."""
     try:
         api = need("fontspector")
-        settle()
     except GlyphsplineError as error:
         sys.stderr.write(f"glyphspline-fontspector: {error}\n")
         return 2

@@ -16,16 +16,15 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"cache", "compiled", "compiling", "errors", "extras", "types", "_version"}
+BASE = {"compiled", "errors", "extras", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
 WRITERS = FITTING | {"checks", "readers", "layout", "writers"}
 PLAN = {
     "_version": set(),
-    "cache": {"errors"},
-    "compiled": {"cache", "compiling"},
-    "compiling": {"cache"},
+    "compiled": set(),
+    "intrinsics": {"compiled"},
     "errors": set(),
     "extras": {"errors"},
     "types": set(),

@@ -76,9 +76,10 @@ class ClusterExecutor(Executor):
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
         if preload is None:
-            from .warm import EVERYTHING, module_names
+            from .warm import WORK
+            from .warm import preload as everything
 
-            preload = module_names(EVERYTHING)
+            preload = everything(list(WORK))
         self._processes = Processes(seconds, tuple(preload))
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()

@@ -14,18 +14,19 @@ import math
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from importlib import import_module
 from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from ..errors import GlyphsplineError
+from . import preload as preloading
 
 POLL = 0.25
 """Seconds between checks for hung processes."""
@@ -82,12 +83,12 @@ def start_forkserver(preload: Sequence[str]) -> None:
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     kept = os.environ.pop("PYTHONSAFEPATH", None)
-    os.environ["PYTHONSAFEPATH"] = "1"
+    os.environ["PYTHONSAFEPATH"], os.environ[preloading.ASKED] = "1", " ".join(preload)
     try:
-        forkserver.set_forkserver_preload(list(preload))
+        forkserver.set_forkserver_preload([preloading.__name__])
         forkserver.ensure_running()
     finally:
-        del os.environ["PYTHONSAFEPATH"]
+        del os.environ["PYTHONSAFEPATH"], os.environ[preloading.ASKED]
         if kept is not None:
             os.environ["PYTHONSAFEPATH"] = kept
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
@@ -116,8 +117,9 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     global _last_sign, _limit
     _last_sign, _limit = sign, seconds
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
-    for name in preload:
-        import_module(name)
+    preloading.load(preload)
+    if compiled := sys.modules.get("glyphspline.compiled"):
+        compiled.observe(sign_of_life)  # a font has no say in how long compiling takes
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
     with suppress(EOFError, OSError):
         calls.send(None)
@@ -165,8 +167,8 @@ class WorkerPool(Executor):
     Args:
         size: how many processes.
         seconds: time limit between signs of life.
-        preload: modules to import before the first call: once, in the process from which the workers are forked. If
-            that runs already, for an earlier pool, each worker imports what it lacks.
+        preload: what to load before the first call, as :func:`.preload.load` takes it: once, in the process from which
+            the workers are forked. If that runs already, for an earlier pool, each worker loads what it lacks.
         expected: number of calls known to come; processes for them start at once.
     """
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from ..fitting.options import Options
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
-from .warm import module_names, modules_for
+from .warm import kinds_for, preload
 
 LARGEST_CHUNK = 40
 """Maximum number of glyphs in a call: enough to make the exchange cheap, few enough for a smooth progress bar."""
@@ -62,20 +62,20 @@ def workers(
         seconds: time limit of a batch, after which its worker is killed.
         options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
         expected: number of calls known to come.
-        also: names of modules of :mod:`.warm`, whose code is needed without options.
+        also: kinds of work of :mod:`.warm` besides.
         scheduler: address of a dask cluster, whose workers are used instead.
 
     Raises:
         GlyphsplineError: nothing answers at the address.
     """
-    preload = [*modules_for(options, formats, masters), *module_names(also)]
+    loaded = preload([*kinds_for(options, formats, masters), *also])
     if scheduler is not None:
         from .cluster import ClusterExecutor
 
-        return ClusterExecutor(scheduler, seconds, preload)
+        return ClusterExecutor(scheduler, seconds, loaded)
     if jobs == 0:
         return InProcess()
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, preload, expected)
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, loaded, expected)
 
 
 def pool_size(pool: Executor) -> int:

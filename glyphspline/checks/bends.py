@@ -83,7 +83,7 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
     return table[:count]
 
 
-@compiled(internal=True)
+@compiled
 def start_of(values: FloatArray, n: int, least: float) -> tuple[int, bool]:
     """Which of n curvatures comes first: one between bends, or else behind an inflection; and whether there is neither.
 
@@ -102,7 +102,7 @@ def start_of(values: FloatArray, n: int, least: float) -> tuple[int, bool]:
     return start, True
 
 
-@compiled(internal=True)
+@compiled
 def lumps_of(
     cubics: FloatArray, values: FloatArray, where: FloatArray, n: int, found: IntArray, number: int,
     before: int, behind: int, sign: float, whole: bool, least: float, height: float, contour: int,
@@ -155,14 +155,14 @@ def lumps_of(
     return table, count
 
 
-@compiled(internal=True)
+@compiled
 def point_at(cubics: FloatArray, place: float) -> tuple[float, float, float, float, float, float]:
     """Position, first and second derivative at a place of a chain; the end of the last piece is one too."""
     j = min(int(place), len(cubics) - 1)
     return jet(cubics, j, place - j)
 
 
-@compiled(internal=True)
+@compiled
 def turned(cubics: FloatArray, first: float, last: float, sign: float, whole: bool) -> float:
     """By how many radians a closed chain turns to one side, 1 or -1, between two places: the most on the way.
 

@@ -199,7 +199,7 @@ def contour_findings(
     return table[:count]
 
 
-@compiled(internal=True)
+@compiled
 def runs_back(cubics: FloatArray, i: int, j: int, degrees: IntArray) -> bool:
     """Whether the direction reverses from segment i to segment j, but for what rounding to whole units may make."""
     _, _, ax, ay = directions(cubics, i, NO_HANDLE)
@@ -212,7 +212,7 @@ def runs_back(cubics: FloatArray, i: int, j: int, degrees: IntArray) -> bool:
     return turn >= np.pi - ROUNDING * (1 / first + 1 / second)
 
 
-@compiled(internal=True)
+@compiled
 def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
     """For how long the two sides of a closed chain (m, 4, 2) lie on each other from a joint on, not farther apart.
 
@@ -254,7 +254,7 @@ def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
     return run
 
 
-@compiled(internal=True)
+@compiled
 def beside_chord(cubics: FloatArray, joint: int, k: int, x: float, y: float) -> float:
     """Distance of a point from the chord of number k that leads from a joint of a closed chain backwards."""
     m = len(cubics)
@@ -267,7 +267,7 @@ def beside_chord(cubics: FloatArray, joint: int, k: int, x: float, y: float) -> 
     return length(x - ax - along * dx, y - ay - along * dy)
 
 
-@compiled(internal=True)
+@compiled
 def winding(cubics: FloatArray, first: int, last: int, x: float, y: float, pieces: FloatArray) -> int:
     """How often the contour of the segments from ``first`` up to ``last`` runs around a point, counter-clockwise.
 

@@ -56,7 +56,7 @@ def joint_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) 
     return table[:count]
 
 
-@compiled(internal=True)
+@compiled
 def neighbour(cubics: FloatArray, a: int, b: int, j: int, step: int) -> int:
     """The next segment of the contour of segments a to b, exclusive, from j in steps of 1 or -1, that has an extent.
 
@@ -70,7 +70,7 @@ def neighbour(cubics: FloatArray, a: int, b: int, j: int, step: int) -> int:
     return j
 
 
-@compiled(internal=True)
+@compiled
 def handle(cubics: FloatArray, degrees: IntArray, j: int, last: bool) -> tuple[float, float]:
     """The first handle of a segment, or the last, in its direction and as long as it is before it is made a cubic."""
     ax, ay, bx, by = directions(cubics, j, NO_HANDLE)
@@ -78,7 +78,7 @@ def handle(cubics: FloatArray, degrees: IntArray, j: int, last: bool) -> tuple[f
     return (scale * bx, scale * by) if last else (scale * ax, scale * ay)
 
 
-@compiled(internal=True)
+@compiled
 def turn_of(ax: float, ay: float, bx: float, by: float) -> float:
     """Angle from one vector to another, positive to the left; NaN if one has no length."""
     if (ax == 0.0 and ay == 0.0) or (bx == 0.0 and by == 0.0):
@@ -86,7 +86,7 @@ def turn_of(ax: float, ay: float, bx: float, by: float) -> float:
     return np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
 
 
-@compiled(internal=True)
+@compiled
 def least_kink(ax: float, ay: float, bx: float, by: float, limits: Limits) -> float:
     """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make."""
     if not (is_whole(ax, ay) and is_whole(bx, by)):
@@ -104,13 +104,13 @@ def rounding_turn(before: float, behind: float) -> float:
     return CHANCE * np.sqrt(first * first + second * second + (first + second) ** 2)
 
 
-@compiled(internal=True)
+@compiled
 def is_whole(x: float, y: float) -> bool:
     """Whether both coordinates are whole numbers, but for rounding errors."""
     return abs(x - np.rint(x)) < 1e-6 and abs(y - np.rint(y)) < 1e-6
 
 
-@compiled(internal=True)
+@compiled
 def end_curvature(cubic: FloatArray, last: bool) -> float:
     """Curvature at an end of a cubic (4, 2) in its direction; not finite where the handle has no length."""
     i, j, k = (3, 2, 1) if last else (0, 1, 2)

@@ -80,7 +80,7 @@ def segment_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits
     return table[:count]
 
 
-@compiled(internal=True)
+@compiled
 def control_polygon(cubic: FloatArray) -> float:
     """Length of the control polygon."""
     total = 0.0
@@ -89,7 +89,7 @@ def control_polygon(cubic: FloatArray) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def all_whole(cubic: FloatArray) -> bool:
     """Whether all control points are in whole units."""
     whole = True
@@ -98,7 +98,7 @@ def all_whole(cubic: FloatArray) -> bool:
     return whole
 
 
-@compiled(internal=True)
+@compiled
 def off_axes(x: float, y: float, limits: Limits) -> float:
     """Angle of a line that is nearly horizontal or vertical with that direction; 0 of one that is exactly, or is not.
 
@@ -111,7 +111,7 @@ def off_axes(x: float, y: float, limits: Limits) -> float:
     return 0.0 if off < 1.5 and along < limits.slanted_length and is_whole(x, y) else angle
 
 
-@compiled(internal=True)
+@compiled
 def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
     """The roots of a t² + b t + c inside (0, 1), ascending; NaN for those that there are not. None at a double root."""
     first = second = np.nan
@@ -128,7 +128,7 @@ def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
     return first, second
 
 
-@compiled(internal=True)
+@compiled
 def turning_points(cubic: FloatArray, axis: int) -> tuple[float, float]:
     """The parameters inside a cubic where one coordinate is stationary; NaN for those that there are not."""
     a, b = cubic[1, axis] - cubic[0, axis], cubic[2, axis] - cubic[1, axis]
@@ -138,7 +138,7 @@ def turning_points(cubic: FloatArray, axis: int) -> tuple[float, float]:
     return quadratic_roots(a - 2 * b + c, 2 * (b - a), a)
 
 
-@compiled(internal=True)
+@compiled
 def passes(cubic: FloatArray, axis: int, t: float) -> float:
     """How far one coordinate at t is beyond those of both ends; NaN at NaN."""
     s = 1 - t
@@ -147,7 +147,7 @@ def passes(cubic: FloatArray, axis: int, t: float) -> float:
     return max(value - max(first, last), min(first, last) - value)
 
 
-@compiled(internal=True)
+@compiled
 def leaves_chord(cubic: FloatArray, x: float, y: float) -> float:
     """How far a cubic leaves its chord, of which (x, y) is the direction."""
     first = x * (cubic[1, 1] - cubic[0, 1]) - y * (cubic[1, 0] - cubic[0, 0])
@@ -159,7 +159,7 @@ def leaves_chord(cubic: FloatArray, x: float, y: float) -> float:
     return most
 
 
-@compiled(internal=True)
+@compiled
 def line_would_do(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, limits: Limits) -> bool:
     """Whether a line in a segment's place makes no kink where the segment joins its neighbours smoothly."""
     x, y = cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1]
@@ -173,7 +173,7 @@ def line_would_do(cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int,
     return True
 
 
-@compiled(internal=True)
+@compiled
 def reaches_beyond(cubic: FloatArray, limits: Limits) -> tuple[float, bool]:
     """Share by which a handle of a cubic reaches beyond where both handles meet, or beyond the other end; else 0.
 
@@ -205,7 +205,7 @@ def reaches_beyond(cubic: FloatArray, limits: Limits) -> tuple[float, bool]:
     return (most, alone) if most >= limits.handles else (0.0, False)
 
 
-@compiled(internal=True)
+@compiled
 def bends_back(
     cubics: FloatArray, degrees: IntArray, a: int, b: int, j: int, share: float, limits: Limits
 ) -> tuple[float, float]:

@@ -13,7 +13,7 @@ WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER = range(COLUMNS)
 in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1."""
 
 
-@compiled(internal=True)
+@compiled
 def add(
     table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float, other: int
 ) -> FloatArray:

@@ -437,14 +437,14 @@ def demo(
 
 @app.command()
 def warm(jobs: opt.Jobs = None, quiet: opt.Quiet = False) -> None:
-    """Compile everything now, so that no other command has to; done once after each installation."""
-    with errors(quiet=True):  # the bar tells
-        from ..batch.precompile import precompile
+    """Compile everything now, so that no other command has to: for checkouts and containers."""
+    with errors(quiet):
+        from ..batch.warm import warm as compile_all
 
         with progress(quiet, compiling=True) as observer:
-            total = precompile(jobs, observer)
+            compile_all(jobs, observer)
     if not quiet:
-        say(f"{total} functions are compiled")
+        say("everything is compiled")
 
 
 def demo_fonts() -> list[tuple[Path, str]]:

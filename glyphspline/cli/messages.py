@@ -12,20 +12,22 @@ import typer
 
 from . import interruption
 
+QUIET = "GLYPHSPLINE_QUIET"
+"""Environment variable that keeps processes from saying that they compile, as in :mod:`..compiled`."""
+
 
 @contextmanager
 def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
     """Print an expected error as one line on standard error and exit with status 2.
 
     Args:
-        quiet, json_log: of the command: how this process and those it starts tell what they compile.
+        quiet, json_log: of the command: nothing is said of compiling then.
     """
-    from ..cache import TELLS, settle
     from ..errors import GlyphsplineError
 
-    os.environ[TELLS] = "" if quiet else "json" if json_log else "line"
+    if quiet or json_log:
+        os.environ[QUIET] = "1"
     try:
-        settle()
         yield
     except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
         stop(str(error))
@@ -35,7 +37,7 @@ def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
         say(interruption.WORDS)
         raise typer.Exit(interruption.STATUS) from None
     finally:
-        del os.environ[TELLS]
+        os.environ.pop(QUIET, None)
 
 
 def say(line: str) -> None:

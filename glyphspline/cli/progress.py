@@ -29,7 +29,7 @@ def json_lines() -> Iterator[Any]:
 
 @contextmanager
 def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
-    """A bar of glyphs, or of functions that are compiled, on standard error, if that is a terminal.
+    """A bar of glyphs, or of kinds of work that are compiled, on standard error, if that is a terminal.
 
     It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar.
     """
@@ -48,7 +48,7 @@ def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
 
     columns: list[Any] = [BarColumn(), MofNCompleteColumn()]
     if compiling:
-        columns = [TextColumn("compiling"), *columns, TextColumn("functions"), TimeElapsedColumn()]
+        columns = [TextColumn("compiling"), *columns, TextColumn("kinds of work"), TimeElapsedColumn()]
     else:
         rate, failures = TextColumn("{task.fields[rate]:.0f}/s"), TextColumn("{task.fields[failed]} failed")
         columns += [rate, TimeRemainingColumn(), failures]
@@ -56,7 +56,7 @@ def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
     task = bar.add_task("", total=None, rate=0.0, failed=0)
 
     def observe(done: int, total: int, failed: int = 0) -> None:
-        bar.start()  # not before, of glyphs: until then the line belongs to what is compiled
+        bar.start()  # not before: it would run over a line that says what is compiled
         bar.update(task, completed=done, total=total or None, failed=failed, rate=bar.tasks[0].speed or 0.0)
 
     try:

@@ -42,7 +42,7 @@ class Chains(NamedTuple):
     groups: FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
     """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,), which may begin at any number."""
     m = len(cubics)
@@ -67,13 +67,13 @@ def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
     return Chains(cubics, own, owners, bends, boxes, groups)
 
 
-@compiled(internal=True)
+@compiled
 def from_box(box: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a box (4,)."""
     return length(max(max(box[0] - x, x - box[2]), 0.0), max(max(box[1] - y, y - box[3]), 0.0))
 
 
-@compiled(internal=True)
+@compiled
 def reached(cubic: FloatArray, guess: float, x: float, y: float) -> tuple[float, float]:
     """The parameter of a cubic (4, 2) near a guess that is nearest a point, and its distance; never worse than the
     guess."""
@@ -85,7 +85,7 @@ def reached(cubic: FloatArray, guess: float, x: float, y: float) -> tuple[float,
     return (z, d) if d <= before else (guess, before)
 
 
-@compiled(internal=True)
+@compiled
 def point(cubic: FloatArray, z: float) -> tuple[float, float]:
     """The point of a cubic (4, 2) at a parameter."""
     y = 1.0 - z
@@ -96,7 +96,7 @@ def point(cubic: FloatArray, z: float) -> tuple[float, float]:
     )
 
 
-@compiled(internal=True)
+@compiled
 def neighbour(chains: Chains, s: int, step: int) -> int:
     """The segment after (1) or before (-1) segment s of its contour."""
     c = chains.owners[s]
@@ -105,7 +105,7 @@ def neighbour(chains: Chains, s: int, step: int) -> int:
     return first if s == last else last - 1 if s < first else s
 
 
-@compiled(internal=True)
+@compiled
 def nearest_on(
     chains: Chains, s: int, x: float, y: float, best: float, slack: float, places: FloatArray
 ) -> tuple[float, float]:
@@ -146,7 +146,7 @@ def nearest_on(
     return at, best
 
 
-@compiled(internal=True)
+@compiled
 def nearest_of_outline(
     chains: Chains, x: float, y: float, s: int, z: float, slack: float, places: FloatArray
 ) -> tuple[int, float, float]:

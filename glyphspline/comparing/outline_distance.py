@@ -114,7 +114,7 @@ def outline_distances(
     return found
 
 
-@compiled(internal=True)
+@compiled
 def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
     """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distances`."""
     places, sections, marks = np.empty((STACK, 2)), np.empty((2, 4, 2)), np.empty((DEEPEST + 2, 7))
@@ -181,7 +181,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
     row[BOUND] = max(bound, row[SEEN]) + ROUNDING * max(extent(old.cubics), extent(new.cubics))
 
 
-@compiled(internal=True)
+@compiled
 def note(
     row: FloatArray, d: float, x: float, y: float, side: int, contour: int, other: Chains, s: int, z: float
 ) -> None:
@@ -190,7 +190,7 @@ def note(
     row[NEAR_X], row[NEAR_Y] = point(other.cubics[s], z)
 
 
-@compiled(internal=True)
+@compiled
 def section_bound(
     cubic: FloatArray, low: float, high: float, other: Chains, s0: int, z0: float, s1: int, z1: float, limit: float,
     sections: FloatArray,
@@ -226,7 +226,7 @@ def section_bound(
     return best
 
 
-@compiled(internal=True)
+@compiled
 def stretch_bound(
     cubic: FloatArray, low: float, high: float, other: Chains, s: int, z: float, z_end: float, step: int, joints: int,
     limit: float, sections: FloatArray,
@@ -252,7 +252,7 @@ def stretch_bound(
     return most
 
 
-@compiled(internal=True)
+@compiled
 def paired(
     cubic: FloatArray, low: float, high: float, other: FloatArray, z0: float, z1: float, sections: FloatArray
 ) -> float:
@@ -280,7 +280,7 @@ def hull_distances(old: FloatArray, old_offsets: IntArray, new: FloatArray, new_
     return found
 
 
-@compiled(internal=True)
+@compiled
 def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
     """(C, DIRECTIONS + 1) extents of contours, and the square roots of the areas of the polygons of their points."""
     found = np.full((len(offsets) - 1, DIRECTIONS + 1), -np.inf)

@@ -73,7 +73,7 @@ def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tu
     return samples[: starts[m]], starts
 
 
-@compiled(internal=True)
+@compiled
 def tame_samples(cubics: FloatArray, j: int, spacing: float, angle: float, flat: float) -> tuple[float, float]:
     """Length of a tame piece and the number of intervals it needs; -1 and 0 for other pieces."""
     ax, ay = cubics[j, 1, 0] - cubics[j, 0, 0], cubics[j, 1, 1] - cubics[j, 0, 1]
@@ -97,7 +97,7 @@ def tame_samples(cubics: FloatArray, j: int, spacing: float, angle: float, flat:
     return length, max(length / spacing, turn / angle)
 
 
-@compiled(internal=True)
+@compiled
 def sample_evenly(cubics: FloatArray, j: int, length: float, n: int, samples: FloatArray) -> None:
     """Write frames at n + 1 even parameters of a piece without zero speed to ``samples`` (n + 1, 6)."""
     x0, y0, x1, y1 = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
@@ -120,7 +120,7 @@ def sample_evenly(cubics: FloatArray, j: int, length: float, n: int, samples: Fl
     samples[0, WEIGHT] = samples[n, WEIGHT] = 0.5 * (length / n)
 
 
-@compiled(internal=True)
+@compiled
 def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle: float) -> float:
     """Number of intervals that a piece needs, from its chords.
 
@@ -156,7 +156,7 @@ def measure(cubics: FloatArray, j: int, table: FloatArray, spacing: float, angle
     return samples
 
 
-@compiled(internal=True)
+@compiled
 def sample_by_length(cubics: FloatArray, j: int, table: FloatArray, n: int, samples: FloatArray) -> None:
     """Write frames at the n + 1 points that divide a piece evenly by its table to ``samples`` (n + 1, 6)."""
     size, whole = size_of(cubics, j), table[SHARES, TABLE]
@@ -180,7 +180,7 @@ def sample_by_length(cubics: FloatArray, j: int, table: FloatArray, n: int, samp
         behind = length
 
 
-@compiled(internal=True)
+@compiled
 def size_of(cubics: FloatArray, j: int) -> float:
     """Largest distance, along either axis, of a control point of piece j from its first."""
     size = 0.0
@@ -190,7 +190,7 @@ def size_of(cubics: FloatArray, j: int) -> float:
     return size
 
 
-@compiled(internal=True)
+@compiled
 def frame(cubics: FloatArray, j: int, t: float, size: float) -> tuple[float, float, float, float, float]:
     """Point, unit normal to the left and signed curvature of piece j, whose :func:`size_of` is ``size``.
 

@@ -84,7 +84,7 @@ def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[F
     return found[:count], complete
 
 
-@compiled(internal=True)
+@compiled
 def glyph_meetings(
     cubics: FloatArray, offsets: IntArray, first: int, last: int, found: FloatArray, count: int
 ) -> tuple[FloatArray, int, bool]:
@@ -180,7 +180,7 @@ def glyph_meetings(
     return found, count, True
 
 
-@compiled(internal=True)
+@compiled
 def chord_error(cubic: FloatArray) -> float:
     """Bound of the distance of a cubic (4, 2) from its chord; halving it makes the bounds of the halves a quarter.
 
@@ -202,7 +202,7 @@ def chord_error(cubic: FloatArray) -> float:
     return 0.75 * whole
 
 
-@compiled(internal=True)
+@compiled
 def parameter_at(cubic: FloatArray, share: float) -> float:
     """The parameter at which a cubic that hardly differs from its chord has run a share of it; NaN of NaN."""
     x, y = cubic[3, 0] - cubic[0, 0], cubic[3, 1] - cubic[0, 1]
@@ -222,7 +222,7 @@ def parameter_at(cubic: FloatArray, share: float) -> float:
     return (low + high) / 2
 
 
-@compiled(internal=True)
+@compiled
 def same_points(A: FloatArray, B: FloatArray) -> int:
     """1 if two pieces have the same Bézier points, -1 if in reverse, or else 0."""
     same = back = True
@@ -232,7 +232,7 @@ def same_points(A: FloatArray, B: FloatArray) -> int:
     return 1 if same else -1 if back else 0
 
 
-@compiled(internal=True)
+@compiled
 def legs(cubic: FloatArray) -> float:
     """Length of a control polygon (4, 2), every leg as |x| + |y|."""
     total = 0.0
@@ -241,7 +241,7 @@ def legs(cubic: FloatArray) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int, which: int) -> int:
     """Replace the pair at the top of the stack by two, with the halves of A (``which`` 0) or B (1)."""
     one, other = (A, B) if which == 0 else (B, A)
@@ -259,7 +259,7 @@ def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top
     return top + 1
 
 
-@compiled(internal=True)
+@compiled
 def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int) -> int:
     """Replace a piece's pair with itself by those of its halves, with themselves and with each other."""
     split(A[top], 0.5, A[top + 1])
@@ -275,7 +275,7 @@ def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArr
     return top + 2
 
 
-@compiled(internal=True)
+@compiled
 def decided(A: FloatArray, B: FloatArray, kind: int) -> bool:
     """Whether Bézier points prove that two pieces do not meet, but for their joint; or one piece not itself."""
     if kind & SELF:
@@ -296,7 +296,7 @@ def decided(A: FloatArray, B: FloatArray, kind: int) -> bool:
     return beside(A, B) or beside(B, A)
 
 
-@compiled(internal=True)
+@compiled
 def beside(A: FloatArray, B: FloatArray) -> bool:
     """Whether a line along the chord of A separates A's Bézier points from B's."""
     x, y = A[3, 0] - A[0, 0], A[3, 1] - A[0, 1]
@@ -312,7 +312,7 @@ def beside(A: FloatArray, B: FloatArray) -> bool:
     return least > high + slack or most < low - slack
 
 
-@compiled(internal=True)
+@compiled
 def runs_forward(A: FloatArray, B: FloatArray) -> bool:
     """Whether all legs of A, and of B that follows it or is A, run along the chord from the first point to the last."""
     x, y = B[3, 0] - A[0, 0], B[3, 1] - A[0, 1]
@@ -324,7 +324,7 @@ def runs_forward(A: FloatArray, B: FloatArray) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def leaves_apart(A: FloatArray, B: FloatArray) -> bool:
     """Whether A, run back from its end, and B, which begins there, run within cones that share no direction."""
     sign = 0.0
@@ -341,7 +341,7 @@ def leaves_apart(A: FloatArray, B: FloatArray) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def meeting(A: FloatArray, B: FloatArray, touch: float) -> tuple[float, float, float, float]:
     """Where the chords of two pieces meet: parameters x, y of A and B, then NaN if they cross there, and else those
     where their contact ends. x is -1 if they do not meet.

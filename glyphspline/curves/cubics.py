@@ -27,7 +27,7 @@ COARSE = 8
 """Intervals a segment whose ends are compared for a first guess of the nearest point."""
 
 
-@compiled(internal=True)
+@compiled
 def length(x: float, y: float) -> float:
     """Length of a vector whose square neither over- nor underflows: in a third of the time of ``hypot``."""
     return np.sqrt(x * x + y * y)
@@ -55,7 +55,7 @@ def raised(points: FloatArray, degrees: IntArray) -> FloatArray:
     return cubics
 
 
-@compiled(internal=True)
+@compiled
 def jet(cubics: FloatArray, s: int, x: float) -> tuple[float, float, float, float, float, float]:
     """Position, first and second derivative by the local parameter of segment s."""
     y = 1 - x
@@ -71,7 +71,7 @@ def jet(cubics: FloatArray, s: int, x: float) -> tuple[float, float, float, floa
     return px, py, dx, dy, 6 * (rx - lx), 6 * (ry - ly)
 
 
-@compiled(internal=True)
+@compiled
 def newton_step(at: float, slope: float, speed: float, bend: float, low: float, high: float) -> float:
     """Newton's next estimate of a nearest point, in [low, high]; Gauss and Newton's where the distance is not convex.
 
@@ -81,7 +81,7 @@ def newton_step(at: float, slope: float, speed: float, bend: float, low: float, 
     return min(max(at - slope / (bend if bend > CONVEX * speed else speed), low), high)
 
 
-@compiled(internal=True)
+@compiled
 def nearest(cubic: FloatArray, low: float, high: float, guess: float, x: float, y: float) -> float:
     """The parameter in [low, high] at which a cubic (4, 2) is nearest (x, y): Newton's method from a guess.
 
@@ -107,7 +107,7 @@ def nearest(cubic: FloatArray, low: float, high: float, guess: float, x: float, 
     return at
 
 
-@compiled(internal=True)
+@compiled
 def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
     """The place between two places of a closed chain that is nearest (x, y), as far as coarse points tell."""
     m = len(cubics)
@@ -128,7 +128,7 @@ def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: floa
     return s + z if (px - x) ** 2 + (py - y) ** 2 <= best else at
 
 
-@compiled(internal=True)
+@compiled
 def split(cubic: FloatArray, x: float, first: FloatArray) -> None:
     """Cut a cubic (4, 2) by de Casteljau's rule: its part before x into ``first``, that after x in its own place."""
     for k in range(2):
@@ -140,7 +140,7 @@ def split(cubic: FloatArray, x: float, first: FloatArray) -> None:
         cubic[0, k], cubic[1, k], cubic[2, k], cubic[3, k] = middle, bde, de, e
 
 
-@compiled(internal=True)
+@compiled
 def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
     """Bézier points (4, 2) of a cubic between two parameters, by blossoming."""
     for c in range(2):
@@ -154,7 +154,7 @@ def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
             out[k, c] = p + x * (q - p)
 
 
-@compiled(internal=True)
+@compiled
 def extent(cubics: FloatArray) -> float:
     """The largest coordinate of (m, 4, 2) Bézier points."""
     most = 0.0
@@ -164,7 +164,7 @@ def extent(cubics: FloatArray) -> float:
     return most
 
 
-@compiled(internal=True)
+@compiled
 def directions(cubics: FloatArray, s: int, least: float) -> tuple[float, float, float, float]:
     """Where segment s leaves its first point, and where it arrives at its last: vectors along the tangents.
 
@@ -230,7 +230,7 @@ def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
     return table
 
 
-@compiled(internal=True)
+@compiled
 def spline_beziers(controls: FloatArray, knots: FloatArray, closed: bool, cubics: FloatArray) -> None:
     """Bézier points of a cubic B-spline, a segment a span, into ``cubics`` (n, 4, 2).
 

@@ -76,7 +76,7 @@ def curvature_extrema(cubics: FloatArray, length: float, corner: float) -> int:
     return count
 
 
-@compiled(internal=True)
+@compiled
 def first_of(values: FloatArray, n: int) -> int:
     """Index of the first corner among n curvatures, or else of the largest of all.
 
@@ -92,7 +92,7 @@ def first_of(values: FloatArray, n: int) -> int:
     return start
 
 
-@compiled(internal=True)
+@compiled
 def swings(
     values: FloatArray, n: int, first: int, last: int, sign: float, share: float, least: float, found: IntArray
 ) -> int:
@@ -123,7 +123,7 @@ def swings(
     return count
 
 
-@compiled(internal=True)
+@compiled
 def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatArray, FloatArray, int]:
     """Signed curvature in order along a contour, at both ends and all extrema of each piece, NaN at each corner.
 
@@ -164,7 +164,7 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
     return values, where, n
 
 
-@compiled(internal=True)
+@compiled
 def _polynomials(cubics: FloatArray, j: int, size: float) -> tuple[bool, Coefficients, Coefficients, Coefficients]:
     """Whether a piece is bent at all, and of the piece divided by its size three polynomials: the cross product of
     velocity and acceleration, the squared speed, and speed⁶ dκ/ds, whose roots are the extrema of curvature.
@@ -191,7 +191,7 @@ def _polynomials(cubics: FloatArray, j: int, size: float) -> tuple[bool, Coeffic
     return bent, (x0, x1, x2), (s0, s1, s2, s3, s4), slope
 
 
-@compiled(internal=True)
+@compiled
 def _places(q: Coefficients, places: FloatArray) -> int:
     """Write 0, the roots of a quintic between 0 and 1, and 1 to ``places``, ascending; returns their number.
 

@@ -61,7 +61,7 @@ def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, po
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def outside(hull: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a convex polygon, 0 within."""
     n = len(hull)
@@ -82,7 +82,7 @@ def outside(hull: FloatArray, x: float, y: float) -> float:
     return np.sqrt(nearest)
 
 
-@compiled(internal=True)
+@compiled
 def convex_hull(points: FloatArray) -> FloatArray:
     """The convex hull, counter-clockwise, by Andrew's monotone chain."""
     n = len(points)
@@ -110,7 +110,7 @@ def convex_hull(points: FloatArray) -> FloatArray:
     return hull[: max(count, 1)]
 
 
-@compiled(internal=True)
+@compiled
 def side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
     """Positive where p lies to the left of the line from a to b."""
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)

@@ -19,7 +19,7 @@ ROUNDING = 1e-13
 """Share of the largest coordinate added to a bound for floating point."""
 
 
-@compiled(internal=True)
+@compiled
 def points_apart(A: FloatArray, B: FloatArray, first: int, last: int) -> float:
     """Largest distance of the Bézier points (4, 2) of two cubics, of those from ``first`` up to ``last``."""
     most = 0.0

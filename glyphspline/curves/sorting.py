@@ -8,7 +8,7 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 
 
-@compiled(internal=True)
+@compiled
 def ascending(keys: FloatArray) -> IntArray:
     """Indices that sort some keys (n,), by Shell's method; of equal ones the first comes first."""
     n = len(keys)
@@ -32,7 +32,7 @@ def ascending(keys: FloatArray) -> IntArray:
     return order
 
 
-@compiled(internal=True)
+@compiled
 def in_order(values: FloatArray) -> FloatArray:
     """Values (n,), sorted."""
     order, result = ascending(values), np.empty(len(values))

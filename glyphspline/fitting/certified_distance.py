@@ -117,7 +117,7 @@ def pair_stretches(
     return bounds, gaps
 
 
-@compiled(internal=True)
+@compiled
 def pair_cubic(
     cubics: FloatArray, i: int, x: float, x_end: float, outline: FloatArray, y: float, y_end: float, coarse: bool,
     enough: float, sharpness: float, bound: float, gap: float, where: float, work: FloatArray, marks: FloatArray,
@@ -183,7 +183,7 @@ def pair_cubic(
     return bound, gap, where
 
 
-@compiled(internal=True)
+@compiled
 def near_place(cubics: FloatArray, place: float, low: float, high: float, x: float, y: float) -> float:
     """The place in [low, high] of a closed chain near which (x, y) has its nearest point, from one in between."""
     m = len(cubics)
@@ -211,7 +211,7 @@ def near_place(cubics: FloatArray, place: float, low: float, high: float, x: flo
     return at
 
 
-@compiled(internal=True)
+@compiled
 def measure_spans(
     pieces: FloatArray, outline: FloatArray, places: FloatArray, enough: float, sharpness: float, bounds: FloatArray,
     gaps: FloatArray, worst: FloatArray, ends: FloatArray,

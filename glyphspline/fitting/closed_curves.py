@@ -72,7 +72,7 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
     return pieces, written
 
 
-@compiled(internal=True)
+@compiled
 def chords_of(points: FloatArray, ratio: float) -> tuple[FloatArray, bool]:
     """(n,) distance from each vertex to the next, the last to the first; whether adjacent ones are within a ratio."""
     n = len(points)

@@ -120,7 +120,7 @@ def geometry(
     return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before)
 
 
-@compiled(internal=True)
+@compiled
 def _bends(cubics: FloatArray, degrees: IntArray) -> tuple[float, float, float]:
     """Length, bending energy and largest absolute curvature of some segments; lines have no more than a length."""
     length = energy = curvature = 0.0

@@ -129,7 +129,7 @@ def pair_stacks(
     return bounds
 
 
-@compiled(internal=True)
+@compiled
 def _bound_of_pair(
     A: FloatArray, B: FloatArray, results: FloatArray, sources: FloatArray, x0: float, x1: float, y0: float, y1: float,
     arc: FloatArray, closed: bool, enough: float, scratch: FloatArray,
@@ -169,7 +169,7 @@ def _bound_of_pair(
     return min(plain, max(_slip_bound(slip[0], V), _slip_bound(slip[1], V)))
 
 
-@compiled(internal=True)
+@compiled
 def _slip_bound(slip: FloatArray, V: int) -> float:
     """The bound in one direction, from what :func:`_add_part` gathered."""
     alone, mixed, ratio = slip[0], slip[1], slip[3] / slip[2]
@@ -177,7 +177,7 @@ def _slip_bound(slip: FloatArray, V: int) -> float:
     return alone if mixed <= alone else share * alone + (1 - share) * mixed
 
 
-@compiled(internal=True)
+@compiled
 def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArray, enough: float) -> bool:
     """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and the least and largest e·h; False unless
     all e·h are positive and the slip bound is still small ``enough``: more parts never make it smaller.
@@ -207,7 +207,7 @@ def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArr
     return _slip_bound(slip, V) <= enough
 
 
-@compiled(internal=True)
+@compiled
 def _follow(
     chains: FloatArray, D: FloatArray, side: int, first: float, last: float, closed: bool, reach: float, ex: float,
     ey: float, slip: FloatArray, enough: float, scratch: FloatArray,
@@ -248,7 +248,7 @@ def _follow(
     return False, False
 
 
-@compiled(internal=True)
+@compiled
 def _squares(chains: FloatArray, s: int, z: float, point: FloatArray) -> float:
     """The squared distance of the instances' points at z of segment s from (V, 2) points, summed."""
     total = 0.0
@@ -258,7 +258,7 @@ def _squares(chains: FloatArray, s: int, z: float, point: FloatArray) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def nearest_stacked(chains: FloatArray, s: int, low: float, high: float, point: FloatArray) -> tuple[float, float]:
     """The parameter in [low, high] of segment s at which all instances together are nearest to (V, 2) points, and the
     squared distance there, summed.

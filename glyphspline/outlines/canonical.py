@@ -8,7 +8,7 @@ from ..compiled import compiled
 from ..types import FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def farthest_joint(joints: FloatArray) -> int:
     """Index of the joint (m, 2) farthest from the mean of all; ties go to the rightmost, then the uppermost."""
     m = len(joints)
@@ -26,7 +26,7 @@ def farthest_joint(joints: FloatArray) -> int:
     return best
 
 
-@compiled(internal=True)
+@compiled
 def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
     """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether it was reversed.
 

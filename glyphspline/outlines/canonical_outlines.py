@@ -110,7 +110,7 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
     return found, keys, kept
 
 
-@compiled(internal=True)
+@compiled
 def lower_left(cubics: FloatArray) -> float:
     """Place of the point of a closed chain (m, 4, 2) with the least x + y; of several the leftmost, then the first."""
     best, left, place = np.inf, np.inf, 0.0
@@ -139,7 +139,7 @@ def lower_left(cubics: FloatArray) -> float:
     return place
 
 
-@compiled(internal=True)
+@compiled
 def _lasting_part(contours: ContourArrays, c: int, cubics: FloatArray) -> tuple[FloatArray, IntArray]:
     """Points and degrees of contour c without its segments of no length."""
     points = contours.points[contours.starts[c] : contours.starts[c + 1]]
@@ -159,7 +159,7 @@ def _lasting_part(contours: ContourArrays, c: int, cubics: FloatArray) -> tuple[
     return found[:n], its
 
 
-@compiled(internal=True)
+@compiled
 def _encloses(points: FloatArray) -> bool:
     """Whether three of the points are distinct."""
     second = -1
@@ -172,7 +172,7 @@ def _encloses(points: FloatArray) -> bool:
     return False
 
 
-@compiled(internal=True)
+@compiled
 def _extent(points: FloatArray) -> float:
     """The larger side of the box around the points."""
     most = 0.0
@@ -184,7 +184,7 @@ def _extent(points: FloatArray) -> float:
     return most
 
 
-@compiled(internal=True)
+@compiled
 def _reversed(points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
     """A contour in the opposite direction, from the same first joint."""
     n = len(points)
@@ -194,7 +194,7 @@ def _reversed(points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
     return found, degrees[::-1].copy()
 
 
-@compiled(internal=True)
+@compiled
 def _first_joint(points: FloatArray, degrees: IntArray) -> int:
     """The joint from which the contour begins: by what follows, if it passes there twice."""
     best = 0
@@ -204,7 +204,7 @@ def _first_joint(points: FloatArray, degrees: IntArray) -> int:
     return best
 
 
-@compiled(internal=True)
+@compiled
 def _compare(one: FloatArray, degrees: IntArray, s: int, other: FloatArray, its_degrees: IntArray, t: int) -> int:
     """-1, 0 or 1: which of two contours of as many points, from its joint s or t on, is lexicographically less.
 

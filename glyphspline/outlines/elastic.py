@@ -59,7 +59,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
         i, j = i - step // (reach + 1), j - step % (reach + 1)
 
 
-@compiled(internal=True)
+@compiled
 def _mean(one: FloatArray, other: FloatArray, alike: FloatArray, p: int, q: int, a: float, b: float) -> float:
     """The mean of ``alike`` along pieces of the lengths a and b, from p and from q on, each at constant speed."""
     x, y, total, done = one[p] / a, other[q] / b, 0.0, 0.0

@@ -54,7 +54,7 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
     return sides
 
 
-@compiled(internal=True)
+@compiled
 def _winding(polygon: FloatArray, x: float, y: float) -> int:
     """How often a closed polygon (n, 2) runs around a point, counter-clockwise."""
     found = 0

@@ -69,7 +69,7 @@ def cheapest_pairs(
     return least, chosen
 
 
-@compiled(internal=True)
+@compiled
 def _turned(landmarks: FloatArray, first: int, lap: float, out: FloatArray) -> None:
     """The landmarks from one on, and that one again after a lap."""
     n = len(landmarks)
@@ -83,7 +83,7 @@ def _turned(landmarks: FloatArray, first: int, lap: float, out: FloatArray) -> N
             out[i, 3] += lap
 
 
-@compiled(internal=True)
+@compiled
 def _followed(came: IntArray, n: int, m: int, i0: int, j0: int) -> IntArray:
     """The pairs of an alignment, from its end back."""
     pairs, count = np.empty((n, 2), dtype=np.int64), 0

@@ -65,7 +65,7 @@ def sampled(
     return found[:used, :2].copy(), found[:used, 2].copy(), ends, refused
 
 
-@compiled(internal=True)
+@compiled
 def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
     """Distances along a contour of the joints that turn by an angle whose cosine is ``turn`` or less."""
     m = len(pieces)
@@ -80,7 +80,7 @@ def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
     return corners[:c]
 
 
-@compiled(internal=True)
+@compiled
 def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> FloatArray:
     """Even distances; the nearest to each corner moves onto it where spacings stay within ``max_ratio``."""
     at = length * np.arange(count) / count
@@ -96,14 +96,14 @@ def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> F
     return at
 
 
-@compiled(internal=True)
+@compiled
 def _spacing(at: FloatArray, k: int, length: float) -> float:
     """Distance from vertex k to the next, cyclically."""
     k %= len(at)
     return at[k + 1] - at[k] if k + 1 < len(at) else at[0] + length - at[k]
 
 
-@compiled(internal=True)
+@compiled
 def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, most: int) -> FloatArray:
     """Ascending distances of the vertices along a contour; empty if there are too many."""
     c = len(corners)
@@ -131,7 +131,7 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
     return _from_start(_graded(at, length, max_ratio, most), length)
 
 
-@compiled(internal=True)
+@compiled
 def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> FloatArray:
     """Halve spacings larger than max_ratio times a neighbour until there are none; empty if that fails."""
     for _ in range(ROUNDS):
@@ -154,7 +154,7 @@ def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> Float
     return np.empty(0)
 
 
-@compiled(internal=True)
+@compiled
 def _from_start(at: FloatArray, length: float) -> FloatArray:
     """The same distances modulo ``length``, ascending."""
     n = len(at)
@@ -168,7 +168,7 @@ def _from_start(at: FloatArray, length: float) -> FloatArray:
     return turned
 
 
-@compiled(internal=True)
+@compiled
 def _evaluate(pieces: FloatArray, table: FloatArray, at: FloatArray, found: FloatArray) -> None:
     """Write points and places at ascending distances along the contour to ``found`` (n, 3)."""
     cell, last = 0, len(table) - 2

@@ -143,7 +143,7 @@ def at_vertices(contours: ContourArrays, polygons: Polylines, corner_angle: floa
     return Resampled(points, tangents, curvature, corners, polygons.offsets, lengths)
 
 
-@compiled(internal=True)
+@compiled
 def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     """Parts of segments whose lengths are exact.
 
@@ -187,7 +187,7 @@ def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     return table[: count + 1], places[:count], firsts
 
 
-@compiled(internal=True)
+@compiled
 def _length(cubics: FloatArray, s: int, a: float, b: float) -> float:
     """Length of a part of segment s by Gauss and Legendre's rule."""
     ax, ay = cubics[s, 1, 0] - cubics[s, 0, 0], cubics[s, 1, 1] - cubics[s, 0, 1]
@@ -201,7 +201,7 @@ def _length(cubics: FloatArray, s: int, a: float, b: float) -> float:
     return 3.0 * half * total
 
 
-@compiled(internal=True)
+@compiled
 def _part_of(table: FloatArray, along: float) -> int:
     """The part that holds an arc length: the last that begins at or before it."""
     low, high = 0, len(table) - 2
@@ -214,7 +214,7 @@ def _part_of(table: FloatArray, along: float) -> int:
     return low
 
 
-@compiled(internal=True)
+@compiled
 def _place(cubics: FloatArray, s: int, a: float, b: float, along: float, length: float) -> float:
     """The parameter in [a, b] of segment s at so much arc length from a: Newton's method, and bisection about cusps."""
     if not length > 0.0:
@@ -236,7 +236,7 @@ def _place(cubics: FloatArray, s: int, a: float, b: float, along: float, length:
     return x
 
 
-@compiled(internal=True)
+@compiled
 def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: FloatArray) -> float:
     """Put down point and unit tangent at a parameter of segment s; returns the curvature."""
     point[0], point[1], dx, dy, ex, ey = jet(cubics, s, x)

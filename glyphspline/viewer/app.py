@@ -16,7 +16,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from .. import compiling
+from .. import compiled
 from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS, Options
 from ..readers.facts import axis_facts
@@ -61,7 +61,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
         Route("/static/{name}", static),
         Route("/api/font", _answer(lambda request: font_facts(work))),
         Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
-        Route("/api/compiling", _answer(lambda request: {"words": str(compiling.progress() or "")})),
+        Route("/api/compiling", _answer(lambda request: {"words": compiled.progress()})),
         *(Route(f"/api/{name}", _computed(work, make), methods=["POST"]) for name, make in ANSWERS.items()),
     ]
     return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])

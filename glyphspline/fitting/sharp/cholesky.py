@@ -8,7 +8,7 @@ from ...compiled import compiled
 from ...types import FloatArray, IntArray
 
 
-@compiled(internal=True)
+@compiled
 def solve(A: FloatArray, rhs: FloatArray, first: IntArray, n: int) -> None:
     """Solve n equations by Cholesky's method; ``rhs`` becomes the solution.
 

@@ -114,7 +114,7 @@ def find_joints(
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
 
 
-@compiled(internal=True)
+@compiled
 def tie_to_lines(
     cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
 ) -> BoolArray:
@@ -143,7 +143,7 @@ def tie_to_lines(
     return tied
 
 
-@compiled(internal=True)
+@compiled
 def sampled(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(K, N, 2) the outline at places that run once round."""
     N = len(places)
@@ -156,7 +156,7 @@ def sampled(cubics: FloatArray, places: FloatArray) -> FloatArray:
     return samples
 
 
-@compiled(internal=True)
+@compiled
 def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolerance: float) -> FloatArray:
     """(N - 1,) the wanted distance of vertices between each sample and the next.
 
@@ -180,7 +180,7 @@ def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolera
     return spacing
 
 
-@compiled(internal=True)
+@compiled
 def set_directions(
     cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
 ) -> None:
@@ -211,7 +211,7 @@ def set_directions(
         arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
 
 
-@compiled(internal=True)
+@compiled
 def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
     """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later."""
     m = len(degrees)
@@ -230,7 +230,7 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
     return places
 
 
-@compiled(internal=True)
+@compiled
 def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> FloatArray:
     """The places with more between them, until no step longer than the tolerance is over twice as long as the next.
 
@@ -262,7 +262,7 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
         places = new[: count + 1]
 
 
-@compiled(internal=True)
+@compiled
 def samples_of(cubics: FloatArray, j: int, straight: bool, tolerance: float) -> int:
     """Samples that segment j needs: the outline between two of them is straight to a seventh of the tolerance."""
     length = bend = 0.0
@@ -284,7 +284,7 @@ something and stays within the tolerance; but never between lines that stay line
 """
 
 
-@compiled(internal=True)
+@compiled
 def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     """Whether a corner is one at the scale of the tolerance too, and not the zigzag of a ragged outline.
 

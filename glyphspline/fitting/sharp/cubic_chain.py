@@ -26,7 +26,7 @@ NEAR_MISS = 2.0
 """Cubics that miss the tolerance by less than this factor do not rule out longer ones."""
 
 
-@compiled(internal=True)
+@compiled
 def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
     """Whether samples a to b run along their chord, in order, within the tolerance in every master."""
     straight = True
@@ -35,7 +35,7 @@ def is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
     return straight
 
 
-@compiled(internal=True)
+@compiled
 def _is_straight(samples: FloatArray, a: int, b: int, tolerance: float) -> bool:
     """The same in one master."""
     x, y = samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]
@@ -82,7 +82,7 @@ def fit_between(joints: Joints, i: int, j: int, tolerance: float, rounds: int, t
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def add_cubics(joints: Joints, c: int, nodes: IntArray, settings: Settings, pieces: Pieces, count: int) -> int:
     """Add the cheapest way from nodes[0] to nodes[-1] of contour c by lines and cubics between the joints ``nodes``.
 
@@ -136,7 +136,7 @@ def add_cubics(joints: Joints, c: int, nodes: IntArray, settings: Settings, piec
     return count
 
 
-@compiled(internal=True)
+@compiled
 def ends(joints: Joints, i: int, j: int) -> tuple[FloatArray, FloatArray]:
     """(K, 2, 2) the points at two joints, and their places."""
     p, places = np.empty((len(joints.samples), 2, 2)), np.empty(2)

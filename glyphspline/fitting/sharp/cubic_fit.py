@@ -77,7 +77,7 @@ def fit_cubic(
     return best
 
 
-@compiled(internal=True)
+@compiled
 def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArray) -> None:
     """The cubic by powers of its parameter, about its first end: row k goes with the power k + 1."""
     last = len(Q) - 1
@@ -87,7 +87,7 @@ def _coefficients(Q: FloatArray, handles: FloatArray, chord: float, c: FloatArra
         c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
 
 
-@compiled(internal=True)
+@compiled
 def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
     """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
     ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
@@ -114,7 +114,7 @@ def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> floa
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def _step(
     Q: FloatArray, c: FloatArray, x: FloatArray, weight: FloatArray,
     d0: FloatArray, free0: bool, d1: FloatArray, free1: bool, chord: float, handles: FloatArray,
@@ -170,7 +170,7 @@ def _step(
         _set_handle(handles[r : r + 2], sign * g[r] / chord, sign * g[r + 1] / chord, direction, free)
 
 
-@compiled(internal=True)
+@compiled
 def _set_handle(handle: FloatArray, x: float, y: float, direction: FloatArray, free: bool) -> None:
     """Move a handle by (x, y); it stays on its old side, and its tangent between SHORTEST and LONGEST."""
     old = length(handle[0], handle[1])

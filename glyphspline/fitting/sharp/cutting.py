@@ -83,14 +83,14 @@ def cut_all(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> 
     return split, used(pieces, done), stretches_used(stretches, wanted)
 
 
-@compiled(internal=True)
+@compiled
 def _add_line(joints: Joints, row: Row, pieces: Pieces, count: int) -> int:
     """Add a line between two joints."""
     p, places = ends(joints, row[1], row[2])
     return add_piece(pieces, count, row, p, places, p, 0.0)
 
 
-@compiled(internal=True)
+@compiled
 def _add_chain(joints: Joints, c: int, i: int, j: int, settings: Settings, pieces: Pieces, count: int) -> int:
     """Add cubics from hard joint i to hard joint j, which end at corners and at every so many joints."""
     nodes = np.empty(j - i + 1, dtype=np.int64)
@@ -104,7 +104,7 @@ def _add_chain(joints: Joints, c: int, i: int, j: int, settings: Settings, piece
     return add_cubics(joints, c, nodes[: last + 2], settings, pieces, count)
 
 
-@compiled(internal=True)
+@compiled
 def _add_splines(
     joints: Joints, c: int, i: int, j: int, settings: Settings, pieces: Pieces, count: int, stretches: Stretches,
     wanted: int,
@@ -121,7 +121,7 @@ def _add_splines(
     return count, wanted, stretches
 
 
-@compiled(internal=True)
+@compiled
 def _add_cut(
     joints: Joints, c: int, i: int, j: int, choice: int, settings: Settings, pieces: Pieces, count: int,
     stretches: Stretches, wanted: int,
@@ -135,7 +135,7 @@ def _add_cut(
     return count, wanted, stretches
 
 
-@compiled(internal=True)
+@compiled
 def _add_spline(
     joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int, stretches: Stretches, wanted: int
 ) -> tuple[int, int, Stretches]:
@@ -147,7 +147,7 @@ def _add_spline(
     return count, wanted, stretches
 
 
-@compiled(internal=True)
+@compiled
 def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int) -> int:
     """Add a line or a cubic between two joints, with its error.
 

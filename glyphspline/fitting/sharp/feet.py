@@ -69,7 +69,7 @@ class Rows(NamedTuple):
     lever: FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def empty_rows(masters: int, samples: int) -> Rows:
     """Room for the rows of so many samples."""
     room, apart = (masters, (1 + EXTRA) * samples), (masters, samples if masters > 1 else 0)
@@ -79,13 +79,13 @@ def empty_rows(masters: int, samples: int) -> Rows:
     )  # fmt: skip
 
 
-@compiled(internal=True)
+@compiled
 def rows_of(rows: Rows, v: int) -> Rows:
     """The rows of master v, in arrays of one dimension."""
     return Rows(rows.used[v], rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v], rows.lever[v])
 
 
-@compiled(internal=True)
+@compiled
 def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
     """Pair the outline with the curve in every master; the largest distance. Arguments as of :func:`_measure`."""
     worst = 0.0
@@ -96,7 +96,7 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def _measure_slip(curve: Curve, rows: Rows) -> float:
     """How far the feet of a sample are apart along the curve, and the largest distance that this may make in between.
 
@@ -133,7 +133,7 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Rows, rows: Rows) -> float:
     """Pair the outline in a master with the curve, in order; the largest distance.
 
@@ -189,14 +189,14 @@ def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Row
     return worst
 
 
-@compiled(internal=True)
+@compiled
 def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
     """Measure a curve without first guesses."""
     rows.used[:] = 0
     return measure(samples, curve, near, rows, rows)
 
 
-@compiled(internal=True)
+@compiled
 def _foot(
     b: FloatArray, k: int, s: int, at: float, s0: int, at0: float, end: int, qx: float, qy: float
 ) -> tuple[int, float, float, float, float]:
@@ -239,7 +239,7 @@ def _foot(
     return s, at, e, nx, ny
 
 
-@compiled(internal=True)
+@compiled
 def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
     """The distance of (qx, qy) from a point of the curve, positive on its left, and the normal there."""
     cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
@@ -248,7 +248,7 @@ def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) ->
     return (away if ex * nx + ey * ny > 0 else -away), nx, ny
 
 
-@compiled(internal=True)
+@compiled
 def _wrapped(s: int, k: int) -> int:
     """The span of a closed curve that span s is, up to a lap before the first one and two laps after it."""
     if s >= k:
@@ -258,7 +258,7 @@ def _wrapped(s: int, k: int) -> int:
     return s if s >= 0 else s + k
 
 
-@compiled(internal=True)
+@compiled
 def _distance_along(h: FloatArray, k: int, s: int, x: float, t: int, y: float) -> float:
     """Parameter distance from place (s, x) to place (t, y)."""
     if s == t:
@@ -269,7 +269,7 @@ def _distance_along(h: FloatArray, k: int, s: int, x: float, t: int, y: float) -
     return total
 
 
-@compiled(internal=True)
+@compiled
 def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[int, float]:
     """The place at a parameter distance after (s, x)."""
     own = h[_wrapped(s, k) + 2]
@@ -281,7 +281,7 @@ def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[in
     return s, left / own
 
 
-@compiled(internal=True)
+@compiled
 def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
     for v in range(len(source.used)):
@@ -293,7 +293,7 @@ def copy_rows(source: Rows, target: Rows) -> None:
             target.slip[v, j], target.lever[v, j] = source.slip[v, j], source.lever[v, j]
 
 
-@compiled(internal=True)
+@compiled
 def span_errors(rows: Rows, k: int) -> FloatArray:
     """(k,) the largest distance in each span."""
     errors = np.zeros(k)
@@ -307,7 +307,7 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
     return errors
 
 
-@compiled(internal=True)
+@compiled
 def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) -> None:
     """The places of the outline beside the knots of a curve, from the feet of the samples in the first master."""
     Q, k, closed, n, lap = samples.places, curve.size[0], curve.size[1], len(samples.places), samples.lap

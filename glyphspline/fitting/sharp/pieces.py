@@ -41,7 +41,7 @@ class Pieces(NamedTuple):
     errors: FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def empty_pieces(masters: int, count: int, vertices: int) -> Pieces:
     """Room for so many pieces, with so many vertices together."""
     pieces = Pieces(
@@ -52,7 +52,7 @@ def empty_pieces(masters: int, count: int, vertices: int) -> Pieces:
     return pieces
 
 
-@compiled(internal=True)
+@compiled
 def used(pieces: Pieces, count: int) -> Pieces:
     """The first ``count`` pieces."""
     where, starts, vertices, places, tangents, errors = pieces
@@ -81,14 +81,14 @@ def of_master(pieces: Pieces, v: int) -> Pieces:
     return Pieces(where, starts, vertices[v : v + 1], places, tangents[v : v + 1], errors)
 
 
-@compiled(internal=True)
+@compiled
 def row_of(pieces: Pieces, q: int) -> Row:
     """Piece q's row of ``where``."""
     where = pieces.where
     return where[q, 0], where[q, 1], where[q, 2], where[q, 3], where[q, 4], where[q, 5]
 
 
-@compiled(internal=True)
+@compiled
 def add_pieces(pieces: Pieces, count: int, others: Pieces) -> int:
     """Add pieces after ``count`` others; the number then."""
     for q in range(len(others.where)):
@@ -100,7 +100,7 @@ def add_pieces(pieces: Pieces, count: int, others: Pieces) -> int:
     return count
 
 
-@compiled(internal=True)
+@compiled
 def add_piece(
     pieces: Pieces, count: int, row: Row, p: FloatArray, places: FloatArray, tangents: FloatArray, error: float
 ) -> int:
@@ -125,7 +125,7 @@ def add_piece(
     return count + 1
 
 
-@compiled(internal=True)
+@compiled
 def reverse_last(pieces: Pieces, count: int, m: int) -> None:
     """Turn the last of ``count`` pieces round, for a contour of m segments that is fitted the other way."""
     q = count - 1
@@ -151,7 +151,7 @@ def reverse_last(pieces: Pieces, count: int, m: int) -> None:
             tangents[0, axis], tangents[1, axis] = -tangents[1, axis], -tangents[0, axis]
 
 
-@compiled(internal=True)
+@compiled
 def add_source(pieces: Pieces, count: int, row: Row, cubics: FloatArray, degrees: IntArray) -> int:
     """Add the segments of a contour between two joints as they are, as lines and arcs of one span; the number then."""
     masters = len(cubics)

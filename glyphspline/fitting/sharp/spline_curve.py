@@ -61,7 +61,7 @@ class Curve(NamedTuple):
     d: FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def empty_curve(masters: int, most: int, closed: int) -> Curve:
     """Room for a curve of up to ``most`` spans."""
     size, room = np.zeros(2, dtype=np.int64), most + 1
@@ -73,7 +73,7 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
     )  # fmt: skip
 
 
-@compiled(internal=True)
+@compiled
 def copy_curve(source: Curve, target: Curve) -> None:
     """Copy all that belongs to a curve into another one's arrays."""
     k = source.size[0]
@@ -98,13 +98,13 @@ def copy_curve(source: Curve, target: Curve) -> None:
                 target.b[v, s, r, 0], target.b[v, s, r, 1] = source.b[v, s, r, 0], source.b[v, s, r, 1]
 
 
-@compiled(internal=True)
+@compiled
 def inner_vertices(curve: Curve) -> tuple[int, int]:
     """The first vertex that is free to move, and the one after the last."""
     return (0 if curve.size[1] else 1), curve.size[0]
 
 
-@compiled(internal=True)
+@compiled
 def chord(p: FloatArray, i: int, j: int) -> float:
     """Distance of vertices i and j, (K, room, 2): the root mean square of those in the masters."""
     total = 0.0
@@ -114,7 +114,7 @@ def chord(p: FloatArray, i: int, j: int) -> float:
     return np.sqrt(total / len(p))
 
 
-@compiled(internal=True)
+@compiled
 def set_handles(curve: Curve, tangents: FloatArray) -> None:
     """The end handles of an arc from its end tangents (K, 2, 2), derivatives by chord length."""
     k, p, X = curve.size[0], curve.p, curve.X
@@ -127,7 +127,7 @@ def set_handles(curve: Curve, tangents: FloatArray) -> None:
             X[v, k + 1, axis], X[v, k + 2, axis] = p[v, k, axis] - last * tangents[v, 1, axis], p[v, k, axis]
 
 
-@compiled(internal=True)
+@compiled
 def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
     """Make the handles of tied ends the directions (K, 2, 2) times one number."""
     k, X = curve.size[0], curve.X
@@ -145,7 +145,7 @@ def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
                 X[v, tip, axis] = X[v, at, axis] + along / whole * directions[v, end, axis]
 
 
-@compiled(internal=True)
+@compiled
 def end_tangents(curve: Curve, tangents: FloatArray) -> None:
     """The end tangents (K, 2, 2) of an arc, derivatives by chord length; those of a closed curve stay as they are."""
     k, X, h = curve.size[0], curve.X, curve.h
@@ -157,7 +157,7 @@ def end_tangents(curve: Curve, tangents: FloatArray) -> None:
             tangents[v, 1, axis] = 3 * (X[v, k + 2, axis] - X[v, k + 1, axis]) / h[k + 1]
 
 
-@compiled(internal=True)
+@compiled
 def set_knots(curve: Curve) -> bool:
     """Knot intervals from the chords, and the Bézier weights; False if a chord has no length."""
     k, closed, p, h = curve.size[0], curve.size[1], curve.p, curve.h
@@ -173,7 +173,7 @@ def set_knots(curve: Curve) -> bool:
     return least > 0.0
 
 
-@compiled(internal=True)
+@compiled
 def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
     """The Bézier weights (4, 4) of span s, from knot intervals as :class:`Curve` has them."""
     h0, h1, h2, h3, h4 = h[s], h[s + 1], h[s + 2], h[s + 3], h[s + 4]
@@ -189,7 +189,7 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
     W[3, 1], W[3, 2], W[3, 3] = (1 - high) * (1 - c), (1 - high) * c + high * (1 - e), high * e
 
 
-@compiled(internal=True)
+@compiled
 def set_beziers(curve: Curve) -> None:
     """The Bézier points of all spans."""
     k, W = curve.size[0], curve.W
@@ -205,7 +205,7 @@ def set_beziers(curve: Curve) -> None:
                     b[s, r, axis] = total + W[s, r, 2] * X[s + 2, axis] + W[s, r, 3] * X[s + 3, axis]
 
 
-@compiled(internal=True)
+@compiled
 def cold_start(curve: Curve, margin: float) -> None:
     """The vertices as control points, the intervals of Lemma 2, and footpoints at the knots where these allow it."""
     k, closed, (first, stop) = curve.size[0], curve.size[1], inner_vertices(curve)
@@ -225,7 +225,7 @@ def cold_start(curve: Curve, margin: float) -> None:
         curve.t[i] = min(max(0.0, low), high)
 
 
-@compiled(internal=True)
+@compiled
 def iterate(curve: Curve, tolerance: float, most: int) -> float:
     """Variant 2 (Algorithm 2) from the control points at hand, for at most so many passes; the largest error left."""
     first, stop = inner_vertices(curve)
@@ -252,7 +252,7 @@ def iterate(curve: Curve, tolerance: float, most: int) -> float:
     return error
 
 
-@compiled(internal=True)
+@compiled
 def find_footpoint(curve: Curve, i: int) -> None:
     """The footpoint of vertex i, as a signed share of the span before or after u_i, and the vertex less that point.
 
@@ -285,7 +285,7 @@ def find_footpoint(curve: Curve, i: int) -> None:
     curve.t[i] = t
 
 
-@compiled(internal=True)
+@compiled
 def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
     """Variant 2 from the vertices, as the interpolation runs it; the largest error left, infinite without a curve."""
     if not set_knots(curve):

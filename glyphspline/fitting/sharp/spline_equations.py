@@ -63,7 +63,7 @@ class Fit(NamedTuple):
     longer: FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def empty_fit(masters: int, samples: int, spans: int, closed: int) -> Fit:
     """Scratch arrays for a stretch of so many samples and curves of up to so many spans."""
     slots = spans + 1
@@ -76,7 +76,7 @@ def empty_fit(masters: int, samples: int, spans: int, closed: int) -> Fit:
     )  # fmt: skip
 
 
-@compiled(internal=True)
+@compiled
 def differentiate(fit: Fit) -> None:
     """The frames of all vertices, and the derivatives of the Bézier points by the unknowns.
 
@@ -124,7 +124,7 @@ def differentiate(fit: Fit) -> None:
         shift_knot(curve, i, -delta)
 
 
-@compiled(internal=True)
+@compiled
 def knots_per_step(curve: Curve, v: int, i: int) -> float:
     """How far knot i moves with a step of its vertex along the curve in master v, if the other masters do the same."""
     if len(curve.p) == 1:
@@ -136,7 +136,7 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
     return both / own if own * MOST_KNOTS > both else MOST_KNOTS
 
 
-@compiled(internal=True)
+@compiled
 def shift_knot(curve: Curve, i: int, delta: float) -> None:
     """Move knot i of the intervals, and of their repetition around a closed curve."""
     k, closed, h = curve.size[0], curve.size[1], curve.h
@@ -147,7 +147,7 @@ def shift_knot(curve: Curve, i: int, delta: float) -> None:
                 h[n] += change
 
 
-@compiled(internal=True)
+@compiled
 def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
@@ -166,14 +166,14 @@ def _add_row(
             gram[u, v] += scaled * J[v]
 
 
-@compiled(internal=True)
+@compiled
 def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
     """The equations of all rows by spans, in units of ``scale``: matrices (8, 8), and right sides in their row 8."""
     for v in range(len(fit.gram)):
         _add_master(fit, v, scale, minimax, wobble)
 
 
-@compiled(internal=True)
+@compiled
 def _add_master(fit: Fit, v: int, scale: float, minimax: bool, wobble: float) -> None:
     """The same of one master."""
     curve, rows, gram, moves, b = fit.curve, rows_of(fit.rows, v), fit.gram[v], fit.moves[v], fit.curve.b[v]
@@ -207,14 +207,14 @@ def _add_master(fit: Fit, v: int, scale: float, minimax: bool, wobble: float) ->
                 gram[s, v, u] = gram[s, u, v]
 
 
-@compiled(internal=True)
+@compiled
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
     ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * LARGEST_RATIO)
     return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
 
 
-@compiled(internal=True)
+@compiled
 def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: float) -> float:
     """What a step has to lower: squares (``minimax``: fourth powers) of the distances, ratios and wobble."""
     total = 0.0
@@ -233,7 +233,7 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
     return total
 
 
-@compiled(internal=True)
+@compiled
 def third_derivatives(curve: Curve) -> float:
     """The integral of the squared third derivative across the curve: of (dκ/ds)², as knots run by arc length."""
     total = 0.0
@@ -245,7 +245,7 @@ def third_derivatives(curve: Curve) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
     """The third derivative of span s by its local parameter, along (nx, ny)."""
     x = b[s, 3, 0] - b[s, 0, 0] - 3 * (b[s, 2, 0] - b[s, 1, 0])
@@ -253,7 +253,7 @@ def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
     return 6 * (x * nx + y * ny)
 
 
-@compiled(internal=True)
+@compiled
 def middle_normal(b: FloatArray) -> tuple[float, float]:
     """The unit normal of a cubic (4, 2) at its middle."""
     dx = b[3, 0] - b[0, 0] + b[2, 0] - b[1, 0]
@@ -262,7 +262,7 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
     return -dy / size, dx / size
 
 
-@compiled(internal=True)
+@compiled
 def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, width: int) -> None:
     """The equations in master v of one step of ``width`` slots from ``start`` on: of the rows, of ratios, damping."""
     curve, A, g, first = fit.curve, fit.A, fit.step[v], fit.first
@@ -294,7 +294,7 @@ def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, wi
                 g[r + 1] += 1e6 * max(mean, 1.0) * longer
 
 
-@compiled(internal=True)
+@compiled
 def agree_on_handles(fit: Fit, samples: Samples, start: int, width: int) -> bool:
     """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
     k, closed, tied = fit.curve.size[0], fit.curve.size[1], False
@@ -312,14 +312,14 @@ def agree_on_handles(fit: Fit, samples: Samples, start: int, width: int) -> bool
     return tied
 
 
-@compiled(internal=True)
+@compiled
 def place_of(slot: int, start: int, width: int, k: int, closed: int) -> int:
     """Where a slot stands among those that move; negative if it does not."""
     place = (slot - start) % k if closed else slot - start
     return place if 0 <= place < width and (closed or 0 <= slot <= k) else -1
 
 
-@compiled(internal=True)
+@compiled
 def _scatter(fit: Fit, v: int, index: IntArray, gram: FloatArray, n: int) -> None:
     """Add equations of n unknowns, the right side in row n of ``gram``, to all; negative indices are left out."""
     A, g, first = fit.A, fit.step[v], fit.first
@@ -335,7 +335,7 @@ def _scatter(fit: Fit, v: int, index: IntArray, gram: FloatArray, n: int) -> Non
                 first[r] = min(first[r], c)
 
 
-@compiled(internal=True)
+@compiled
 def _hold_ratios(fit: Fit, v: int, n: int, start: int, width: int) -> None:
     """Equations that bring ratios of adjacent chords back to what is allowed; ``n`` is their weight."""
     curve = fit.curve

@@ -43,7 +43,7 @@ SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 8, 4 / 3
 curvature."""
 
 
-@compiled(internal=True)
+@compiled
 def improve(
     fit: Fit, samples: Samples, near: float, margin: float, residual: float, rounds: int, start: int, width: int,
     wobble: float,
@@ -102,7 +102,7 @@ def improve(
     return max(error, np.nextafter(near, np.inf))
 
 
-@compiled(internal=True)
+@compiled
 def is_graded(curve: Curve) -> bool:
     """Whether all adjacent chords are within the largest ratio of each other."""
     first, stop = inner_vertices(curve)
@@ -113,7 +113,7 @@ def is_graded(curve: Curve) -> bool:
     return good
 
 
-@compiled(internal=True)
+@compiled
 def _advance(fit: Fit, samples: Samples, share: float, start: int, width: int) -> bool:
     """The trial: the curve with vertices, knots and control points moved by a share of the step.
 
@@ -151,7 +151,7 @@ def _advance(fit: Fit, samples: Samples, share: float, start: int, width: int) -
     return True
 
 
-@compiled(internal=True)
+@compiled
 def _change_across(fit: Fit, v: int, i: int, start: int, width: int) -> float:
     """How far a step moves the curve across itself at the footpoint of vertex i in master v."""
     curve, moves, step, frames = fit.curve, fit.moves[v], fit.step[v], fit.frames[v]
@@ -171,7 +171,7 @@ def _change_across(fit: Fit, v: int, i: int, start: int, width: int) -> float:
     return across
 
 
-@compiled(internal=True)
+@compiled
 def _limit_handle(old: FloatArray, X: FloatArray, end: int, tip: int, chord: float) -> None:
     """Keep an end handle on its old side, and its length within bounds beside its chord."""
     ax, ay = old[tip, 0] - old[end, 0], old[tip, 1] - old[end, 1]

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import borrowed, compiled, keep_alive
+from ...compiled import compiled
 from ...curves.cubics import jet, length
+from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray
 from .cubic_fit import fit_cubic
 from .feet import Rows, Samples, find_places, measure, measure_afresh, span_errors
@@ -99,7 +100,7 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
     return used(found, count)
 
 
-@compiled(internal=True)
+@compiled
 def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int:
     """Spans for which a fit has room, begun with so many; 0 for a first guess."""
     return min(
@@ -108,13 +109,13 @@ def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int
     )
 
 
-@compiled(internal=True)
+@compiled
 def spans_wanted(samples: Samples, search: Search) -> int:
     """Spans of a first guess, by the density of vertices."""
     return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.places)))))
 
 
-@compiled(internal=True)
+@compiled
 def find_spline(
     fit: Fit, samples: Samples, near: float, search: Search, given: int, missed: float, p: FloatArray,
     places: FloatArray, tangents: FloatArray,
@@ -242,7 +243,7 @@ def find_spline(
     return best.size[0], best_error
 
 
-@compiled(internal=True)
+@compiled
 def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> None:
     """A curve of k spans with the given vertices and end tangents."""
     curve.size[0] = k
@@ -252,7 +253,7 @@ def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> Non
     set_handles(curve, tangents)
 
 
-@compiled(internal=True)
+@compiled
 def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
     """A curve of k spans with its vertices on the outline, as the density has them; False if there is no room."""
     Q, D, p, closed = samples.Q, samples.D, curve.p, curve.size[1]
@@ -282,7 +283,7 @@ def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
     """Put vertices p on the outline where the density's integral reaches the goals, which increase."""
     Q, D, n = samples.Q, samples.D, len(samples.places)
@@ -297,7 +298,7 @@ def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
             p[v, i, 1] = Q[v, j, 1] + share * (Q[v, after, 1] - Q[v, j, 1])
 
 
-@compiled(internal=True)
+@compiled
 def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, near: float) -> bool:
     """A closed curve with its vertices on the outline: more of them in spans that miss the tolerance, and where
     adjacent chords differ too much; False if there is no room.
@@ -349,7 +350,7 @@ def lay_vertices(fit: Fit, samples: Samples, goals: FloatArray, laid: int, near:
             return True
 
 
-@compiled(internal=True)
+@compiled
 def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> None:
     """Make the wanted density higher where laid vertices are too far apart, and lower where they are too close."""
     D, Q, n, k = samples.D, samples.Q, len(samples.places), len(goals)
@@ -364,7 +365,7 @@ def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> Non
     integrate_density(D, h, step, 1)
 
 
-@compiled(internal=True)
+@compiled
 def guess_feet(samples: Samples, goals: FloatArray, rows: Rows) -> None:
     """First guesses for the feet on a closed curve whose vertices are laid: the samples' places between these."""
     D, k, n = samples.D, len(goals), len(samples.places)
@@ -379,7 +380,7 @@ def guess_feet(samples: Samples, goals: FloatArray, rows: Rows) -> None:
     rows.used[:] = n
 
 
-@compiled(internal=True)
+@compiled
 def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
     """Cut the worst spans in two, no two adjacent ones; False if there is no room for more.
 
@@ -422,7 +423,7 @@ def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def _resize(curve: Curve, old: Curve, k: int) -> None:
     """Give a curve whose vertices are set, but for the last of an arc, k spans; an arc's ends stay those of ``old``."""
     before = old.size[0]
@@ -445,7 +446,7 @@ def _resize(curve: Curve, old: Curve, k: int) -> None:
             X[tip, 0], X[tip, 1] = X[end, 0] + share * x, X[end, 1] + share * y
 
 
-@compiled(internal=True)
+@compiled
 def slots_beside(curve: Curve, at: int, reach: int) -> tuple[int, int]:
     """The first of the slots that move where vertex ``at`` was taken out, ``reach`` on either side; and how many."""
     k, closed = curve.size[0], curve.size[1]
@@ -455,7 +456,7 @@ def slots_beside(curve: Curve, at: int, reach: int) -> tuple[int, int]:
     return (at - reach) % k if closed else min(max(at - reach, 0), slots - width), width
 
 
-@compiled(internal=True)
+@compiled
 def mean_chord(curve: Curve) -> float:
     """The mean of the knot intervals."""
     total = 0.0
@@ -464,7 +465,7 @@ def mean_chord(curve: Curve) -> float:
     return total / curve.size[0]
 
 
-@compiled(internal=True)
+@compiled
 def removal_costs(fit: Fit, costs: FloatArray) -> None:
     """What taking out each vertex is estimated to cost: the jump of the third derivative at its knot, and the error."""
     curve = fit.curve
@@ -485,7 +486,7 @@ def removal_costs(fit: Fit, costs: FloatArray) -> None:
             costs[i] = max(costs[i], abs(jump) * reach**3 / 6 + max(errors[last], errors[i]) / 4)
 
 
-@compiled(internal=True)
+@compiled
 def cheapest(curve: Curve, costs: FloatArray, tried: BoolArray, most: float) -> int:
     """The vertex that costs least of those not tried, ``most`` at most; -1 if there is none."""
     first, stop = inner_vertices(curve)
@@ -496,7 +497,7 @@ def cheapest(curve: Curve, costs: FloatArray, tried: BoolArray, most: float) -> 
     return found
 
 
-@compiled(internal=True)
+@compiled
 def mark_tried(tried: BoolArray, i: int, removed: bool, k: int) -> None:
     """Mark vertex i as tried, or forget it if it is no longer there: k are left."""
     if not removed:
@@ -506,7 +507,7 @@ def mark_tried(tried: BoolArray, i: int, removed: bool, k: int) -> None:
         tried[j] = tried[j + 1]
 
 
-@compiled(internal=True)
+@compiled
 def remove_vertex(curve: Curve, good: Curve, i: int) -> None:
     """The good curve without vertex i."""
     k, closed = good.size[0], good.size[1]

@@ -54,7 +54,7 @@ class SplitContours(NamedTuple):
     flipped: BoolArray
 
 
-@compiled(internal=True)
+@compiled
 def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
     """The segments that have a length in some master; those that end where they begin are cut in two: an arc needs two
     ends.
@@ -84,7 +84,7 @@ def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
     return found[:, :count].copy(), kept[:count]
 
 
-@compiled(internal=True)
+@compiled
 def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple[FloatArray, IntArray, bool, Joints]:
     """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
 

@@ -38,7 +38,7 @@ class Stretches(NamedTuple):
     free: IntArray
 
 
-@compiled(internal=True)
+@compiled
 def empty_stretches(masters: int, count: int, samples: int) -> Stretches:
     """Room for so many stretches, with so many samples together."""
     stretches = Stretches(
@@ -49,7 +49,7 @@ def empty_stretches(masters: int, count: int, samples: int) -> Stretches:
     return stretches
 
 
-@compiled(internal=True)
+@compiled
 def add_stretch(stretches: Stretches, count: int, joints: Joints, i: int, j: int, piece: int) -> Stretches:
     """Add the samples between two joints after ``count`` other stretches; in larger arrays if need be."""
     a, b, at = joints.first[i], joints.first[j], stretches.starts[count]
@@ -78,7 +78,7 @@ def add_stretch(stretches: Stretches, count: int, joints: Joints, i: int, j: int
     return stretches
 
 
-@compiled(internal=True)
+@compiled
 def stretches_used(stretches: Stretches, count: int) -> Stretches:
     """The first ``count`` stretches."""
     end = stretches.starts[count]
@@ -89,7 +89,7 @@ def stretches_used(stretches: Stretches, count: int) -> Stretches:
     )  # fmt: skip
 
 
-@compiled(internal=True)
+@compiled
 def integrate_density(D: FloatArray, h: FloatArray, step: FloatArray, closed: int) -> None:
     """The integral D: (n + 1,) of the density of vertices, from wanted distances h and steps: (n,).
 
@@ -109,7 +109,7 @@ def integrate_density(D: FloatArray, h: FloatArray, step: FloatArray, closed: in
         D[r + 1] = D[r] + step[r] / h[r]
 
 
-@compiled(internal=True)
+@compiled
 def samples_of(stretches: Stretches, s: int, closed: int) -> Samples:
     """The samples of a stretch, with the integral of the density of vertices."""
     first, n = stretches.starts[s], stretches.starts[s + 1] - stretches.starts[s] - 1

@@ -70,7 +70,7 @@ def canonical_contours(contours: ContourArrays) -> CanonicalContours:
     return CanonicalContours(cubics[:at], offsets, flipped, angles[:at], lengths[:at])
 
 
-@compiled(internal=True)
+@compiled
 def length_at(lengths: FloatArray, place: float) -> float:
     """Distance along a contour from its first point; ``place`` may be laps ahead."""
     m = len(lengths)
@@ -81,7 +81,7 @@ def length_at(lengths: FloatArray, place: float) -> float:
     return j // m * lengths[m - 1, TABLE] + row[k] + (x - k) * (row[min(k + 1, TABLE)] - row[k])
 
 
-@compiled(internal=True)
+@compiled
 def place_at(lengths: FloatArray, distance: float) -> float:
     """The inverse of :func:`length_at`."""
     m = len(lengths)
@@ -101,7 +101,7 @@ def place_at(lengths: FloatArray, distance: float) -> float:
     return lap * m + j + x
 
 
-@compiled(internal=True)
+@compiled
 def points_at(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(n, 2) the points at places of a contour, all in its first lap."""
     points = np.empty((len(places), 2))

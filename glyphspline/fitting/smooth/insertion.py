@@ -23,7 +23,7 @@ MARGIN = 0.3
 """Share of a span at either end where it is not divided."""
 
 
-@compiled(internal=True)
+@compiled
 def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(n,) length along the contour at which each place lies, and to the next one."""
     n = len(places)
@@ -36,7 +36,7 @@ def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, Float
     return at, h
 
 
-@compiled(internal=True)
+@compiled
 def with_more(
     lengths: FloatArray, places: FloatArray, errors: FloatArray, worst: FloatArray, near: float
 ) -> FloatArray:
@@ -69,7 +69,7 @@ def with_more(
     return in_order(new[:count])
 
 
-@compiled(internal=True)
+@compiled
 def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: float) -> FloatArray:
     """The places with chords cut where they are more than ``ratio`` times a neighbour, until none is.
 

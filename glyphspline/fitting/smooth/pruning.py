@@ -9,7 +9,7 @@ from ...curves.sorting import ascending
 from ...types import BoolArray, FloatArray
 
 
-@compiled(internal=True)
+@compiled
 def sparse(
     points: FloatArray, places: FloatArray, turns: FloatArray, corner_angle: float, needed: BoolArray,
     errors: FloatArray, near: float, ratio: float, power: float,
@@ -60,13 +60,13 @@ def sparse(
     return keep
 
 
-@compiled(internal=True)
+@compiled
 def chord(points: FloatArray, i: int, j: int) -> float:
     """Distance between vertices i and j."""
     return np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
 
 
-@compiled(internal=True)
+@compiled
 def put_back(points: FloatArray, keep: BoolArray, errors: FloatArray, near: float, ratio: float) -> BoolArray:
     """Keep again what had been taken out of the spans that are now too far off, or of those beside them.
 

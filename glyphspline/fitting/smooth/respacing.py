@@ -25,7 +25,7 @@ LEAST = 0.4
 """Share of its length by which a span that is many times too far off is tried again."""
 
 
-@compiled(internal=True)
+@compiled
 def vertices_at_corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> IntArray:
     """The vertices of a contour that lie at corners; without one, that at the first joint, if there is one."""
     at, count = np.empty(len(places), dtype=np.int64), 0
@@ -39,7 +39,7 @@ def vertices_at_corners(places: FloatArray, turns: FloatArray, corner_angle: flo
     return at[:count]
 
 
-@compiled(internal=True)
+@compiled
 def failed(corners: IntArray, errors: FloatArray, near: float) -> tuple[BoolArray, BoolArray]:
     """The stretches from each vertex at a corner to the next in which a span fails, and (n,) the vertices of these."""
     n, count = len(errors), len(corners)
@@ -53,13 +53,13 @@ def failed(corners: IntArray, errors: FloatArray, near: float) -> tuple[BoolArra
     return fails, inside
 
 
-@compiled(internal=True)
+@compiled
 def spans_after(corners: IntArray, k: int, n: int) -> int:
     """The number of spans of stretch k; one corner alone has all n."""
     return (corners[(k + 1) % len(corners)] - corners[k] - 1) % n + 1
 
 
-@compiled(internal=True)
+@compiled
 def relaid(
     field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, errors: FloatArray, near: float,
     growth: float,
@@ -106,13 +106,13 @@ def relaid(
     return in_order(new)
 
 
-@compiled(internal=True)
+@compiled
 def whole_of(steps: FloatArray, places: FloatArray, corners: IntArray, k: int) -> float:
     """The integral of 1/field over stretch k."""
     return spans_in(steps, int(places[corners[k]]), int(places[corners[(k + 1) % len(corners)]]))
 
 
-@compiled(internal=True)
+@compiled
 def lower(field: FloatArray, places: FloatArray, shares: FloatArray) -> None:
     """Multiply a field by a share over each span, which comes to 1 over the spans beside it."""
     n, entries, before = len(places), len(field) - 1, field.copy()

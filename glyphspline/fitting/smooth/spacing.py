@@ -45,7 +45,7 @@ FEWEST = 4
 """Vertices a contour has at least."""
 
 
-@compiled(internal=True)
+@compiled
 def first_field(
     cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float,
     variant: int, field: FloatArray,
@@ -69,13 +69,13 @@ def first_field(
     limit_growth(field, lengths, np.log(factor))
 
 
-@compiled(internal=True)
+@compiled
 def growth_of(ratio: float, variant: int) -> float:
     """The factor by which chords grow at most."""
     return GROWTH * min(ratio, GROWTH_3 / GROWTH if variant == 3 else FASTEST)
 
 
-@compiled(internal=True)
+@compiled
 def corners_of(turns: FloatArray, corner_angle: float) -> IntArray:
     """The joints at which a contour has corners; the first joint if it has none."""
     corners, count = np.empty(len(turns), dtype=np.int64), 0
@@ -88,7 +88,7 @@ def corners_of(turns: FloatArray, corner_angle: float) -> IntArray:
     return corners[:count]
 
 
-@compiled(internal=True)
+@compiled
 def limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None:
     """Lower a field until it nowhere grows faster than ``growth`` a unit of length, round the contour."""
     n = len(field) - 1
@@ -104,7 +104,7 @@ def limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None:
         field[n] = field[0]
 
 
-@compiled(internal=True)
+@compiled
 def write_bounds(
     cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float, field: FloatArray
 ) -> None:
@@ -147,7 +147,7 @@ def write_bounds(
         field[j * TABLE] = min(field[j * TABLE], h)
 
 
-@compiled(internal=True)
+@compiled
 def steps_of(field: FloatArray, lengths: FloatArray) -> FloatArray:
     """(m TABLE,) the integral of 1/field, which goes linearly from one entry to the next, over each step."""
     steps = np.empty(len(field) - 1)
@@ -158,7 +158,7 @@ def steps_of(field: FloatArray, lengths: FloatArray) -> FloatArray:
     return steps
 
 
-@compiled(internal=True)
+@compiled
 def spans_in(steps: FloatArray, a: int, b: int) -> float:
     """The integral of 1/field from joint a to joint b, or once round if they are one joint."""
     n, total = len(steps), 0.0
@@ -168,13 +168,13 @@ def spans_in(steps: FloatArray, a: int, b: int) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def spans_for(whole: float) -> int:
     """The number of spans for an integral of 1/field."""
     return max(int(np.ceil(whole - SPARE)), 1)
 
 
-@compiled(internal=True)
+@compiled
 def lay(field: FloatArray, steps: FloatArray, a: int, whole: float, parts: int, places: FloatArray) -> None:
     """Write the places of joint a and, evenly by the field, of the vertices up to the next joint, ``parts`` in all."""
     n, i, passed = len(steps), a * TABLE, 0.0
@@ -189,7 +189,7 @@ def lay(field: FloatArray, steps: FloatArray, a: int, whole: float, parts: int, 
         places[part] = (i % n + share) / TABLE % (n // TABLE)  # the last entry's end is the first joint
 
 
-@compiled(internal=True)
+@compiled
 def laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
     """Places at the corners and, evenly by the field, between them, increasing."""
     c, steps = len(corners), steps_of(field, lengths)

@@ -41,13 +41,13 @@ def first_places(
     return fields, values[: offsets[-1]], offsets
 
 
-@compiled(internal=True)
+@compiled
 def field_of(fields: FloatArray, offsets: IntArray, k: int) -> FloatArray:
     """The field of contour k."""
     return fields[offsets[k] * TABLE + k : offsets[k + 1] * TABLE + k + 1]
 
 
-@compiled(internal=True)
+@compiled
 def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
     """An array of which the first ``count`` values are in use, or a larger one, with more after these."""
     if count + len(part) > len(values):

@@ -27,7 +27,7 @@ in use, the row of the newest one, the products of changes of steps, and room fo
 """
 
 
-@compiled(internal=True)
+@compiled
 def _products(a: FloatArray, b: FloatArray, c: FloatArray) -> tuple[float, float]:
     """The inner products of a and of b with c, each in four sums, as an addition waits for the one before."""
     w, x, y, z = 0.0, 0.0, 0.0, 0.0
@@ -42,7 +42,7 @@ def _products(a: FloatArray, b: FloatArray, c: FloatArray) -> tuple[float, float
     return (w + x) + (y + z), (q + r) + (s + t)
 
 
-@compiled(internal=True)
+@compiled
 def _record(
     e: FloatArray, p: FloatArray, step: FloatArray, updated: FloatArray, change: FloatArray, change_up: FloatArray
 ) -> None:
@@ -53,14 +53,14 @@ def _record(
         step[j], updated[j] = e[j], y
 
 
-@compiled(internal=True)
+@compiled
 def _subtract(e: FloatArray, a: FloatArray, weight: float) -> None:
     """e -= weight a"""
     for j in range(e.shape[0]):
         e[j] -= weight * a[j]
 
 
-@compiled(internal=True)
+@compiled
 def _weights(numbers: FloatArray, known: int, trace: float) -> None:
     """Solve the damped normal equations, positive definite, for the weights: the last column of the system."""
     A, width = numbers[SYSTEM:], MEMORY + 1
@@ -80,7 +80,7 @@ def _weights(numbers: FloatArray, known: int, trace: float) -> None:
         A[i * width + MEMORY] /= A[i * width + i]
 
 
-@compiled(internal=True)
+@compiled
 def accelerate(group: Group, q: int, closed: bool, error: float, first: bool) -> None:
     """Replace the steps EX, EY of polygon q after a pass with ``error``, its ``first`` one or a later one."""
     n, order, lane0 = group.table[q, COUNT], group.table[q, ORDER], group.table[q, LANE] + HALO

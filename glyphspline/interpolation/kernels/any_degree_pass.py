@@ -64,7 +64,7 @@ def power_matrices(u: FloatArray, degree: int, closed: bool) -> FloatArray:
     return np.stack(rows, axis=1)
 
 
-@compiled(internal=True)
+@compiled
 def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatArray) -> None:
     """Coefficients of the piece about p: b[k] of (t - start)^k."""
     order, size = b.shape
@@ -81,7 +81,7 @@ def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatAr
         b[k, 0], b[k, 1] = x, y
 
 
-@compiled(internal=True)
+@compiled
 def _for_search(b: FloatArray, c: FloatArray) -> None:
     """The coefficients as :func:`search_piece` takes them, c[axis, k]; of many coordinates as few as have to be.
 
@@ -96,7 +96,7 @@ def _for_search(b: FloatArray, c: FloatArray) -> None:
             c[axis, k] = b[k, axis]
 
 
-@compiled(internal=True)
+@compiled
 def _error(b: FloatArray, y: float, e: FloatArray) -> float:
     """Write minus the piece's value at y to e; returns its length."""
     d, size = b.shape[0] - 1, b.shape[1]
@@ -112,7 +112,7 @@ def _error(b: FloatArray, y: float, e: FloatArray) -> float:
     return np.hypot(distance, np.sqrt(squares)) if size > 2 else distance
 
 
-@compiled(internal=True)
+@compiled
 def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
     """The fixed control points beside natural ends, which follow the first and last free ones."""
     if count > 0 and v.period == 0.0:
@@ -177,7 +177,7 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
     return largest, uncertified
 
 
-@compiled(internal=True)
+@compiled
 def _basis_value(w: FloatArray, spans: int, t: float, N: FloatArray) -> float:
     """B(t) on its knots w[0] … w[spans], by Cox and de Boor; each span is closed at its left end.
 
@@ -200,7 +200,7 @@ def _basis_value(w: FloatArray, spans: int, t: float, N: FloatArray) -> float:
     return N[0]
 
 
-@compiled(internal=True)
+@compiled
 def _bisected(w: FloatArray, spans: int, inside: float, outside: float, level: float, N: FloatArray) -> float:
     """The last parameter between ``inside`` and ``outside`` at which B ≥ level; with level < 0 that at which B' > 0.
 

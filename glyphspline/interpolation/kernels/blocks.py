@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled, inlined, select
+from ...compiled import compiled, inlined
+from ...intrinsics import select
 from ...types import FloatArray, IntArray
 
 LANES = 128
@@ -110,7 +111,7 @@ def whole_vectors(count: int) -> int:
     return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
-@compiled(internal=True)
+@compiled
 def lanes_used(group: Group, slots: int, b: int) -> int:
     """Lanes of block b from the first vertex to the last one."""
     table = group.table
@@ -119,7 +120,7 @@ def lanes_used(group: Group, slots: int, b: int) -> int:
     return table[slots - 1, LANE] + table[slots - 1, COUNT]
 
 
-@compiled(internal=True)
+@compiled
 def place(given: Given, found: Found, group: Group, slots: int) -> None:
     """Vertices, first control points, rates and weights of a group's polygons into their blocks."""
     clear(group)
@@ -141,7 +142,7 @@ def place(given: Given, found: Found, group: Group, slots: int) -> None:
             _place_ends(given, group, q)
 
 
-@compiled(internal=True)
+@compiled
 def clear(group: Group) -> None:
     """Zeros in the first and the last block, which have lanes that no vertex uses."""
     count = (group.table[0, COUNT] + LANES - 1) // LANES
@@ -150,7 +151,7 @@ def clear(group: Group) -> None:
             group.blocks[j] = 0.0
 
 
-@compiled(internal=True)
+@compiled
 def place_weights(group: Group, q: int) -> None:
     """Rates and weights of polygon q."""
     n, first = group.table[q, COUNT], group.table[q, LANE]
@@ -160,7 +161,7 @@ def place_weights(group: Group, q: int) -> None:
         _weights(block, h, np.uint64(first), np.uint64(inside))
 
 
-@compiled(internal=True)
+@compiled
 def _weights(block: FloatArray, h: FloatArray, first: np.uint64, inside: np.uint64) -> None:
     """Rates and weights (see newton_simd.py) from one lane before the vertices to two behind them."""
     for i in range(ONE, inside + FOUR):
@@ -177,7 +178,7 @@ def _weights(block: FloatArray, h: FloatArray, first: np.uint64, inside: np.uint
         block[MOVE_B + lane] = (1.0 - lam) * c / 3.0
 
 
-@compiled(internal=True)
+@compiled
 def _place_ends(given: Given, group: Group, q: int) -> None:
     """The ends of an open arc: fixed points, and the control points beside them, by tangent or natural."""
     k, n, first = group.table[q, POLYGON], group.table[q, COUNT], group.table[q, LANE] + HALO
@@ -203,7 +204,7 @@ def _place_ends(given: Given, group: Group, q: int) -> None:
             row[BASE + 2 * end + axis], row[END + 2 * end + axis] = rest, here
 
 
-@compiled(internal=True)
+@compiled
 def move(given: Given, group: Group, slots: int, b: int) -> None:
     """P_i += p_i - C(t_i) for the control points of block b; those beside the ends of open arcs follow.
 
@@ -231,7 +232,7 @@ def move(given: Given, group: Group, slots: int, b: int) -> None:
             block[PX + beyond], block[PY + beyond] = 0.0, 0.0
 
 
-@compiled(internal=True)
+@compiled
 def repeated(i: int, n: int, closed: bool) -> int:
     """The vertex that a halo repeats in the place of vertex i; negative if there is none.
 
@@ -242,7 +243,7 @@ def repeated(i: int, n: int, closed: bool) -> int:
     return i if i <= n else -1
 
 
-@compiled(internal=True)
+@compiled
 def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
     """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed."""
     block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
@@ -260,7 +261,7 @@ def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
             block[PX + np.uint64(to)], block[PY + np.uint64(to)] = source[PX + at], source[PY + at]
 
 
-@compiled(internal=True)
+@compiled
 def close_ranks(group: Group, slots: int, done: int) -> int:
     """Move the polygons that are not ``done`` to the front of their block, in order; returns their number."""
     block, table, numbers = group.blocks, group.table, group.numbers

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, inlined, select
+from ...compiled import compiled, inlined
+from ...intrinsics import select
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import DD, EX, EY, TWO, X
@@ -33,7 +34,7 @@ def _less_rounding(x: float, y: float) -> float:
     return x + y - ROUNDING * (abs(x) + abs(y))
 
 
-@compiled(internal=True)
+@compiled
 def _least_distance(
     ex: float, ey: float, vx: float, vy: float, wx: float, wy: float, zx: float, zy: float, L: float
 ) -> float:
@@ -56,7 +57,7 @@ def _least_distance(
     return select(d < least, d, least)
 
 
-@compiled(internal=True)
+@compiled
 def proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
     """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
 
@@ -76,7 +77,7 @@ def proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: fl
     return False
 
 
-@compiled(internal=True)
+@compiled
 def _second_look(S: FloatArray, j: int) -> bool:
     """Whether the certificate holds on the main side after all, in parts."""
     y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
@@ -89,7 +90,7 @@ def _second_look(S: FloatArray, j: int) -> bool:
     )
 
 
-@compiled(internal=True)
+@compiled
 def _search(
     B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float, c: FloatArray, work: FloatArray
 ) -> bool:
@@ -120,7 +121,7 @@ def _search(
     return certified
 
 
-@compiled(internal=True)
+@compiled
 def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, select
+from ...compiled import compiled
+from ...intrinsics import select
 from ...types import FloatArray
 from .blocks import (
     BLOCK, COUNT, EX, EY, HALF, HALO, INTERVALS, LANE, LANES, NATURAL, ONE, PAD, RATE, THIRD, TWO, Group, X,
@@ -22,7 +23,7 @@ BAND, RIGHT, ROW = 5, 5, 9
 SMALLEST_PIVOT = 1e-14
 
 
-@compiled(internal=True)
+@compiled
 def _collocation(group: Group, q: int) -> None:
     """B_{i-2} … B_{i+2} at u_i + x and the errors of every vertex, into rows: Cox and de Boor on the span of u_i + x.
 
@@ -56,7 +57,7 @@ def _collocation(group: Group, q: int) -> None:
             row[5], row[6], row[7], row[8] = block[EX + lane], block[EY + lane], 0.0, 0.0
 
 
-@compiled(internal=True)
+@compiled
 def _eliminate(rows: FloatArray) -> bool:
     """Solve the band for all four right-hand sides, in place. False if a pivot vanishes.
 
@@ -91,7 +92,7 @@ def _eliminate(rows: FloatArray) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def _eliminate_cyclic(rows: FloatArray, n: int) -> bool:
     """Solve with rows that wrap around, n ≥ 5. The solution is in columns 5 and 6 of each row."""
     m = n - 2
@@ -131,7 +132,7 @@ def _eliminate_cyclic(rows: FloatArray, n: int) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def _eliminate_dense(rows: FloatArray, n: int) -> bool:
     """Solve for n < 5, where a row has an unknown twice, by Gaussian elimination with pivoting."""
     A = rows[n : 2 * n]
@@ -160,7 +161,7 @@ def _eliminate_dense(rows: FloatArray, n: int) -> bool:
     return True
 
 
-@compiled(internal=True)
+@compiled
 def solve(group: Group, q: int, closed: bool) -> bool:
     """Corrections that take the curve of polygon q through every vertex at its present parameter, into EX and EY.
 

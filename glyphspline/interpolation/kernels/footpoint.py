@@ -94,7 +94,7 @@ def _square(rows: FloatArray, j: int, m: int) -> float:
     return total
 
 
-@compiled(internal=True)
+@compiled
 def _other_products(points: FloatArray, d: int, m: int, out: FloatArray) -> None:
     """What coordinates beyond the first two, of Bézier points (m, d + 1), add to the Bernstein coefficients of D."""
     for k in range(2 * d + 1):
@@ -106,7 +106,7 @@ def _other_products(points: FloatArray, d: int, m: int, out: FloatArray) -> None
             out[k] += PRODUCTS[d, i, k - i] * total
 
 
-@compiled(internal=True)
+@compiled
 def reduce(b: FloatArray, c: FloatArray) -> None:
     """Turn d + 1 coefficient vectors, the rows of b (d + 1, more than d + 1), into the columns of c (d + 1, d + 1).
 
@@ -136,7 +136,7 @@ def reduce(b: FloatArray, c: FloatArray) -> None:
                 b[other, axis] -= along * b[k, axis]
 
 
-@compiled(internal=True)
+@compiled
 def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y into the rows of ``work`` from ``SHIFTED`` on."""
     u, v = work[SHIFTED], work[SHIFTED + 1]
@@ -155,7 +155,7 @@ def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
                 u[i] += y * u[i + 1]
 
 
-@compiled(internal=True)
+@compiled
 def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y, and those of |q|², into their rows of ``work``."""
     shift(c, d, y, work)
@@ -175,7 +175,7 @@ def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
                 out[i + j] += u[i] * u[j]
 
 
-@compiled(internal=True)
+@compiled
 def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> tuple[float, float, float]:
     """A lower bound of D on [a, b], and D at a and at b.
 
@@ -215,7 +215,7 @@ def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> 
     return least - ROUNDING * largest, _square(points, 0, m), _square(points, d, m)
 
 
-@compiled(internal=True)
+@compiled
 def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float) -> bool:
     """Whether D ≥ D(y0) - allowed between 0 and L (either sign), for the expansion about y0 in ``work``.
 
@@ -245,7 +245,7 @@ def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float)
     return rises or slope * slope <= 4.0 * least * allowed
 
 
-@compiled(internal=True)
+@compiled
 def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> float:
     """Newton's method for q·q' = 0, kept inside [low, high]; Gauss and Newton's step where D is not convex."""
     for _ in range(NEWTON_STEPS):
@@ -276,7 +276,7 @@ def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> f
     return y
 
 
-@compiled(internal=True)
+@compiled
 def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: float) -> tuple[float, float]:
     """The nearer of two candidates (parameter, squared distance); in a tie the one nearer ``centre``."""
     if new_D < D * (1 - EQUAL) - tie:

@@ -22,7 +22,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, fma, inlined, select, wide_vectors
+from ...compiled import compiled, inlined
+from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import (
@@ -64,7 +65,7 @@ def _rough(e: float, v: float, w: float, z: float, L: float) -> float:
     return fma(squared, 16.0 * fma(2.0 * v, z, w * w) + L * (64.0 * w * z) + 64.0 * squared * (z * z), low)
 
 
-@compiled(internal=True)
+@compiled
 def _products(P: FloatArray, Q: FloatArray, S: FloatArray, pairs: int, m: int) -> None:
     """The sums over the coordinates."""
     wide_vectors()
@@ -88,7 +89,7 @@ def _products(P: FloatArray, Q: FloatArray, S: FloatArray, pairs: int, m: int) -
             S[F2 + j] = fma(fx, x2, fma(fy, y2, S[F2 + j]))
 
 
-@compiled(internal=True)
+@compiled
 def _expand(B: FloatArray, S: FloatArray, m: int, rho: float) -> None:
     """Main side, coefficients of D' on it, and the certificate of the other side, whose flag goes into BAD."""
     wide_vectors()
@@ -164,7 +165,7 @@ def _expand(B: FloatArray, S: FloatArray, m: int, rho: float) -> None:
         S[BAD + j] = select((rise <= fma(L, guard, 2.0 * rho * le * lv)) & (L > 0.0), 2.0, 0.0)
 
 
-@compiled(internal=True)
+@compiled
 def _newton(S: FloatArray, m: int) -> int:
     """One step for every vertex that has not converged; returns the number of those that still have not."""
     wide_vectors()
@@ -207,7 +208,7 @@ def _guard(S: FloatArray, j: int, y: float) -> float:
     return fma(GUARD, fma(squared, fma(squared, h5 * (1.0 / 3.0), bent), speed), S[ROUGH + j])
 
 
-@compiled(internal=True)
+@compiled
 def _certify(B: FloatArray, S: FloatArray, m: int) -> None:
     """Write footpoints to the block, the factors of the D_i at them, and flags."""
     wide_vectors()
@@ -236,7 +237,7 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> None:
         S[K2 + j] = select(right, beyond, 0.0) * B[RATE + j + TWO]
 
 
-@compiled(internal=True)
+@compiled
 def _errors(
     B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, pairs: int, m: int
 ) -> tuple[int, int]:
@@ -267,7 +268,7 @@ def _errors(
     return bad, wild
 
 
-@compiled(internal=True)
+@compiled
 def seek_space(
     B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int
 ) -> tuple[int, int]:
@@ -288,7 +289,7 @@ def seek_space(
     return _errors(B, P, Q, N, S, pairs, m)
 
 
-@compiled(internal=True)
+@compiled
 def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: int, right: bool, b: FloatArray) -> None:
     """Rows E, V outwards, W and Z (4, d) of the curve to the right or to the left of the knot of a lane."""
     r0, r1, lam, s0 = B[RATE + j], B[RATE + j + ONE], B[LAMBDA + j], B[HALF + j]
@@ -307,7 +308,7 @@ def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: int, right:
         b[1, axis], b[2, axis] = (v if right else -v), w
 
 
-@compiled(internal=True)
+@compiled
 def _proven_farther(S: FloatArray, j: int, D: float) -> bool:
     """Whether all of the other side is farther than √D, by the Bernstein coefficients of the squared distance."""
     L, least = S[OTHER + j], np.inf
@@ -321,7 +322,7 @@ def _proven_farther(S: FloatArray, j: int, D: float) -> bool:
     return least - S[ODOUBT + j] > BEYOND * D
 
 
-@compiled(internal=True)
+@compiled
 def flagged_space(
     B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int, b: FloatArray,
     c: FloatArray, work: FloatArray,

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, select
+from ...compiled import compiled
+from ...intrinsics import select
 from ...types import FloatArray
 from .anderson import accelerate
 from .blocks import (
@@ -38,7 +39,7 @@ SPARSE = 0.75
 """Share of the lanes in use below which they are compacted. Copying all fields takes a quarter of a pass."""
 
 
-@compiled(internal=True)
+@compiled
 def largest(block: FloatArray, low: int, high: int) -> float:
     """The largest squared distance in lanes low to high - 1, by four, as each comparison waits for the one before."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -53,7 +54,7 @@ def largest(block: FloatArray, low: int, high: int) -> float:
     return select(c > a, c, a)
 
 
-@compiled(internal=True)
+@compiled
 def pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int) -> None:
     """Note which polygons have an error in block b that is not finite: they are not searched.
 
@@ -72,7 +73,7 @@ def pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, 
             table[q, UNCERTIFIED] += n
 
 
-@compiled(internal=True)
+@compiled
 def take_in(
     given: Given, group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int, searched: int
 ) -> None:
@@ -92,7 +93,7 @@ def take_in(
         numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
 
 
-@compiled(internal=True)
+@compiled
 def _one_pass(given: Given, group: Group, slots: int) -> None:
     """Moves, then footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
     S, table, numbers = group.scratch, group.table, group.numbers
@@ -116,7 +117,7 @@ def _one_pass(given: Given, group: Group, slots: int) -> None:
             return
 
 
-@compiled(internal=True)
+@compiled
 def _store(given: Given, found: Found, group: Group, q: int) -> None:
     """Results of polygon q in the caller's units; its parameters are held from here on.
 
@@ -137,7 +138,7 @@ def _store(given: Given, found: Found, group: Group, q: int) -> None:
     store_rest(given, found, group, q)
 
 
-@compiled(internal=True)
+@compiled
 def store_rest(given: Given, found: Found, group: Group, q: int) -> None:
     """What does not depend on the dimension of the results of polygon q."""
     k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
@@ -154,7 +155,7 @@ def store_rest(given: Given, found: Found, group: Group, q: int) -> None:
     found.rates[k] = 2.0 * (1.0 - row[LEAST])
 
 
-@compiled(internal=True)
+@compiled
 def grown(array: FloatArray, size: int) -> FloatArray:
     """The array, or a larger one of at least ``size`` that begins with it."""
     if array.shape[0] >= size:
@@ -165,7 +166,7 @@ def grown(array: FloatArray, size: int) -> FloatArray:
     return larger
 
 
-@compiled(internal=True)
+@compiled
 def judged(given: Given, group: Group, q: int, history: FloatArray, every: int) -> int:
     """Record the error of polygon q; whether it has another pass, is solved with its footpoints frozen, or is done."""
     table, n = group.table, group.table[q, COUNT]
@@ -183,20 +184,20 @@ def judged(given: Given, group: Group, q: int, history: FloatArray, every: int) 
     return STORE
 
 
-@compiled(internal=True)
+@compiled
 def settle(group: Group, q: int, good: bool, first: bool) -> None:
     """Note that the frozen system of polygon q is solved: it may be once more after the first time, if it was good."""
     group.table[q, STATE] = SOLVED_ONCE if good and first else SOLVED
 
 
-@compiled(internal=True)
+@compiled
 def mark_done(group: Group, q: int) -> None:
     """Note that polygon q is done."""
     table = group.table
     table[q, STATE], table[table[q, ORDER], TOTAL] = DONE, table[q, PASSES]
 
 
-@compiled(internal=True)
+@compiled
 def start_all(group: Group, slots: int) -> None:
     """All polygons of a group before their first pass."""
     for q in range(slots):
@@ -204,7 +205,7 @@ def start_all(group: Group, slots: int) -> None:
         group.table[q, PASSES] = group.table[q, SEARCHED] = group.table[q, UNCERTIFIED] = 0
 
 
-@compiled(internal=True)
+@compiled
 def collected(
     group: Group, slots: int, history: FloatArray, residuals: FloatArray, used: int
 ) -> tuple[FloatArray, int]:
@@ -218,7 +219,7 @@ def collected(
     return residuals, used
 
 
-@compiled(internal=True)
+@compiled
 def _after_pass(given: Given, found: Found, group: Group, q: int, history: FloatArray, every: int) -> bool:
     """Record the error of polygon q, prepare its next pass, or store it; whether it is done."""
     running = group.table[q, STATE] == RUNNING
@@ -235,7 +236,7 @@ def _after_pass(given: Given, found: Found, group: Group, q: int, history: Float
     return what == STORE
 
 
-@compiled(internal=True)
+@compiled
 def iterate(
     given: Given, found: Found, group: Group, slots: int, history: FloatArray, residuals: FloatArray, used: int
 ) -> tuple[FloatArray, FloatArray, int]:

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, fma, select, wide_vectors
+from ...compiled import compiled
+from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
     BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, NATURAL, ONE, PAD, POLYGON, STRIDE, THREE,
@@ -28,7 +29,7 @@ CLOSE = 1e-9
 """A Newton step below this share of the span is the last: the error left is its square."""
 
 
-@compiled(internal=True)
+@compiled
 def _prepare(h: FloatArray, S: FloatArray, first: np.uint64, count: int, margin: float, peak_share: float) -> None:
     """Coefficients, peak and level of the basis functions of ``count`` lanes; h[0] is two intervals before the knot of
     the first.
@@ -68,7 +69,7 @@ def _prepare(h: FloatArray, S: FloatArray, first: np.uint64, count: int, margin:
         S[PROBLEM_B + OUTSIDE + j] = select(outside, 0.0, 1.0)
 
 
-@compiled(internal=True)
+@compiled
 def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
     """One step for every crossing; returns the number of those that have not converged."""
     wide_vectors()
@@ -97,7 +98,7 @@ def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
     return pending
 
 
-@compiled(internal=True)
+@compiled
 def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> None:
     """Write where every basis function crosses its level to a field, from halfway by at most ``STEPS`` steps.
 
@@ -116,7 +117,7 @@ def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> 
         S[result + j] = S[R1 + j]
 
 
-@compiled(internal=True)
+@compiled
 def _interval(
     S: FloatArray, lane: np.uint64, a: float, b: float, c: float, d: float, variant: int, peak_share: float
 ) -> tuple[float, float, float, bool]:
@@ -144,7 +145,7 @@ def _interval(
     return min(end, other), max(end, other), min(beyond, before), low
 
 
-@compiled(internal=True)
+@compiled
 def _end_interval(
     given: Given, group: Group, q: int, h: FloatArray, k: int, i: int, low: float, high: float, value: float,
     missing: bool,
@@ -165,7 +166,7 @@ def _end_interval(
     return left, right, least, False
 
 
-@compiled(internal=True)
+@compiled
 def fill_intervals(given: Given, group: Group, slots: int) -> None:
     """Write search intervals, relative to their knots, to the blocks; fallbacks and least values of B_i to the group.
 

@@ -28,7 +28,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, fma, inlined, select, wide_vectors
+from ...compiled import compiled, inlined
+from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
     DD, EX, EY, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PX, PY, QX, QY, RATE, STRIDE, THIRD, THREE, TWO, X,
@@ -158,7 +159,7 @@ def squares(speed: float, ax: float, ay: float, c4: float, L: float) -> float:
     return GUARD * fma(squared, fma(squared, c4, dot(ax, ay, ax, ay)), speed)
 
 
-@compiled(internal=True)
+@compiled
 def _taylor(B: FloatArray, S: FloatArray, m: int) -> None:
     """Derivatives at the knots from control points (see the module), main side chosen, into the scratch block."""
     wide_vectors()
@@ -202,7 +203,7 @@ def _taylor(B: FloatArray, S: FloatArray, m: int) -> None:
         S[OZY + j] = select(forward, ly, ry)
 
 
-@compiled(internal=True)
+@compiled
 def _newton(S: FloatArray, m: int) -> int:
     """One step for every vertex that has not converged; returns the number of those that still have not."""
     wide_vectors()
@@ -224,7 +225,7 @@ def _newton(S: FloatArray, m: int) -> int:
     return pending
 
 
-@compiled(internal=True)
+@compiled
 def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
     """Write footpoints, errors p - C(t) and squared distances to the block; returns counts of flagged, not finite."""
     wide_vectors()
@@ -258,7 +259,7 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
     return bad, wild
 
 
-@compiled(internal=True)
+@compiled
 def seek(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
     """Write footpoints and errors to m lanes of a block; returns the numbers of flagged and of not finite ones.
 

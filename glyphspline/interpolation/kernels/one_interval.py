@@ -13,13 +13,13 @@ from ...types import FloatArray
 from ..intervals import END_MARGIN
 
 
-@compiled(internal=True)
+@compiled
 def near_end(i: int, n: int) -> bool:
     """Whether a fixed function of an arc of n vertices reaches the interval of vertex i, an inner one."""
     return i <= 2 or i >= n - 3
 
 
-@compiled(internal=True)
+@compiled
 def basis_pieces(h: FloatArray, at: int, before: FloatArray, after: FloatArray) -> None:
     """Bernstein coefficients (4,) of B_i on the spans before and after u_i; h[at] is the interval before u_i."""
     a, b, c, d = h[at - 1], h[at], h[at + 1], h[at + 2]
@@ -29,7 +29,7 @@ def basis_pieces(h: FloatArray, at: int, before: FloatArray, after: FloatArray) 
     before[3] = after[0] = (1.0 - share) * before[2] + share * after[1]
 
 
-@compiled(internal=True)
+@compiled
 def add_fixed(
     h: FloatArray, at: int, i: int, n: int, first: float, last: float, before: FloatArray, after: FloatArray
 ) -> None:
@@ -60,7 +60,7 @@ def add_fixed(
         after[3] += end_shares(h[at + 2], h[at + 1], 1.0 - last)[2]
 
 
-@compiled(internal=True)
+@compiled
 def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, float, float]:
     """Bernstein coefficients 1 to 3, on the span at an end of an arc, of half the function beside that of the end.
 
@@ -71,7 +71,7 @@ def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, flo
     return half, half * share, half * share * share
 
 
-@compiled(internal=True)
+@compiled
 def row_pieces(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> tuple[FloatArray, FloatArray]:
     """(4,) Bernstein coefficients of W_i on the spans before and after u_i; arguments as for :func:`add_fixed`."""
     before, after = np.empty(4), np.empty(4)
@@ -80,7 +80,7 @@ def row_pieces(h: FloatArray, at: int, i: int, n: int, first: float, last: float
     return before, after
 
 
-@compiled(internal=True)
+@compiled
 def end_interval(
     h: FloatArray, at: int, i: int, n: int, first: float, last: float, margin: float, share: float
 ) -> tuple[float, float, float, bool]:
@@ -93,20 +93,20 @@ def end_interval(
     return one_interval(before, after, margin_at(i, n, margin), share)
 
 
-@compiled(internal=True)
+@compiled
 def margin_at(i: int, n: int, margin: float) -> float:
     """The margin of vertex i of an arc: ``END_MARGIN`` at least for the first and the last of the inner ones."""
     return max(margin, END_MARGIN) if i in (1, n - 2) else margin
 
 
-@compiled(internal=True)
+@compiled
 def value_at_knot(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> float:
     """W_i(u_i), with arguments as for :func:`add_fixed`."""
     before, _ = row_pieces(h, at, i, n, first, last)
     return before[3]
 
 
-@compiled(internal=True)
+@compiled
 def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float, float, bool]:
     """Lemma 2 for one vertex: where its function is at least 1/2 + c, or as high as it gets if that is lower.
 
@@ -143,7 +143,7 @@ def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> t
     return low, high, min(max(a[0], level), max(b[3], level)), True
 
 
-@compiled(internal=True)
+@compiled
 def _hump(c0: float, c1: float, c2: float, c3: float) -> float:
     """Where a cubic on [0, 1] that rises at 0 has its first maximum; 0 if it does not rise, 1 if it does not fall.
 
@@ -158,13 +158,13 @@ def _hump(c0: float, c1: float, c2: float, c3: float) -> float:
     return d0 / (d0 - d1 + np.sqrt(square))
 
 
-@compiled(internal=True)
+@compiled
 def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
     y = 1 - x
     return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
 
 
-@compiled(internal=True)
+@compiled
 def _crossing(c0: float, c1: float, c2: float, c3: float, level: float, low: float, high: float) -> float:
     """Where a cubic takes a value between those at ``low`` and ``high``, which it does only once between them."""
     rising = _bernstein(c0, c1, c2, c3, high) > _bernstein(c0, c1, c2, c3, low)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import borrowed, compiled, keep_alive
+from ...compiled import compiled
+from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray, IntArray
 from ..method import SETTLED
 from .anderson import NUMBERS, ROWS
@@ -88,7 +89,7 @@ def run(
     return residuals[:used]
 
 
-@compiled(internal=True)
+@compiled
 def enter(
     given: Given, found: Found, group: Group, q: int, k: int, n: int, lane: int, at: int, unit: float, knot_unit: float
 ) -> None:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import borrowed, compiled, keep_alive
+from ...compiled import compiled
+from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray, IntArray
 from .blocks import (
     BLOCK, COUNT, END, EX, EY, HALO, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, NATURAL, PAD, PASSES,
@@ -31,13 +32,13 @@ BESIDE, LAST = 0, 2
 """Rows of a polygon's ends (4, d): of both ends of an open arc the rest of the control point beside it, and the end."""
 
 
-@compiled(internal=True)
+@compiled
 def _size(d: int) -> int:
     """Numbers in ``space`` for a block."""
     return (d + 1) // 2 * PAIR
 
 
-@compiled(internal=True)
+@compiled
 def _place(
     given: Given, found: Found, group: Group, N: FloatArray, Q: FloatArray, ends: FloatArray, slots: int
 ) -> None:
@@ -61,7 +62,7 @@ def _place(
             _place_ends(given, found, group, ends[4 * q : 4 * q + 4], q)
 
 
-@compiled(internal=True)
+@compiled
 def _place_ends(given: Given, found: Found, group: Group, ends: FloatArray, q: int) -> None:
     """The ends of an open arc: fixed points, and the control points beside them, by tangent or natural."""
     k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
@@ -86,7 +87,7 @@ def _place_ends(given: Given, found: Found, group: Group, ends: FloatArray, q: i
             ends[BESIDE + end, axis], ends[LAST + end, axis] = rest, here
 
 
-@compiled(internal=True)
+@compiled
 def _surround(given: Given, group: Group, P: FloatArray, ends: FloatArray, slots: int) -> None:
     """The control points beside the ends of open arcs, which follow their neighbours; then those in the halos."""
     d, size, table = given.points.shape[1], _size(given.points.shape[1]), group.table
@@ -117,7 +118,7 @@ def _surround(given: Given, group: Group, P: FloatArray, ends: FloatArray, slots
                     P[to + axis] = P[at + axis]
 
 
-@compiled(internal=True)
+@compiled
 def _one_pass(
     given: Given, group: Group, P: FloatArray, Q: FloatArray, N: FloatArray, ends: FloatArray, slots: int,
     b4: FloatArray, c: FloatArray, work: FloatArray,
@@ -142,7 +143,7 @@ def _one_pass(
             return
 
 
-@compiled(internal=True)
+@compiled
 def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> None:
     """Results of polygon q in the caller's units."""
     k, n, row, d = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q], given.points.shape[1]
@@ -159,7 +160,7 @@ def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> N
     store_rest(given, found, group, q)
 
 
-@compiled(internal=True)
+@compiled
 def _solve(given: Given, group: Group, P: FloatArray, N: FloatArray, q: int) -> bool:
     """The frozen system of polygon q for all coordinates, two at a time: N = P + its solution. False if singular."""
     d, size, n, first = given.points.shape[1], _size(given.points.shape[1]), group.table[q, COUNT], group.table[q, LANE]
@@ -179,7 +180,7 @@ def _solve(given: Given, group: Group, P: FloatArray, N: FloatArray, q: int) -> 
     return good
 
 
-@compiled(internal=True)
+@compiled
 def _after_pass(
     given: Given, found: Found, group: Group, P: FloatArray, N: FloatArray, q: int, history: FloatArray, every: int
 ) -> bool:
@@ -195,7 +196,7 @@ def _after_pass(
     return what == STORE
 
 
-@compiled(internal=True)
+@compiled
 def _close_ranks(group: Group, P: FloatArray, Q: FloatArray, ends: FloatArray, d: int, slots: int) -> int:
     """Move the polygons that are not done to the front of their block, in order; returns their number."""
     left, to = 0, 0
@@ -211,7 +212,7 @@ def _close_ranks(group: Group, P: FloatArray, Q: FloatArray, ends: FloatArray, d
     return close_ranks(group, slots, DONE)
 
 
-@compiled(internal=True)
+@compiled
 def _iterate(
     given: Given, found: Found, group: Group, P: FloatArray, Q: FloatArray, N: FloatArray, ends: FloatArray,
     slots: int, history: FloatArray, residuals: FloatArray, used: int,

@@ -40,7 +40,7 @@ def _same(p: FloatArray, i: int, j: int) -> bool:
     return same
 
 
-@compiled(internal=True)
+@compiled
 def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
     """Write the indices of the vertices that are kept; returns their number, -1 for a bad polygon, and the extent."""
     n = points.shape[0]
@@ -85,7 +85,7 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
     return -1, extent
 
 
-@compiled(internal=True)
+@compiled
 def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, u: FloatArray) -> bool:
     """Write knots, sums of powers of chord lengths, to u. False if two of them coincide."""
     total = 0.0
@@ -104,7 +104,7 @@ def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: 
     return True
 
 
-@compiled(internal=True)
+@compiled
 def _given_knots(given: FloatArray, kept: IntArray, count: int, closed: bool, u: FloatArray) -> bool:
     """Write the given parameters of the vertices kept to u. False if they are not finite and increasing."""
     for i in range(count):
@@ -126,14 +126,14 @@ def _power_of_two(x: float) -> float:
     return math.ldexp(1.0, 1 - math.frexp(x)[1])
 
 
-@compiled(internal=True)
+@compiled
 def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
     """The knots of polygon k."""
     first = given.offsets[k] + (k if given.closed else 0)
     return found.knots[first : first + n + (1 if given.closed else 0)]
 
 
-@compiled(internal=True)
+@compiled
 def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
     """Merge vertices of polygon k and compute its knots; returns the number kept, 0 if refused, and two scales.
 
@@ -161,7 +161,7 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
     return n, _power_of_two(extent), _power_of_two(u[-1] / n)
 
 
-@compiled(internal=True)
+@compiled
 def pad_intervals(u: FloatArray, closed: bool, unit: float, h: FloatArray) -> None:
     """Knot intervals times ``unit``: h[PAD + i] is that from u_i on, continued periodically, or by zeros."""
     spans = u.shape[0] - 1

@@ -21,9 +21,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import uharfbuzz as hb
 from fontTools.ttLib import TTFont
-from numba import cfunc, types
+from numba import types
 
-from ...compiled import compiled
+from ...compiled import callback, compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...types import BoolArray, FloatArray, IntArray
@@ -59,14 +59,14 @@ UNUSUAL, UNCOUNTED = -1, -2
 """In place of a number of contours: the careful reader has to read the glyph; the number is unknown."""
 
 
-def _callback(points: int) -> Any:
+def _drawing(points: int) -> Any:
     """The signature of a drawing operation: functions, buffer, state, coordinates, user data."""
     buffer = types.CPointer(types.double)
     return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
 
 
 # The callbacks write nothing beyond the capacity; a full buffer remains full.
-@cfunc(_callback(1), cache=True)
+@callback(_drawing(1))
 def _point(functions: int, buffer: Any, state: int, x: float, y: float, user: int) -> None:
     """A move (user data 1) or a line (2)."""
     used = int(buffer[0])
@@ -77,7 +77,7 @@ def _point(functions: int, buffer: Any, state: int, x: float, y: float, user: in
         buffer[0] = buffer[1]
 
 
-@cfunc(_callback(2), cache=True)
+@callback(_drawing(2))
 def _quadratic(functions: int, buffer: Any, state: int, ax: float, ay: float, x: float, y: float, user: int) -> None:
     used = int(buffer[0])
     if used + LONGEST < buffer[1]:
@@ -88,7 +88,7 @@ def _quadratic(functions: int, buffer: Any, state: int, ax: float, ay: float, x:
         buffer[0] = buffer[1]
 
 
-@cfunc(_callback(3), cache=True)
+@callback(_drawing(3))
 def _cubic(
     functions: int, buffer: Any, state: int, ax: float, ay: float, bx: float, by: float, x: float, y: float, user: int
 ) -> None:

@@ -8,7 +8,7 @@ from ...compiled import compiled
 from ...types import FloatArray, IntArray
 
 
-@compiled(internal=True)
+@compiled
 def grow(box: FloatArray, points: FloatArray, degrees: IntArray) -> None:
     """Widen a box (left, bottom, right, top) by one closed contour: ``points`` (N, 2), ``degrees`` (m,)."""
     at = 0
@@ -31,7 +31,7 @@ def grow(box: FloatArray, points: FloatArray, degrees: IntArray) -> None:
         at += degree
 
 
-@compiled(internal=True)
+@compiled
 def _extrema(p0: float, p1: float, p2: float, p3: float) -> tuple[float, float]:
     """Both values of a cubic where its derivative is zero, or at an end where there is no such place."""
     a, half_b, c = p3 - 3.0 * p2 + 3.0 * p1 - p0, p2 - 2.0 * p1 + p0, p1 - p0
@@ -41,7 +41,7 @@ def _extrema(p0: float, p1: float, p2: float, p3: float) -> tuple[float, float]:
     return _at(p0, p1, p2, p3, q, a), _at(p0, p1, p2, p3, c, q)
 
 
-@compiled(internal=True)
+@compiled
 def _at(p0: float, p1: float, p2: float, p3: float, numerator: float, denominator: float) -> float:
     """The cubic at a quotient, if that is between 0 and 1, or else at the nearer end."""
     x = numerator / denominator if abs(denominator) > abs(numerator) else 0.0

@@ -75,7 +75,7 @@ def comb_text(
     return text[: parts[LAYERS]], parts, box / power
 
 
-@compiled(internal=True)
+@compiled
 def _place(
     samples: FloatArray, side: float, hidden: BoolArray, tooth: float, scale: float, longest: float,
     least: float, power: int, points: FloatArray, classes: IntArray, used: int,
@@ -109,12 +109,12 @@ def _place(
     return used
 
 
-@compiled(internal=True)
+@compiled
 def _same(points: FloatArray, i: int, x: float, y: float, tx: float, ty: float) -> bool:
     return points[i, 0] == x and points[i, 1] == y and points[i, 2] == tx and points[i, 3] == ty
 
 
-@compiled(internal=True)
+@compiled
 def _bounds(points: FloatArray) -> FloatArray:
     """(4,) left, bottom, right, top of feet and tips (k, 4)."""
     left = bottom = np.inf
@@ -125,7 +125,7 @@ def _bounds(points: FloatArray) -> FloatArray:
     return np.array([left, bottom, right, top])
 
 
-@compiled(internal=True)
+@compiled
 def _teeth(at: np.uint64, points: FloatArray, classes: IntArray, parts: IntArray, figures: Figures) -> np.uint64:
     """Every tooth a stroke from foot to tip, class after class."""
     start = at
@@ -154,7 +154,7 @@ def _teeth(at: np.uint64, points: FloatArray, classes: IntArray, parts: IntArray
     return at
 
 
-@compiled(internal=True)
+@compiled
 def _line(at: np.uint64, points: FloatArray, classes: IntArray, ends: IntArray, figures: Figures) -> np.uint64:
     """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
     x = y = 0.0

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled, load, store
+from ...compiled import compiled
+from ...intrinsics import load, store
 
 INTEGERS = 10_000
 """Integer parts below this are looked up."""
@@ -60,7 +61,7 @@ def figures(precision: int) -> Figures:
     return Figures(precision, power, INTEGERS * power if looked_up else 0, np.array(words, dtype=np.uint64))
 
 
-@compiled(internal=True)
+@compiled
 def decimal(at: np.uint64, value: np.int64, figures: Figures) -> np.uint64:
     """Write value / power with no zeros at its end, and none before its point.
 
@@ -86,7 +87,7 @@ def decimal(at: np.uint64, value: np.int64, figures: Figures) -> np.uint64:
     return at + (word >> TOP)
 
 
-@compiled(internal=True)
+@compiled
 def _by_digits(at: np.uint64, value: np.int64, precision: int, power: int) -> np.uint64:
     """The same digit by digit, for any value from 0 up and any number of decimals."""
     whole = value // power

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiled import compiled, store
+from ...compiled import compiled
+from ...intrinsics import store
 from ...outlines.contour_arrays import ContourArrays
 from ...types import BoolArray, FloatArray, IntArray
 from .bounds import grow
@@ -79,7 +80,7 @@ def dots_text(points: FloatArray, tables: Figures) -> NDArray[np.uint8]:
     return text[: np.int64(dots(start, rounded, figures) - start)]
 
 
-@compiled(internal=True)
+@compiled
 def dots(at: np.uint64, points: FloatArray, figures: Figures) -> np.uint64:
     """A dot on each point (n, 2)."""
     x = y = 0.0
@@ -94,7 +95,7 @@ def dots(at: np.uint64, points: FloatArray, figures: Figures) -> np.uint64:
     return at
 
 
-@compiled(internal=True)
+@compiled
 def _contour(at: np.uint64, points: FloatArray, degrees: IntArray, closed: bool, figures: Figures) -> np.uint64:
     """One contour: M, then l, q or c, then Z, which also draws a last line.
 
@@ -124,7 +125,7 @@ def _contour(at: np.uint64, points: FloatArray, degrees: IntArray, closed: bool,
     return at + np.uint64(closed)
 
 
-@compiled(internal=True)
+@compiled
 def _fits(points: FloatArray) -> bool:
     """Whether all of the points (n, 2) can be written."""
     fine = True
@@ -133,7 +134,7 @@ def _fits(points: FloatArray) -> bool:
     return fine
 
 
-@compiled(internal=True)
+@compiled
 def step(at: np.uint64, letter: np.uint8, dx: float, dy: float, figures: Figures) -> np.uint64:
     """A command with one pair of numbers."""
     store(at, letter)
@@ -141,14 +142,14 @@ def step(at: np.uint64, letter: np.uint8, dx: float, dy: float, figures: Figures
     return _separated(at, -np.int64(dy), figures)
 
 
-@compiled(internal=True)
+@compiled
 def more(at: np.uint64, dx: float, dy: float, figures: Figures) -> np.uint64:
     """One more pair of numbers of the command before."""
     at = _separated(at, np.int64(dx), figures)
     return _separated(at, -np.int64(dy), figures)
 
 
-@compiled(internal=True)
+@compiled
 def _separated(at: np.uint64, value: np.int64, figures: Figures) -> np.uint64:
     """One more number: a minus separates it from the one before as well as a space."""
     store(at, SPACE)

@@ -1,0 +1,238 @@
+"""Small runs that load, or else compile, all code of one kind of work before its time is limited.
+
+Workers are forked from a process that has done so. What no run here calls is compiled by the first command that needs
+it, so a new compiled function is called by one of these, and a test says so.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import as_completed
+from functools import cache
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from ..fitting.options import Options
+from ..outlines.masters import DesignAxis, MasterContour, Masters
+from ..outlines.outline import Contour, Outline
+from .spec import needs_fit
+
+SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
+TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
+"""Touches the square, and itself."""
+
+LEAF = Contour(
+    np.array([[0.0, 0.0], [60.0, 0.0], [100.0, 40.0], [100.0, 100.0], [40.0, 100.0], [0.0, 60.0]]), np.array([3, 3])
+)
+
+DISC = Contour(
+    np.array(
+        [[9.0, 0], [9, 5], [5, 9], [0, 9], [-5, 9], [-9, 5], [-9, 0], [-9, -5], [-5, -9], [0, -9], [5, -9], [9, -5]]
+    )
+    * 10,
+    np.full(4, 3),
+)
+"""Needs a spline of several spans in the sharp mode, whose fit takes longest to compile."""
+
+KNOT = Contour(
+    np.array(
+        [[262, 298], [814, 92], [600, 729], [188, 55], [275, 657], [562, 150], [433, 669], [423, 633], [967, 683]],
+        dtype=np.float64,
+    ),
+    np.full(3, 3),
+)
+"""Crosses itself, and is fitted again more than once."""
+
+SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
+
+AXES = (DesignAxis("wght", "Weight", 0, 0, 1),)
+REGIONS = np.array([[[0.0, 1.0, 1.0]]])
+
+
+def preload(kinds: Sequence[str]) -> list[str]:
+    """What a :class:`.pool.WorkerPool` loads for kinds of work."""
+    return [f"{__name__}:{kind}" for kind in kinds]
+
+
+def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
+    """The kinds of work in a run with these options; None: nothing is converted."""
+    if options is None:
+        return []
+    if masters:
+        return ["masters"]
+    if formats and not needs_fit(formats):
+        return ["unfitted", *(["rest"] if options.remove_overlaps else [])]
+    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    rest = ["rest"] if options.remove_overlaps else []
+    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
+
+
+@cache
+def prepare(kind: str) -> None:
+    """Do the small runs of a kind of work, once in a process."""
+    WORK[kind]()
+
+
+def warm(jobs: int | None = None, observer: Callable[[int, int], None] | None = None) -> None:
+    """Compile every function that is not kept yet, in several processes.
+
+    Args:
+        jobs: processes; None takes all cores.
+        observer: called with the number of kinds of work that are done and of all, after each.
+
+    Raises:
+        GlyphsplineError: a process died.
+    """
+    from .pool import WorkerPool
+
+    size = min(jobs or os.cpu_count() or 1, len(WORK))
+    with WorkerPool(size, inf, expected=size) as pool:
+        calls = [pool.submit(prepare, kind) for kind in WORK]
+        for done, call in enumerate(as_completed(calls), start=1):
+            call.result()
+            if observer:
+                observer(done, len(WORK))
+
+
+def converted(options: Options) -> Any:
+    """Convert shapes with and without corners, and draw them, as a worker does."""
+    from ..fitting.convert import convert
+    from ..writers.svg.document import to_svg
+
+    read()
+    result = convert(SHAPES, options)
+    to_svg(result)
+    return result
+
+
+def read() -> None:
+    """Load what reads outlines, after all modules of a worker."""
+    from ..readers.opentype.bulk import load_compiled
+    from . import worker  # noqa: F401
+
+    load_compiled()
+
+
+def interpolations() -> None:
+    """The interpolation of a polygon by itself, in all its kinds."""
+    from ..interpolation.api import interpolate, interpolate_many, interpolate_vertex
+
+    interpolate(SQUARE.points)
+    interpolate_many([SQUARE.points])
+    interpolate(SQUARE.points, closed=False, finish="solve")
+    interpolate(SQUARE.points, 4)
+    interpolate(SQUARE.points, degree=4)
+    interpolate(SQUARE.points, knots=np.arange(5.0))
+    interpolate_vertex(SQUARE.points, 0)
+    interpolate(np.eye(4), finish="solve")
+
+
+def drawings() -> None:
+    """Curvature maps, and what the gallery shows."""
+    from ..fitting.results import as_glyph
+    from ..writers.svg.curvature_map import to_curvature_svg
+    from ..writers.svg.polygon_drawing import to_polygon_svg
+
+    to_curvature_svg(as_glyph(SHAPES))  # before anything is fitted: another process may be compiling that
+    glyph = converted(Options(step=20.0))
+    to_curvature_svg(glyph)
+    to_polygon_svg(glyph)
+
+
+def masters() -> None:
+    """Masters as one curve, with arcs that fail the certificate at first and one that ends on a slanted line."""
+    from ..fitting.convert_masters import convert_masters
+
+    bow = np.array([[100, 0], [100, 500], [100, 700], [500, 650], [500, 400], [500, 0]], dtype=np.float64)
+    bold = np.array([[100, 0], [220, 500], [250, 625], [500, 650], [500, 300], [500, 0]], dtype=np.float64)
+    disc = MasterContour(np.stack([DISC.points * 3, DISC.points[:, ::-1] * [2.0, -5.0]]), DISC.degrees)
+    slanted = MasterContour(np.stack([bow, bold]), np.array([1, 3, 1, 1]))
+    family = Masters("shapes", axes=AXES, regions=REGIONS, contours=(disc, slanted), advances=np.ones(2))
+    result = convert_masters(family, Options(corners="sharp", tolerance=0.3))
+    result.energy_ratio({"wght": 0.5})
+    result.turn({"wght": 0.5})
+
+
+def checks() -> None:
+    """Checks of outlines, of one font and along an axis."""
+    from ..checks.check import check
+    from ..checks.kinds import Thresholds
+    from ..checks.on_axes import on_axes
+
+    read()
+    check(SHAPES)
+    check(Outline("twice", contours=(KNOT, KNOT)))
+    disc = MasterContour(np.stack([DISC.points, DISC.points * 2]), DISC.degrees)
+    family = Masters("disc", axes=AXES, regions=REGIONS, contours=[disc], advances=np.ones(2))
+    on_axes([family], {}, ["wght"], 2, Thresholds())
+
+
+def comparisons() -> None:
+    """Outlines compared: one moved, one that lacks a contour."""
+    from ..comparing.compare import compare
+    from . import compare_glyphs  # noqa: F401
+
+    read()
+    compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))
+
+
+def unfitted() -> None:
+    """What a run needs that fits nothing: reading outlines, and drawing them as they are."""
+    from ..fitting.results import as_glyph
+    from ..writers.svg.document import to_svg
+
+    read()
+    to_svg(as_glyph(SHAPES))
+
+
+def points() -> None:
+    """Rows of data sets: canonical outlines, and points at equal arc lengths or at vertices."""
+    from ..fitting.results import as_glyph
+    from ..outlines.canonical_outlines import canonical_outlines
+    from ..outlines.resampling import at_vertices, resampled
+
+    read()
+    both = (Outline("in order", contours=(SQUARE, DISC)), Outline("other order", contours=(LEAF, DISC)))
+    canonical_outlines([SHAPES, *both])
+    arrays = as_glyph(SHAPES).arrays
+    resampled(arrays.curves, 8, float(np.radians(30.0)))
+    at_vertices(arrays.curves, arrays.polygons, float(np.radians(30.0)))
+
+
+def rest() -> None:
+    """What single options or measures need: united contours, joins, the variation of curvature, unlike masters."""
+    from ..curves.fairness import curvature_variation
+    from ..outlines.common_cuts import common_cuts
+    from ..outlines.joins import joins
+    from ..outlines.landmarks import Landmarks
+    from ..outlines.overlaps import inked_area
+
+    inked_area([DISC, LEAF])
+    joins(LEAF)
+    curvature_variation(DISC.cubics())
+    common_cuts(Landmarks(LEAF, 1000.0), Landmarks(LEAF, 1000.0))
+
+
+WORK: dict[str, Callable[[], Any]] = {
+    "sharp": lambda: converted(Options(corners="sharp", tolerance=0.3)),  # pieces fail the certificate
+    "interpolation": interpolations,
+    "checks": checks,
+    "comparing": comparisons,
+    "points": points,
+    "rest": rest,
+    "drawings": drawings,
+    "smooth": lambda: converted(Options()),
+    "masters": masters,
+    "smooth_best": lambda: converted(Options(corners="smooth", effort="best")),
+    "g1": lambda: converted(Options(corners="sharp", continuity="g1")),
+    "sharp_best": lambda: converted(Options(corners="sharp", effort="best")),
+    "fixed": lambda: converted(Options(step=20.0)),
+    "unfitted": unfitted,
+}
+"""The kinds of work. Those that take long come first, and neighbours share little: two processes that begin together
+seldom compile the same function."""

@@ -1,6 +1,0 @@
-"""Conversion by step."""
-
-from ...fitting.options import Options
-from . import converted
-
-converted(Options(step=20.0))
