@@ -1,59 +1,77 @@
-# Everything runs in .venv, which the first target that needs it makes.
+# Everything runs in .venv. Each target installs what it needs, once: .venv/.NAME says that the extra NAME is installed.
 PYTHON ?= python3
 BIN := .venv/bin
+# Python compiles the modules of libraries when it first imports them, most of them never, and keeps the result.
+unexport PYTHONDONTWRITEBYTECODE
+INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv demo test test-browser test-package docs lint check-reference check-topology bench paper clean
+.PHONY: venv demo test test-extras test-browser test-package docs lint check-reference check-topology bench paper clean
+.NOTPARALLEL:
 
+# The package alone.
 venv: .venv/.ready
 
 .venv/.ready: pyproject.toml
-	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	test -x $(BIN)/pip || $(PYTHON) -m venv .venv
+	$(INSTALL) .
+	touch $@
+
+# An extra of pyproject.toml, and the package with it.
+.venv/.%: pyproject.toml
+	test -x $(BIN)/pip || $(PYTHON) -m venv .venv
+	$(INSTALL) '.[$*]'
+	touch .venv/.ready $(if $(filter test test-extras browser,$*),.venv/.dev) $@
+
+# Compiles everything: tests that run side by side would each compile the same functions.
+.venv/.warm: pyproject.toml | .venv/.ready
 	$(BIN)/glyphspline warm
 	touch $@
 
-demo: venv
+# Compiles what these glyphs need.
+demo: .venv/.ready
 	$(BIN)/glyphspline demo --out outputs/demo
 
-lint: venv
+# ruff, mypy, and the libraries whose types mypy reads; nothing is compiled.
+lint: .venv/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# As many tests at a time as there are cores.
-test: lint
+# As many tests at a time as there are cores. Tests of libraries that only test-extras installs are skipped.
+test: .venv/.test lint .venv/.warm
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
+# The tests that `test` skips: data-set libraries, an object store, a cluster, notebooks. A library that is absent fails them.
+test-extras: .venv/.test-extras .venv/.warm
+	$(BIN)/python -m pytest -n auto --dist worksteal -m needs --require-libraries
+
 # The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look).
-paper: venv
+paper: .venv/.ready
 	$(BIN)/python -m scripts.paper
 
 # 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
-check-reference: venv
+check-reference: .venv/.ready
 	$(BIN)/python scripts/adversarial_footpoints.py
 	$(BIN)/python scripts/check_reference.py
 
 # What written glyphs of five installed faces cross that their sources do not, and are not flagged for: four minutes or so.
-check-topology: venv
+check-topology: .venv/.ready
 	$(BIN)/python scripts/topology.py
 
-bench: venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench]'
+bench: .venv/.bench .venv/.warm
 	$(BIN)/python -m scripts.benchmark
 
 # The pages of docs/ into docs/_build/html; a broken reference or a docstring that does not parse is an error.
-docs: venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+docs: .venv/.docs
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
-# The wheel and the sdist in clean environments: two of this Python. ALL=1: every Python that is found, each extra.
-test-package: venv
-	$(BIN)/python scripts/test_package.py $(if $(ALL),--all)
+# The wheel and the sdist in clean environments: one of this Python. ALL=1: every Python that is found, each extra.
+test-package:
+	$(PYTHON) scripts/test_package.py $(if $(ALL),--all)
 
 # Playwright drives Debian's Chromium; nothing else is downloaded.
-test-browser: venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[browser]'
+test-browser: .venv/.browser .venv/.warm
 	@command -v chromium >/dev/null || { test "$$(id -u)" = 0 && apt-get update -q && apt-get install -qy chromium; } \
 		|| { echo "make test-browser needs Debian's chromium: apt-get install chromium (as root)" >&2; exit 1; }
 	$(BIN)/python -m pytest tests/browser

@@ -6,12 +6,15 @@ import re
 import tomllib
 from pathlib import Path
 
+TOOLS = ("bench", "browser", "dev", "docs", "test", "test-extras")
+"""Extras for the work on the package, which no user installs: any version does."""
+
 
 def main() -> None:
     """The command."""
     project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    of_extras = [entry for name in extras if name not in ("bench", "browser", "dev") for entry in extras[name]]
+    of_extras = [entry for name in extras if name not in TOOLS for entry in extras[name]]
     for entry in [*project["dependencies"], *of_extras]:
         if found := re.fullmatch(r"([\w-]+)>=([\d.]+)", entry):
             print(f"{found[1]}=={found[2]}")

@@ -1,8 +1,8 @@
 """Builds the wheel and the sdist from the files of the repository, installs them where nothing else is, and tries them.
 
-Without options: the wheel, made from the sdist, on this Python without extras and with all. ``--all``: on every
-Python from 3.11 to 3.14 that is found on the PATH or among those of pyenv, without extras, with each, and with all; and
-the sdist.
+Without options: the wheel, made from the sdist, on this Python without extras, and then with all in the same
+environment. ``--all``: on every Python from 3.11 to 3.14 that is found on the PATH or among those of pyenv, without
+extras, with each, and with all, each in an environment of its own; and the sdist.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 VERSIONS = tuple(f"3.{minor}" for minor in (11, 12, 13, 14))
-EXTRAS = ("overlaps", "parquet", "cluster", "remote", "fontspector", "view", "notebook")
+EXTRAS = ("overlaps", "parquet", "cad", "sources", "cluster", "remote", "fontspector", "view", "notebook")
+INSTALL = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile")
+UNSET = ("PYTHONPATH", "NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
 
 
 LOOK = """
@@ -53,10 +55,10 @@ def main() -> None:
         pythons = found_pythons() if everything else {f"3.{sys.version_info.minor}": sys.executable}
         print("Python", ", ".join(pythons), flush=True)
         for version, python in pythons.items():
-            for extra in ["", *EXTRAS, "all"] if everything else ["", "all"]:
-                install(place / f"{version}-{extra}", python, wheel, extra)
+            for extras in [[""], *([extra] for extra in EXTRAS), ["all"]] if everything else [["", "all"]]:
+                install(place / f"{version}-{extras[-1]}", python, wheel, extras)
         if everything:
-            install(place / "sdist", sys.executable, sdist, "")
+            install(place / "sdist", sys.executable, sdist, [""])
 
 
 def build(place: Path) -> tuple[Path, Path]:
@@ -69,32 +71,49 @@ def build(place: Path) -> tuple[Path, Path]:
             shutil.copy(ROOT / name, tree / name)
     run(sys.executable, "-m", "venv", place / "builder")
     python = interpreter(place / "builder")
-    run(python, "-m", "pip", "install", "--quiet", "build")
+    run(python, *INSTALL, "build")
     run(python, "-m", "build", "--outdir", place / "dist", tree)
     (wheel,), (sdist,) = (place / "dist").glob("*.whl"), (place / "dist").glob("*.tar.gz")
     return wheel, sdist
 
 
-def install(place: Path, python: str, package: Path, extra: str) -> None:
-    """Install a package into a new environment and try it; without extras, convert a glyph too."""
-    began = time.monotonic()
+def install(place: Path, python: str, package: Path, extras: list[str]) -> None:
+    """Install a package into a new environment and try it, with one extra after the other; "" is none."""
     run(python, "-m", "venv", place)
+    for extra in extras:
+        began = time.monotonic()
+        wanted = f"{package}[{extra}]" if extra else package
+        run(interpreter(place), *INSTALL, wanted)
+        look(place, extra, converts=package.suffix == ".whl" and not extra)
+        print(f"{place.name}[{extra}] from {package.name}: good, {time.monotonic() - began:.0f} s", flush=True)
+    shutil.rmtree(place)
+
+
+def look(place: Path, extra: str, converts: bool) -> None:
+    """Try what is installed with an extra; if ``converts``, convert a glyph too."""
     own = interpreter(place)
-    wanted = f"{package}[{extra}]" if extra else package
-    run(own, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wanted)
     names = list(EXTRAS) if extra == "all" else [extra]
     run(own, "-c", LOOK, *filter(None, [extra, *names]), cwd=place)
     command = own.with_name("glyphspline")
     run(command, "--version", cwd=place)
     run(command, "info", ROOT / "fonts_test" / "variable.ttf", cwd=place)
-    if package.suffix == ".whl" and not extra:
+    if converts:
         font = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
+        share_compiled_code(place)
         options = ["--text", "O", "--step", "90", "--format", "svg,gallery", "--jobs", "1"]
         run(command, "convert", font, *options, "--out", "out", cwd=place)
         assert (place / "out" / "index.html").is_file()
         assert list((place / "out" / "svg").glob("*.svg"))
-    print(f"{place.name} from {package.name}: good, {time.monotonic() - began:.0f} s", flush=True)
-    shutil.rmtree(place)
+
+
+def share_compiled_code(place: Path) -> None:
+    """Copy the compiled code of the repository, if there is any, to the installed package; the tests try compiling."""
+    (installed,) = place.glob("[Ll]ib/**/site-packages/glyphspline")
+    for file in (ROOT / "glyphspline").rglob("*.nb[ci]"):
+        copy = installed / file.relative_to(ROOT / "glyphspline")
+        if copy.parent.parent.is_dir():
+            copy.parent.mkdir(exist_ok=True)
+            shutil.copy(file, copy)
 
 
 def found_pythons() -> dict[str, str]:
@@ -124,7 +143,7 @@ def interpreter(environment: Path) -> Path:
 
 def run(*words: str | Path, cwd: Path | None = None) -> None:
     """Run a command, and show what it has said if it fails."""
-    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "NUMBA_CACHE_DIR")}
+    environment = {name: value for name, value in os.environ.items() if name not in UNSET}
     done = subprocess.run(list(map(str, words)), cwd=cwd, env=environment, capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, words))}\n{done.stdout}{done.stderr}")

@@ -23,6 +23,8 @@ from glyphspline.readers import open_font
 
 from .test_hostile import endless_font
 
+pytestmark = pytest.mark.needs("distributed")
+
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"
 SPEC = RunSpec(Options(step=60.0))
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import replace
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -547,21 +548,24 @@ def test_a_fit_is_the_one_of_convert(letters: Path) -> None:
         assert max(row["deviation_bound"]) <= 1.001e-3  # em
 
 
+@pytest.mark.needs("pandas")
 def test_pandas_opens_it(letters: Path) -> None:
-    pandas = pytest.importorskip("pandas")
+    pandas = import_module("pandas")
     frame = pandas.concat(pandas.read_parquet(path) for path in (letters / "data").iterdir())
     assert len(frame) == len(rows_of(letters))
 
 
+@pytest.mark.needs("duckdb")
 def test_duckdb_opens_it(letters: Path) -> None:
-    duckdb = pytest.importorskip("duckdb")
+    duckdb = import_module("duckdb")
     query = f"select count(*), count(distinct font) from '{letters}/data/*.parquet'"
     fonts = {row["font"] for row in rows_of(letters)}
     assert duckdb.sql(query).fetchall() == [(len(rows_of(letters)), len(fonts))]
 
 
+@pytest.mark.needs("datasets")
 def test_datasets_opens_it(letters: Path, tmp_path: Path) -> None:
-    datasets = pytest.importorskip("datasets")
+    datasets = import_module("datasets")
     found = datasets.load_dataset(str(letters), cache_dir=str(tmp_path))
     counts = {split: len(rows) for split, rows in found.items()}
     rows = rows_of(letters)

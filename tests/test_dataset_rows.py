@@ -396,6 +396,7 @@ def test_pictures_are_filled_by_the_non_zero_rule_and_antialiased() -> None:
     assert ((grey > 0) & (grey < 1)).sum() > 40
 
 
+@pytest.mark.needs("nbclient", "nbformat", "ipykernel")
 def test_the_notebook_runs_and_keeps_no_outputs() -> None:
     import nbclient
     import nbformat

@@ -157,6 +157,7 @@ def test_a_glyph_that_failed_is_named_in_the_atlas() -> None:
     assert "broken: no outline" in [text.get_text() for axes in figure.axes for text in axes.texts]
 
 
+@pytest.mark.needs("nbclient", "nbformat", "ipykernel")
 def test_the_example_notebook_runs_and_keeps_no_outputs() -> None:
     import nbclient
     import nbformat

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,29 +27,54 @@ COMMANDS = {
     "view": ["view", FONT, "--no-browser"],
 }
 
+RUN = """
+import contextlib, io, json, sys
+missing, commands = json.loads(sys.argv[1])
+sys.modules.update(dict.fromkeys(missing))
+from glyphspline.cli import main
+found = {}
+for extra, sys.argv[1:] in commands.items():
+    status, said = None, io.StringIO()
+    with contextlib.redirect_stderr(said):
+        try:
+            main()
+        except SystemExit as exit:
+            status = exit.code
+    found[extra] = [status, said.getvalue()]
+print(json.dumps(found))
+"""
+"""Runs commands where modules cannot be imported; prints the exit status and standard error of each."""
 
-def without(extra: str, words: list[str], place: Path) -> subprocess.CompletedProcess[str]:
-    """A command where the modules of an extra cannot be imported, and where nothing is compiled yet."""
-    missing = dict.fromkeys(EXTRAS[extra][1:])
-    code = f"import sys; sys.modules.update({missing}); sys.argv[1:] = {words}; import glyphspline.cli as c; c.main()"
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(place)}
-    return subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60
-    )
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("extras")
+
+
+@pytest.fixture(scope="module")
+def found(place: Path) -> Any:
+    """The exit status and standard error of each command, where no extra is installed and nothing is compiled."""
+    (place / "made.glyphs").write_text('{\n.appVersion = "3208";\n}\n')
+    commands = {
+        extra: [*words, *([] if extra == "view" else ["--out", f"out-{extra}"])] for extra, words in COMMANDS.items()
+    }
+    missing = [module for _, *modules in EXTRAS.values() for module in modules]
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, json.dumps([missing, commands])],
+        cwd=place, env=os.environ | {"NUMBA_CACHE_DIR": str(place / "cache"), "PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    return json.loads(done.stdout)
 
 
 @pytest.mark.parametrize("extra", COMMANDS)
-def test_a_missing_extra_is_said_at_once(extra: str, tmp_path: Path) -> None:
-    glyphs = tmp_path / "made.glyphs"
-    glyphs.write_text('{\n.appVersion = "3208";\n}\n')
-    words = [str(glyphs) if word == "made.glyphs" else word for word in COMMANDS[extra]]
-    out = [] if extra == "view" else ["--out", str(tmp_path / "out")]
-    found = without(extra, [*words, *out], tmp_path / "cache")
-    assert found.returncode == 2
-    said = [line for line in found.stderr.splitlines() if not line.startswith("compiling once")]
-    assert len(said) == 1, found.stderr
+def test_a_missing_extra_is_said_at_once(extra: str, found: Any, place: Path) -> None:
+    status, text = found[extra]
+    assert status == 2
+    said = [line for line in text.splitlines() if not line.startswith("compiling once")]
+    assert len(said) == 1, text
     assert said[0].endswith(f"pip install 'glyphspline[{extra}]'")
-    assert not list(tmp_path.glob("out/**/*.svg"))
+    assert not list(place.glob(f"out-{extra}/**/*.svg"))
 
 
 def test_the_names_are_those_of_the_project() -> None:

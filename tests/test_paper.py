@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
+import time
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +27,21 @@ OUTPUTS = Path(__file__).parents[1] / "outputs" / "paper"
 
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("paper")
-    reproduce(Run(out, quick=True))
+    """The folder of the small version, which one process makes for all that run tests beside each other."""
+    place = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        place = place.parent  # of this run of pytest
+    out, made = place / "quick-paper", place / "quick-paper-made"
+    try:
+        out.mkdir()
+    except FileExistsError:
+        until = time.monotonic() + 600
+        while not made.exists():
+            assert time.monotonic() < until, "the process that makes the paper has failed"
+            time.sleep(0.2)
+    else:
+        reproduce(Run(out, quick=True))
+        made.touch()
     return out
 
 

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
@@ -21,6 +22,8 @@ from glyphspline.dataset import plan, store
 from glyphspline.dataset.dataset_run import dataset
 from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
+
+pytestmark = pytest.mark.needs("fsspec", "s3fs", "localbucket")
 
 FONT = Path(__file__).parents[1] / "fonts_test" / "kouzan-gyosho.ttf"
 
@@ -260,10 +263,11 @@ def test_a_run_goes_on_after_its_server_was_killed(
         dataset(FONTS, "s3://bucket/resumed", DatasetSpec(points=17, options=None), jobs=0)
 
 
+@pytest.mark.needs("distributed")
 def test_a_cluster_that_loses_a_worker_and_a_server_that_is_restarted_do_not_show(
     server: Server, expected: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    distributed = pytest.importorskip("distributed")
+    distributed = import_module("distributed")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     for font in FONTS:
         store.put(f"s3://bucket/installed/{Path(font).name}", Path(font).read_bytes())
