@@ -29,6 +29,7 @@ from typing import Any, TypeVar
 
 import numba
 import numpy as np
+from llvmlite.binding import parse_assembly
 from numba import njit, types
 from numba.core import caching, event
 from numba.core.ccallback import CFunc
@@ -111,6 +112,9 @@ class Compiled:
 if not JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as compiled code has it
 
+used: set[str] = set()
+"""Names of the files of code that this process has loaded or written."""
+
 everything: list[Compiled] = []
 """The compiled functions of the modules that are imported."""
 
@@ -153,12 +157,18 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         """The code for a signature; None if there is none."""
         nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
         target = target_context.codegen().magic_tuple()
-        for folder, made_for in ((SHIPPED, shipped_target(target)), (own_folder(), target)):
-            if folder is not None and made_for is not None:
-                with suppress(OSError):
-                    content = (folder / self._file(signature, made_for)).read_bytes()
-                    return CompileResult._rebuild(target_context, *pickle.loads(content))
-        return None
+        made_for = shipped_target(target)
+        found = made_for and self._load(SHIPPED, self._file(signature, made_for), target_context)
+        folder = None if found else own_folder()
+        return found or (folder and self._load(folder, self._file(signature, target), target_context)) or None
+
+    def _load(self, folder: Path, name: str, target_context: Any) -> CompileResult | None:
+        try:
+            content = (folder / name).read_bytes()
+        except OSError:
+            return None
+        used.add(name)
+        return CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def save_overload(self, signature: Any, code: Any) -> None:
         """Keep code, and delete that of sources of long ago."""
@@ -166,9 +176,10 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         if folder is None or code.library.has_dynamic_globals:
             return
         file = folder / self._file(signature, code.codegen.magic_tuple())
+        used.add(file.name)
         with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, suffix=".tmp", delete=False) as new:
             try:
-                new.write(dumps(code._reduce()))
+                new.write(dumps(self._reduced(code)))
                 new.close()
                 os.replace(new.name, file)
             except OSError:
@@ -177,6 +188,21 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
             with suppress(OSError):
                 if old.stat().st_mtime < time.time() - MONTH:
                     old.unlink()
+
+    def _reduced(self, code: Any) -> tuple[Any, ...]:
+        """What is kept of code: without the listing of types, which names folders of this machine.
+
+        No compiled function links code that Python or C calls, so of its bitcode, twice as large as itself, there
+        remain the names of what Numba calls.
+        """
+        (name, kind, (machine_code, bitcode)), description, *others = code._reduce()
+        if self._role != "inner":
+            names = (description.llvm_cpython_wrapper_name, description.llvm_cfunc_wrapper_name)
+            known = [one for one in names if code.codegen._engine.is_symbol_defined(one)]
+            lines = [f'define void @"{one}"() {{ ret void }}' for one in known]
+            bitcode = parse_assembly("\n".join(lines)).as_bitcode()
+        others[4] = ""
+        return (name, kind, (machine_code, bitcode)), description, *others
 
     def _file(self, signature: Any, target: tuple[str, ...]) -> str:
         words = [numba.__version__, sys.implementation.cache_tag, str(signature), *target, stamp(self._function)]
