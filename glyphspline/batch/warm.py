@@ -78,11 +78,14 @@ def prepare(kind: str) -> None:
     WORK[kind]()
 
 
-def warm(jobs: int | None = None, observer: Callable[[int, int], None] | None = None) -> None:
+def warm(
+    jobs: int | None = None, observer: Callable[[int, int], None] | None = None, kinds: Sequence[str] | None = None
+) -> None:
     """Compile every function that is not kept yet, in several processes.
 
     Args:
         jobs: processes; None takes all cores.
+        kinds: of work that comes; None: all.
         observer: called with the number of kinds of work that are done and of all, after each.
 
     Raises:
@@ -90,13 +93,20 @@ def warm(jobs: int | None = None, observer: Callable[[int, int], None] | None = 
     """
     from .pool import WorkerPool
 
-    size = min(jobs or os.cpu_count() or 1, len(WORK))
+    kinds = list(WORK) if kinds is None else kinds
+    size = min(jobs or os.cpu_count() or 1, len(kinds))
     with WorkerPool(size, inf, expected=size) as pool:
-        calls = [pool.submit(prepare, kind) for kind in WORK]
+        calls = [pool.submit(_prepare_quietly if k else prepare, kind) for k, kind in enumerate(kinds)]
         for done, call in enumerate(as_completed(calls), start=1):
             call.result()
             if observer:
-                observer(done, len(WORK))
+                observer(done, len(kinds))
+
+
+def _prepare_quietly(kind: str) -> None:
+    """Prepare without saying that code is being compiled, which the process for the first kind says."""
+    os.environ["GLYPHSPLINE_QUIET"] = "1"
+    prepare(kind)
 
 
 def converted(options: Options) -> Any:

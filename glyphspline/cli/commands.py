@@ -414,10 +414,13 @@ def demo(
     failed = 0
     with errors(quiet):
         from ..batch import RunSpec
+        from ..batch.warm import kinds_for
+        from ..batch.warm import warm as warm_up
         from ..readers import open_source
 
         listen(quiet)
         shown, spec = [], RunSpec()
+        warm_up(jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
         with workplace(jobs, None, spec) as executor:
             for path, characters in [(font, "龍好")] if font else demo_fonts():
                 source = open_source(path)
