@@ -20,8 +20,7 @@ from ..report.data import SUFFIX
 from ..types import Names
 from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import DxfKind, Settings, settings_for
-from ..writers.svg.appearance import Appearance, ViewBox
-from ..writers.svg.curvature_map import WHOSE, Whose
+from ..writers.svg.appearance import WHOSE, Appearance, ViewBox, Whose
 from .file_names import NAMES
 from .files import write_whole
 
