@@ -15,9 +15,9 @@ from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
 from ..readers.svg_drawings import SvgDrawings
-from ..report.data import FOLDER as GALLERY
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
+from ..report.gallery_files import FOLDER as GALLERY
 from ..types import Names
 from .calls import survey, work
 from .file_names import file_names
