@@ -34,14 +34,13 @@ def look(place: Place, gids: Sequence[int]) -> dict[str, Any]:
     return glyph_facts(source_of(*place), gids[0], gids[-1] + 1)
 
 
-def corners_of(place: Place, glyphs: Sequence[str]) -> float:
+def corners_of(job: Job, tasks: Sequence[Task]) -> float:
     """:func:`..outlines.corner_share.share_of_corners` of the glyphs that can be read, in a worker."""
     from ..outlines.corner_share import share_of_corners
     from ..outlines.outline import Outline
-    from .worker import source_of
+    from .worker import outlines
 
-    found = source_of(*place).outlines(glyphs, errors="return")
-    return share_of_corners([outline for outline in found if isinstance(outline, Outline)])
+    return share_of_corners([outline for outline in outlines(job, tasks) if isinstance(outline, Outline)])
 
 
 def tell_apart(comparison: Comparison, pairs: Sequence[Pair]) -> Found:

@@ -33,6 +33,8 @@ POLL = 0.25
 SMALL = 32_768
 """Bytes of a call that a pipe buffers: sending them does not block."""
 
+LEAN = "glyphspline.batch.lean_start"
+
 Call = tuple[Future[Any], bytes]
 """The future of a call, and its function and arguments, pickled."""
 
@@ -84,7 +86,7 @@ def start_forkserver(preload: Sequence[str]) -> None:
     kept = os.environ.pop("PYTHONSAFEPATH", None)
     os.environ["PYTHONSAFEPATH"] = "1"
     try:
-        forkserver.set_forkserver_preload(list(preload))
+        forkserver.set_forkserver_preload([LEAN, *preload] if preload else [])
         forkserver.ensure_running()
     finally:
         del os.environ["PYTHONSAFEPATH"]
@@ -119,6 +121,7 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     for name in preload:
         import_module(name)
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
+    gc.enable()  # it may be off in the process from which this one is forked
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:
