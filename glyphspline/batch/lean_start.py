@@ -13,7 +13,7 @@ from typing import Any
 
 gc.disable()
 
-_modules: dict[str, Any] = sys.modules  # type: ignore[assignment]
+_modules: dict[str, Any] = sys.modules
 if "scipy.linalg" not in _modules:
     _modules["scipy.linalg"] = None
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
@@ -37,6 +38,7 @@ app = typer.Typer(
 @app.callback()
 def common(version: opt.Version = False) -> None:
     """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
+    gc.enable()
     listen()
 
 
