@@ -18,7 +18,6 @@ import numpy as np
 from ..fitting.options import Options
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, Outline
-from .spec import needs_fit
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
 TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
@@ -50,26 +49,6 @@ SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 AXES = (DesignAxis("wght", "Weight", 0, 0, 1),)
 REGIONS = np.array([[[0.0, 1.0, 1.0]]])
-
-
-def preload(kinds: Sequence[str]) -> list[str]:
-    """What a :class:`.pool.WorkerPool` loads for kinds of work."""
-    return [f"{__name__}:{kind}" for kind in kinds]
-
-
-def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
-    """The kinds of work in a run with these options; None: nothing is converted."""
-    if options is None:
-        return []
-    if masters:
-        return ["masters"]
-    if formats and not needs_fit(formats):
-        return ["unfitted", *(["rest"] if options.remove_overlaps else [])]
-    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
-    best = [f"{options.corners}_best"] if options.effort == "best" else []
-    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
-    rest = ["rest"] if options.remove_overlaps else []
-    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
 
 
 @cache
