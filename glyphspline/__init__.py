@@ -5,40 +5,57 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import notebook as display
 from ._version import __version__
-from .checks.axis_kinks import AxisKinks, Kink, KinkReport, kinks
-from .checks.check import check
-from .checks.finding import Finding
-from .checks.kinds import Thresholds
-from .comparing.compare import compare
-from .comparing.difference import Apart, Difference, Turn
-from .curves.bspline import Spline
-from .dataset.dataset_spec import DatasetSpec
-from .errors import FontError, GlyphsplineError, OptionError, OutputError, PolygonError
-from .fitting.convert import convert, convert_many
-from .fitting.convert_masters import MastersContourResult, MastersResult, convert_masters
-from .fitting.options import Options
-from .fitting.results import ContourResult, GlyphResult, Measures
-from .interpolation.api import Interpolation, interpolate, interpolate_many, interpolate_vertex
-from .layout.lay_out import layout
-from .notebook import plot
-from .outlines.masters import DesignAxis, MasterContour, Masters
-from .outlines.outline import Contour, FontMetrics, Outline
-from .outlines.sampling import sample
-
-display.install()
-globals().pop("dataset")  # the package of that name: the attribute is the function, imported on demand
 
 if TYPE_CHECKING:
+    from .checks.axis_kinks import AxisKinks as AxisKinks
+    from .checks.axis_kinks import Kink as Kink
+    from .checks.axis_kinks import KinkReport as KinkReport
+    from .checks.axis_kinks import kinks as kinks
+    from .checks.check import check as check
+    from .checks.finding import Finding as Finding
+    from .checks.kinds import Thresholds as Thresholds
+    from .comparing.compare import compare as compare
+    from .comparing.difference import Apart as Apart
+    from .comparing.difference import Difference as Difference
+    from .comparing.difference import Turn as Turn
+    from .curves.bspline import Spline as Spline
     from .dataset.dataset_run import dataset as dataset
+    from .dataset.dataset_spec import DatasetSpec as DatasetSpec
     from .dataset.loading import Loaded as Loaded
     from .dataset.loading import load as load
+    from .errors import FontError as FontError
+    from .errors import GlyphsplineError as GlyphsplineError
+    from .errors import OptionError as OptionError
+    from .errors import OutputError as OutputError
+    from .errors import PolygonError as PolygonError
+    from .fitting.convert import convert as convert
+    from .fitting.convert import convert_many as convert_many
+    from .fitting.convert_masters import MastersContourResult as MastersContourResult
+    from .fitting.convert_masters import MastersResult as MastersResult
+    from .fitting.convert_masters import convert_masters as convert_masters
+    from .fitting.options import Options as Options
+    from .fitting.results import ContourResult as ContourResult
+    from .fitting.results import GlyphResult as GlyphResult
+    from .fitting.results import Measures as Measures
+    from .interpolation.api import Interpolation as Interpolation
+    from .interpolation.api import interpolate as interpolate
+    from .interpolation.api import interpolate_many as interpolate_many
+    from .interpolation.api import interpolate_vertex as interpolate_vertex
     from .layout.along_path import along as along
     from .layout.bent import bend as bend
+    from .layout.lay_out import layout as layout
     from .layout.path import Path as Path
     from .layout.path_file import open_path as open_path
     from .layout.placed import Layout as Layout
+    from .notebook import plot as plot
+    from .outlines.masters import DesignAxis as DesignAxis
+    from .outlines.masters import MasterContour as MasterContour
+    from .outlines.masters import Masters as Masters
+    from .outlines.outline import Contour as Contour
+    from .outlines.outline import FontMetrics as FontMetrics
+    from .outlines.outline import Outline as Outline
+    from .outlines.sampling import sample as sample
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
@@ -51,18 +68,62 @@ if TYPE_CHECKING:
     from .writers.svg.document import to_svg as to_svg
     from .writers.ufo_folder import write_ufo as write_ufo
 
+for _room in ("dataset", "layout"):  # packages of those names, to which Python sets the attributes once
+    import_module(f".{_room}", __name__)
+    del globals()[_room]
+
 _ON_DEMAND = {
+    "Apart": ".comparing.difference",
+    "AxisKinks": ".checks.axis_kinks",
+    "Contour": ".outlines.outline",
+    "ContourResult": ".fitting.results",
+    "DatasetSpec": ".dataset.dataset_spec",
+    "DesignAxis": ".outlines.masters",
+    "Difference": ".comparing.difference",
+    "Finding": ".checks.finding",
     "Font": ".readers",
+    "FontError": ".errors",
+    "FontMetrics": ".outlines.outline",
+    "GlyphResult": ".fitting.results",
+    "GlyphsplineError": ".errors",
+    "Interpolation": ".interpolation.api",
+    "Kink": ".checks.axis_kinks",
+    "KinkReport": ".checks.axis_kinks",
     "Layout": ".layout.placed",
     "Loaded": ".dataset.loading",
+    "MasterContour": ".outlines.masters",
+    "Masters": ".outlines.masters",
+    "MastersContourResult": ".fitting.convert_masters",
+    "MastersResult": ".fitting.convert_masters",
+    "Measures": ".fitting.results",
+    "OptionError": ".errors",
+    "Options": ".fitting.options",
+    "Outline": ".outlines.outline",
+    "OutputError": ".errors",
     "Path": ".layout.path",
+    "PolygonError": ".errors",
+    "Spline": ".curves.bspline",
+    "Thresholds": ".checks.kinds",
+    "Turn": ".comparing.difference",
     "along": ".layout.along_path",
     "bend": ".layout.bent",
+    "check": ".checks.check",
+    "compare": ".comparing.compare",
+    "convert": ".fitting.convert",
+    "convert_many": ".fitting.convert",
+    "convert_masters": ".fitting.convert_masters",
     "dataset": ".dataset.dataset_run",
+    "interpolate": ".interpolation.api",
+    "interpolate_many": ".interpolation.api",
+    "interpolate_vertex": ".interpolation.api",
+    "kinks": ".checks.axis_kinks",
+    "layout": ".layout.lay_out",
     "load": ".dataset.loading",
-    "open_path": ".layout.path_file",
     "open_font": ".readers",
+    "open_path": ".layout.path_file",
     "open_source": ".readers",
+    "plot": ".notebook",
+    "sample": ".outlines.sampling",
     "to_curvature_svg": ".writers.svg.curvature_map",
     "to_dxf": ".writers.dxf",
     "to_json": ".writers.json_file",
@@ -72,12 +133,13 @@ _ON_DEMAND = {
     "write_table": ".writers.parquet",
     "write_ufo": ".writers.ufo_folder",
 }
-"""Names whose modules import font or drawing libraries; the curve core does not need those."""
+"""Modules of the public names, imported on first use: a command or a worker imports what it needs and nothing else."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in _ON_DEMAND:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import_module(".notebook", __name__).install()
     value = getattr(import_module(_ON_DEMAND[name], __name__), name)
     globals()[name] = value
     return value

@@ -27,9 +27,9 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, TypeVar
 
+import llvmlite.binding as llvm
 import numba
 import numpy as np
-from llvmlite.binding import parse_assembly
 from numba import njit, types
 from numba.core import caching, event
 from numba.core.ccallback import CFunc
@@ -190,19 +190,22 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
                     old.unlink()
 
     def _reduced(self, code: Any) -> tuple[Any, ...]:
-        """What is kept of code: without the listing of types, which names folders of this machine.
+        """What is written of code: without all that only compiling needs, loading takes less than half the time.
 
-        No compiled function links code that Python or C calls, so of its bitcode, twice as large as itself, there
-        remain the names of what Numba calls.
+        That is the intermediate code for callers, where no compiled function calls this one, environments of functions
+        without Python objects in them, and the listing of types, which also names folders of this machine.
         """
-        (name, kind, (machine_code, bitcode)), description, *others = code._reduce()
+        (name, kind, (machine_code, bitcode)), *facts, environments = code._reduce()
         if self._role != "inner":
-            names = (description.llvm_cpython_wrapper_name, description.llvm_cfunc_wrapper_name)
-            known = [one for one in names if code.codegen._engine.is_symbol_defined(one)]
-            lines = [f'define void @"{one}"() {{ ret void }}' for one in known]
-            bitcode = parse_assembly("\n".join(lines)).as_bitcode()
-        others[4] = ""
-        return (name, kind, (machine_code, bitcode)), description, *others
+            symbols = (
+                code.fndesc.llvm_func_name,
+                code.fndesc.llvm_cpython_wrapper_name,
+                code.fndesc.llvm_cfunc_wrapper_name,
+            )
+            declared = "".join(f'define void @"{symbol}"() {{ unreachable }}\n' for symbol in symbols)
+            bitcode = llvm.parse_assembly(declared).as_bitcode()
+        facts[5] = ""
+        return (name, kind, (machine_code, bitcode)), *facts, tuple(env for env in environments if env.consts)
 
     def _file(self, signature: Any, target: tuple[str, ...]) -> str:
         words = [numba.__version__, sys.implementation.cache_tag, str(signature), *target, stamp(self._function)]

@@ -18,8 +18,8 @@ from svgpathtools import parse_path
 
 import glyphspline as gs
 from glyphspline.batch.galleries import result_path
-from glyphspline.report import write_index, write_report
 from glyphspline.report.data import glyph_text, inside
+from glyphspline.report.gallery import write_index, write_report
 from glyphspline.report.glyph_measures import glyph_measures
 from glyphspline.writers.svg.polygon_drawing import polygon_data, source_data
 

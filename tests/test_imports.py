@@ -149,3 +149,40 @@ def test_importing_the_package_imports_no_heavy_library() -> None:
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(run.stdout.split())
     assert not loaded & {"matplotlib", "scipy", "svgpathtools", "fontTools", "distributed", "pyarrow"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "beyond"),
+    [
+        (["--help"], {"numpy", "fontTools", "uharfbuzz"}),
+        (["convert", "--help"], {"numpy", "fontTools", "uharfbuzz"}),
+        (["convert", "FONT", "--text", "O", "--format", "svg", "--out", "OUT"], set()),
+        (["text", "FONT", "O", "--out", "OUT/text.svg"], set()),
+    ],
+)
+def test_a_command_leaves_heavy_libraries_to_its_workers(
+    arguments: list[str], beyond: set[str], tmp_path: Path
+) -> None:
+    font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
+    filled = [word.replace("FONT", str(font)).replace("OUT", str(tmp_path)) for word in arguments]
+    code = (
+        "import sys\nfrom glyphspline.cli import app\n"
+        f"if __name__ == '__main__':\n    status = app({filled!r}, standalone_mode=False)\n"
+        "    print('loaded', *sorted({name.split('.')[0] for name in sys.modules}))\n"
+        "    sys.exit(status)"
+    )
+    script = tmp_path / "command.py"
+    script.write_text(code, encoding="utf-8")
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    loaded = set(run.stdout.splitlines()[-1].split())
+    assert "loaded" in loaded
+    assert not loaded & (
+        {"numba", "llvmlite", "scipy", "matplotlib", "svgpathtools", "pyarrow", "distributed"} | beyond
+    )
+
+
+def test_fonts_are_opened_without_the_libraries_of_other_sources() -> None:
+    font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
+    code = f"import sys, glyphspline\nglyphspline.open_source({str(font)!r})\nprint(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not set(run.stdout.split()) & {"fontTools.varLib", "fontTools.ufoLib", "fontTools.designspaceLib"}

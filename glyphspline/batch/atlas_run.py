@@ -16,7 +16,8 @@ from ..fitting.results import GlyphResult, as_glyph
 from ..readers import Source
 from ..writers.figures.atlas import Glyph, write_atlas
 from ..writers.figures.axis_pages import OfAxis, write_axis_atlas
-from ..writers.svg.curvature_map import Whose, curvature_scale
+from ..writers.svg.appearance import Whose
+from ..writers.svg.curvature_map import curvature_scale
 from .files import make_folder
 from .font_run import SCALE_SAMPLE
 

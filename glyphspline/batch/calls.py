@@ -34,6 +34,15 @@ def look(place: Place, gids: Sequence[int]) -> dict[str, Any]:
     return glyph_facts(source_of(*place), gids[0], gids[-1] + 1)
 
 
+def corners_of(job: Job, tasks: Sequence[Task]) -> float:
+    """:func:`..outlines.corner_share.share_of_corners` of the glyphs that can be read, in a worker."""
+    from ..outlines.corner_share import share_of_corners
+    from ..outlines.outline import Outline
+    from .worker import outlines
+
+    return share_of_corners([outline for outline in outlines(job, tasks) if isinstance(outline, Outline)])
+
+
 def tell_apart(comparison: Comparison, pairs: Sequence[Pair]) -> Found:
     """:func:`.compare_glyphs.tell_apart`, in a worker."""
     from .compare_glyphs import tell_apart

@@ -27,6 +27,7 @@ from ..errors import GlyphsplineError
 from ..extras import need
 from .files import write_whole
 from .pool import WorkerLostError, WorkerPool
+from .preload import code_for
 from .spec import Limits
 
 Files = dict[str, bytes]
@@ -77,9 +78,8 @@ class ClusterExecutor(Executor):
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
         if preload is None:
             from .warm import WORK
-            from .warm import preload as everything
 
-            preload = everything(list(WORK))
+            preload = code_for(WORK)
         self._processes = Processes(seconds, tuple(preload))
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()

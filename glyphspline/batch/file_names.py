@@ -6,13 +6,10 @@ import re
 import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import get_args
 
 from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
 
 from ..types import Names
-
-NAMES = get_args(Names)
 
 LONGEST_NAME = 150
 """Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""

@@ -15,9 +15,9 @@ from ..curves.curvature import robust_scale
 from ..errors import OutputError
 from ..readers import Font, Source
 from ..readers.svg_drawings import SvgDrawings
-from ..report.data import FOLDER as GALLERY
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
+from ..report.gallery_files import FOLDER as GALLERY
 from ..types import Names
 from .calls import survey, work
 from .file_names import file_names
@@ -93,10 +93,7 @@ def _convert(
 ) -> Summary:
     """:func:`convert_font` in a folder that is there and locked."""
     record = prepare(source, glyphs, out, spec, restart)
-    job = Job(
-        source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
-        source.metrics, type(source) is Font,
-    )  # fmt: skip
+    job = job_of(source, out, spec)
     finished = record.finished()
     summary = Summary()
     with nullcontext(executor) if executor else workers_for(source, glyphs, finished, spec, jobs) as pool:
@@ -120,6 +117,14 @@ def _convert(
     if left or missing(source, out, spec):
         summary.remarks += write_fonts(source, out, spec)
     return summary
+
+
+def job_of(source: Source, out: Path, spec: RunSpec) -> Job:
+    """A run over glyphs of a source as a worker needs it."""
+    return Job(
+        source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
+        source.metrics, type(source) is Font,
+    )  # fmt: skip
 
 
 def aim(source: Source, spec: RunSpec) -> str:

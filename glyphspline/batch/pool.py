@@ -121,6 +121,7 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     if compiled := sys.modules.get("glyphspline.compiled"):
         compiled.observe(sign_of_life)  # a font has no say in how long compiling takes
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
+    gc.enable()  # it may be off in the process from which this one is forked
     with suppress(EOFError, OSError):
         calls.send(None)
         while True:

@@ -6,12 +6,38 @@ to load stands in its environment.
 
 from __future__ import annotations
 
+import gc
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib import import_module
+
+from ..fitting.options import Options
+from .spec import needs_fit
 
 ASKED = "GLYPHSPLINE_PRELOAD"
 """Environment variable: what to load, separated by spaces."""
+
+WARM = f"{__package__}.warm"
+
+
+def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
+    """The kinds of work of :mod:`.warm` in a run with these options; None: nothing is converted."""
+    if options is None:
+        return []
+    if masters:
+        return ["masters"]
+    if formats and not needs_fit(formats):
+        return ["unfitted", *(["rest"] if options.remove_overlaps else [])]
+    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    rest = ["rest"] if options.remove_overlaps else []
+    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
+
+
+def code_for(kinds: Iterable[str]) -> list[str]:
+    """What to load for kinds of work."""
+    return [f"{WARM}:{kind}" for kind in kinds]
 
 
 def load(items: Iterable[str]) -> None:
@@ -23,4 +49,6 @@ def load(items: Iterable[str]) -> None:
             module.prepare(kind)
 
 
-load(os.environ.pop(ASKED, "").split())
+if ASKED in os.environ:
+    gc.disable()  # there is no garbage yet, and looking for it takes a sixth of the time; workers enable it again
+    load(os.environ.pop(ASKED).split())

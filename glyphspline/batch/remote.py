@@ -18,7 +18,6 @@ from hashlib import file_digest
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
 from urllib.parse import unquote, urlsplit
-from urllib.request import url2pathname
 
 from ..errors import FontError, GlyphsplineError, OutputError
 from ..extras import need
@@ -50,6 +49,8 @@ def local_path(name: str) -> str | None:
     """The path that a name stands for: itself, or that of a ``file://`` URL; None of another URL."""
     if not is_url(name):
         return name
+    from urllib.request import url2pathname  # here and not above: it imports what speaks HTTP
+
     return url2pathname(urlsplit(name).path) if name.lower().startswith("file://") else None
 
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from ..fitting.options import Options
 from .pool import TimeLimitError, WorkerLostError, WorkerPool
-from .warm import kinds_for, preload
+from .preload import code_for, kinds_for
 
 LARGEST_CHUNK = 40
 """Maximum number of glyphs in a call: enough to make the exchange cheap, few enough for a smooth progress bar."""
@@ -68,7 +68,7 @@ def workers(
     Raises:
         GlyphsplineError: nothing answers at the address.
     """
-    loaded = preload([*kinds_for(options, formats, masters), *also])
+    loaded = code_for([*kinds_for(options, formats, masters), *also])
     if scheduler is not None:
         from .cluster import ClusterExecutor
 

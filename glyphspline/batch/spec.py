@@ -9,23 +9,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from .._version import __version__
 from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require, require_choice
 from ..fitting.options import Options
-from ..outlines.outline import FontMetrics
-from ..report.data import FOLDER as GALLERY
-from ..report.data import SUFFIX
+from ..report.gallery_files import FOLDER as GALLERY
+from ..report.gallery_files import SUFFIX
 from ..types import Names
 from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import DxfKind, Settings, settings_for
-from ..writers.svg.appearance import Appearance, ViewBox
-from ..writers.svg.curvature_map import WHOSE, Whose
-from .file_names import NAMES
+from ..writers.svg.appearance import WHOSE, Appearance, ViewBox, Whose
 from .files import write_whole
 
 if TYPE_CHECKING:
+    from ..outlines.outline import FontMetrics
     from ..readers import Source
     from ..writers.font.font_glyphs import Flavour
 
@@ -124,10 +122,10 @@ class RunSpec:
         for name in self.formats:
             if name not in (GALLERY, *WHOLE) and not (isinstance(name, str) and is_format(name)):
                 raise OptionError(f"no format {name}: there are {', '.join(available())}")
-        require_choice("names", self.names, NAMES)
+        require_choice("names", self.names, get_args(Names))
         require_choice("comb", self.comb, WHOSE)
         require_choice("corner_teeth", self.corner_teeth)
-        _ = self.settings(FontMetrics())  # raises where it is none
+        Settings(self.look, flatness=self.flatness, dxf=self.dxf)  # raises where it is none
         if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
             raise GlyphsplineError("options are Options, limits are Limits")
         own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]

@@ -18,7 +18,6 @@ import numpy as np
 from ..fitting.options import Options
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, Outline
-from .spec import needs_fit
 
 SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
 TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
@@ -52,37 +51,20 @@ AXES = (DesignAxis("wght", "Weight", 0, 0, 1),)
 REGIONS = np.array([[[0.0, 1.0, 1.0]]])
 
 
-def preload(kinds: Sequence[str]) -> list[str]:
-    """What a :class:`.pool.WorkerPool` loads for kinds of work."""
-    return [f"{__name__}:{kind}" for kind in kinds]
-
-
-def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
-    """The kinds of work in a run with these options; None: nothing is converted."""
-    if options is None:
-        return []
-    if masters:
-        return ["masters"]
-    if formats and not needs_fit(formats):
-        return ["unfitted", *(["rest"] if options.remove_overlaps else [])]
-    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
-    best = [f"{options.corners}_best"] if options.effort == "best" else []
-    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
-    rest = ["rest"] if options.remove_overlaps else []
-    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
-
-
 @cache
 def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process."""
     WORK[kind]()
 
 
-def warm(jobs: int | None = None, observer: Callable[[int, int], None] | None = None) -> None:
+def warm(
+    jobs: int | None = None, observer: Callable[[int, int], None] | None = None, kinds: Sequence[str] | None = None
+) -> None:
     """Compile every function that is not kept yet, in several processes.
 
     Args:
         jobs: processes; None takes all cores.
+        kinds: of work that comes; None: all.
         observer: called with the number of kinds of work that are done and of all, after each.
 
     Raises:
@@ -90,13 +72,20 @@ def warm(jobs: int | None = None, observer: Callable[[int, int], None] | None = 
     """
     from .pool import WorkerPool
 
-    size = min(jobs or os.cpu_count() or 1, len(WORK))
+    kinds = list(WORK) if kinds is None else kinds
+    size = min(jobs or os.cpu_count() or 1, len(kinds))
     with WorkerPool(size, inf, expected=size) as pool:
-        calls = [pool.submit(prepare, kind) for kind in WORK]
+        calls = [pool.submit(_prepare_quietly if k else prepare, kind) for k, kind in enumerate(kinds)]
         for done, call in enumerate(as_completed(calls), start=1):
             call.result()
             if observer:
-                observer(done, len(WORK))
+                observer(done, len(kinds))
+
+
+def _prepare_quietly(kind: str) -> None:
+    """Prepare without saying that code is being compiled, which the process for the first kind says."""
+    os.environ["GLYPHSPLINE_QUIET"] = "1"
+    prepare(kind)
 
 
 def converted(options: Options) -> Any:

@@ -22,8 +22,8 @@ from ..outlines.outline import Outline
 from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..readers.source import reason as library_reason
-from ..report.data import FOLDER as GALLERY
 from ..report.data import files_text, glyph_text, row_of
+from ..report.gallery_files import FOLDER as GALLERY
 from ..writers.figures.images import ImageKind
 from ..writers.formats import format_named
 from ..writers.svg.curvature_map import combs, curves_of, map_document

@@ -10,7 +10,7 @@ import numpy as np
 from ..curves.integrals import integrals
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
-from ..outlines.sampling import CORNER_ANGLE
+from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import FloatArray
 from .axis_kinks import AxisKinks, Glyphs, Kink, kinks
 from .between_ticks import LEAST

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, MasterContour, Masters
-from ..outlines.sampling import CORNER_ANGLE
+from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
 from .axis_numbers import AxisNumbers
 from .between_ticks import largest_jumps, largest_turns, turns_of

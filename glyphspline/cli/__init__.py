@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -12,6 +13,7 @@ __all__ = ["app", "main"]
 
 def main() -> None:
     """Run the command. Imports happen here because worker processes import this module again without needing them."""
+    gc.disable()  # imports make no garbage; commands collect it from where they begin
     from . import commands
 
     commands.main()

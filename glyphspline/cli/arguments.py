@@ -18,8 +18,7 @@ from ..layout.setting import Align, Direction, Side
 from ..types import Names
 from ..writers.formats import OURS
 from ..writers.settings import DxfKind
-from ..writers.svg.appearance import ViewBox
-from ..writers.svg.curvature_map import Whose
+from ..writers.svg.appearance import ViewBox, Whose
 
 if TYPE_CHECKING:
     from ..batch import RunSpec

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
@@ -37,6 +38,7 @@ app = typer.Typer(
 @app.callback()
 def common(version: opt.Version = False) -> None:
     """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
+    gc.enable()
     listen()
 
 
@@ -101,17 +103,15 @@ def convert(
         if in_masters:
             check_masters(given)
         spec = opt.spec_of(given)
-        from ..batch import find_fonts
+        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while fonts are found and opened
+            from ..batch import find_fonts
 
-        found = find_fonts(fonts)
-        if not found:
-            stop("no fonts found")
-        if in_masters:
-            with workplace(jobs, scheduler, spec) as executor:
-                failed = convert_masters(found, spec, executor, given)
-            raise typer.Exit(1 if failed else 0)
-        alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
-        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while the font is opened
+            found = find_fonts(fonts)
+            if not found:
+                stop("no fonts found")
+            if in_masters:
+                raise typer.Exit(1 if convert_masters(found, spec, executor, given) else 0)
+            alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
             runs = convert_fonts(found, spec, executor, given, alone)
         from . import closing
 
@@ -414,10 +414,13 @@ def demo(
     failed = 0
     with errors(quiet):
         from ..batch import RunSpec
+        from ..batch.preload import kinds_for
+        from ..batch.warm import warm as warm_up
         from ..readers import open_source
 
         listen(quiet)
         shown, spec = [], RunSpec()
+        warm_up(jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
         with workplace(jobs, None, spec) as executor:
             for path, characters in [(font, "龍好")] if font else demo_fonts():
                 source = open_source(path)

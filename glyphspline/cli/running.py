@@ -31,7 +31,7 @@ def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterato
     from ..batch.schedule import workers
 
     with workers(
-        jobs, spec.limits.seconds, spec.options, spec.formats, masters=spec.masters, scheduler=scheduler
+        jobs, spec.limits.seconds, spec.options, spec.formats, 1, spec.masters, scheduler=scheduler
     ) as executor:
         yield executor
 
@@ -84,7 +84,7 @@ def convert_face(
         stop("none of the glyphs asked for is in the font")
     heading, restart = None if alone else name, not given["resume"]
     summary = run(source, names, out, spec, executor, restart=restart, quiet=quiet, json_log=json_log, name=heading)
-    if alone and not (quiet or json_log) and looks_like_type(source, names, spec):
+    if alone and not (quiet or json_log) and looks_like_type(source, names, out, spec, executor):
         say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
     return FontRun(name, out, summary)
 
@@ -148,7 +148,7 @@ def run(
 ) -> Summary:
     """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
     from ..batch import convert_font
-    from ..report.data import FOLDER as GALLERY
+    from ..report.gallery_files import FOLDER as GALLERY
 
     with json_lines() if json_log else progress(quiet) as observer:
         summary = convert_font(source, names, out, spec, executor=executor, restart=restart, observer=observer)
@@ -162,15 +162,17 @@ def run(
     return summary
 
 
-def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec) -> bool:
+def looks_like_type(source: Source, names: Sequence[str], out: Path, spec: RunSpec, executor: Executor) -> bool:
     """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
+    from ..batch.calls import corners_of
+    from ..batch.font_run import job_of
+    from ..batch.job import Task
     from ..errors import GlyphsplineError
-    from ..outlines.corner_share import share_of_corners
 
     if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
         return False
-    outlines = []
-    for name in names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]:
-        with suppress(GlyphsplineError):
-            outlines.append(source.outline(name))
-    return share_of_corners(outlines) > 0.5
+    chosen = names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]
+    tasks = [Task(source.glyph_names.index(name), name, "", ()) for name in chosen]
+    with suppress(GlyphsplineError):  # its worker is lost or killed: nothing is known of these glyphs
+        return executor.submit(corners_of, job_of(source, out, spec), tasks).result() > 0.5
+    return False

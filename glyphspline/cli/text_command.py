@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +14,9 @@ from . import arguments as opt
 from .messages import say
 
 if TYPE_CHECKING:
-    from ..fitting.results import GlyphResult
-    from ..layout.path import Path as Curve
+    from ..batch.text_drawings import TextJob
+    from ..fitting.options import Options
     from ..layout.placed import Layout
-    from ..writers.formats import Format
-    from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -40,30 +38,34 @@ def set_text(given: Mapping[str, Any]) -> int:
         GlyphsplineError: the text cannot be laid out, or a format is unknown.
         OSError: a file cannot be read or written.
     """
-    from ..layout.placed import LEFT_OUT
+    from ..batch.schedule import workers
 
     files = list(formats_of(given["out"], given["format_name"]))
-    look = look_of(given)
-    layout, path = laid_out(given, look)
-    drawn = Drawn(layout, path, given, look)
-    contents = [drawn.content(each) for _, each in files]  # nothing is written if one of them fails
-    for (file, _), content in zip(files, contents, strict=True):
+    look, options, names = look_of(given), opt.options_of(given), tuple(name for _, name in files)
+    # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
+    with workers(1, inf, options, names, expected=1) as executor:
+        from ..batch.text_drawings import drawings
+        from ..layout.placed import LEFT_OUT
+
+        job = job_of(given, look, options, names)
+        drawn = executor.submit(drawings, job).result()
+    for (file, _), content in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":
             sys.stdout.buffer.write(content)
         else:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
-    remarks = [*missing(layout), *drawn.notes]
+    remarks = [*missing(job.layout), *drawn.notes]
     if not given["quiet"]:
         for line in remarks[:SHOWN]:
             say(line)
         if len(remarks) > SHOWN:
             say(f"and {len(remarks) - SHOWN} remarks more")
-    return 1 if layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
+    return 1 if job.layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
 
 
-def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, Format]]:
-    """The format of each file: of that name, or by its suffix.
+def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, str]]:
+    """The name of the format of each file: as said, or by its suffix.
 
     Raises:
         GlyphsplineError: there is none, or several files with one name.
@@ -82,7 +84,7 @@ def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, 
         found = format_named(known)
         if found.extra:
             need(found.extra)
-        yield file, found
+        yield file, known
 
 
 def look_of(given: Mapping[str, Any]) -> Appearance:
@@ -111,12 +113,13 @@ def words_of(given: Mapping[str, Any]) -> str:
     return words if file is None else file.read_text(encoding="utf-8-sig")
 
 
-def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Curve | None]:
-    """The text on its lines, with the path that it is to follow, in font units, or None.
+def job_of(given: Mapping[str, Any], look: Appearance, options: Options, formats: tuple[str, ...]) -> TextJob:
+    """The text on its lines, with the path that it is to follow, and how it is drawn.
 
     Raises:
         GlyphsplineError: it cannot be laid out, or options clash.
     """
+    from ..batch.text_drawings import TextJob
     from ..layout.lay_out import layout
     from ..readers import open_source
 
@@ -141,7 +144,11 @@ def laid_out(given: Mapping[str, Any], look: Appearance) -> tuple[Layout, Curve 
 
         curve = open_path(given["path"]).scaled(pixel(em, look))
     setting["align"] = given["align"] if curve is None else "start"
-    return layout(font, text, fallbacks=fallbacks, **setting, **lengths), curve
+    return TextJob(
+        layout(font, text, fallbacks=fallbacks, **setting, **lengths), options, formats, look, given["flatness"],
+        given["dxf"], given["each_glyph"], curve, given["bend"], given["align"], given["side"],
+        length("offset", given["offset"], em, look) or 0.0,
+    )  # fmt: skip
 
 
 def pixel(em: float, look: Appearance) -> float:
@@ -180,73 +187,3 @@ def missing(layout: Layout) -> Iterator[str]:
         named = ", ".join([f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]])
         more = f" and {len(layout.missing) - SHOWN} more" if len(layout.missing) > SHOWN else ""
         yield f"no glyph for {named}{more}: .notdef stands there"
-
-
-class Drawn:
-    """The drawings of a text: its glyphs are fitted once for all formats, and not at all for a source's outline."""
-
-    def __init__(self, layout: Layout, path: Curve | None, given: Mapping[str, Any], look: Appearance) -> None:
-        self.options = opt.options_of(given)
-        self.look, self.each = look, given["each_glyph"]
-        self.given = given
-        self.notes: dict[str, None] = {}
-        self.bent = None
-        if path is not None:
-            place: dict[str, Any] = {"align": given["align"], "side": given["side"]}
-            em = layout.fonts[0].metrics.units_per_em
-            place["offset"] = length("offset", given["offset"], em, look) or 0.0
-            if given["bend"]:
-                from ..layout.bent import SHARE, bend
-
-                self.bent = bend(layout, path, SHARE * self.options.tolerance_for(em), **place)
-            else:
-                from ..layout.along_path import along
-
-                layout = along(layout, path, **place)
-        self.layout = layout
-
-    @cached_property
-    def fitted(self) -> GlyphResult:
-        """The whole text, fitted."""
-        from ..fitting.convert import convert
-
-        result = self.layout.convert(self.options) if self.bent is None else convert(self.bent, self.options)
-        self.notes |= dict.fromkeys(result.notes)
-        return result
-
-    @cached_property
-    def unfitted(self) -> GlyphResult:
-        """The whole text as the fonts have it."""
-        from ..fitting.convert import unfitted
-
-        outline = self.layout.outline() if self.bent is None else self.bent
-        (found,) = unfitted([outline], self.options)
-        if isinstance(found, GlyphsplineError):
-            raise found
-        self.notes |= dict.fromkeys((*outline.notes, *found.notes))
-        return found
-
-    @cached_property
-    def settings(self) -> Settings:
-        """What writers are told."""
-        from ..writers.settings import settings_for
-
-        metrics = self.layout.fonts[0].metrics
-        return settings_for(self.look, metrics, self.given["flatness"], self.given["dxf"])
-
-    def content(self, form: Format) -> bytes:
-        """A drawing as bytes."""
-        if self.each and form.name in ("svg", "source"):
-            return self.each_glyph(fitted=form.fitted)
-        made = form.write(self.fitted if form.fitted else self.unfitted, self.settings)
-        return made.encode() if isinstance(made, str) else made
-
-    def each_glyph(self, *, fitted: bool) -> bytes:
-        """The SVG drawing in which each glyph is an element."""
-        from ..writers.svg.text_drawing import text_document
-
-        if self.bent is not None:
-            raise GlyphsplineError("--each-glyph: bent text is one outline")
-        results = self.layout.results(self.options) if fitted else self.layout.unfitted(self.options)
-        self.notes |= dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)])
-        return text_document(self.layout, results, self.look)

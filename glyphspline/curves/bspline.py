@@ -12,9 +12,7 @@ from numpy.typing import ArrayLike
 from ..errors import OptionError
 from ..types import FloatArray, IntArray, counted
 from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
-
-DEGREES = range(2, 7)
-"""Degrees whose uniform basis functions rise above 1/2, as the method needs (end of the paper's Section 1)."""
+from .choices import DEGREES
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import PolygonError
 from ..types import FloatArray
-
-Parametrisation: TypeAlias = Literal["chord", "uniform", "centripetal"]
-
-CHORD_EXPONENT = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
+from .choices import CHORD_EXPONENT, Parametrisation
 
 
 def lengths(vectors: FloatArray) -> Any:

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from ..errors import OptionError, is_positive, is_whole, require, require_choice
 from ..interpolation.method import Fallback, Method
-from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
+from ..outlines.sampling_limits import CORNER_ANGLE, MAX_RATIO, check_sampling
 
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]

@@ -9,7 +9,7 @@ from typing import Any, Literal, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..curves.parameters import Parametrisation
+from ..curves.choices import Parametrisation
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import FloatArray
 from .any_degree import interpolate_any_degree, interpolate_any_vertex

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..curves.bspline import Spline
-from ..curves.parameters import CHORD_EXPONENT, vertex_parameters
+from ..curves.choices import CHORD_EXPONENT
+from ..curves.parameters import vertex_parameters
 from ..errors import PolygonError
 from ..types import BoolArray, FloatArray, IntArray
 from .any_degree import interpolate_any_degree

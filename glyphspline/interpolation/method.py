@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
-from numpy.typing import ArrayLike
-
-from ..curves.bspline import DEGREES
-from ..curves.parameters import CHORD_EXPONENT, Parametrisation
+from ..curves.choices import CHORD_EXPONENT, DEGREES, Parametrisation
 from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 Fallback: TypeAlias = Literal["knot", "peak"]
 Finish: TypeAlias = Literal["iterate", "solve", "accelerate"]
-Tangents: TypeAlias = tuple[ArrayLike | None, ArrayLike | None]
+Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
 
 STEPWISE = (0, 4)
 """Variants that the passes of many vertices at once do not have."""

@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 
 from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
-from ..curves.parameters import Parametrisation, closed_knots, lengths, vertex_centres, vertex_parameters
+from ..curves.choices import Parametrisation
+from ..curves.parameters import closed_knots, lengths, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose

@@ -8,7 +8,7 @@ import numpy as np
 
 from .contour_arrays import ContourArrays
 from .outline import Outline
-from .sampling import CORNER_ANGLE
+from .sampling_limits import CORNER_ANGLE
 
 
 def share_of_corners(outlines: Iterable[Outline]) -> float:

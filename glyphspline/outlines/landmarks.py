@@ -12,7 +12,7 @@ from ..curves.cubics import bernstein
 from ..types import BoolArray, FloatArray, IntArray
 from .extrema import extremal_places
 from .outline import Contour
-from .sampling import CORNER_ANGLE
+from .sampling_limits import CORNER_ANGLE
 
 STEPS = 16
 """Steps a segment of the tables of length and turn."""

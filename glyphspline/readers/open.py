@@ -7,19 +7,21 @@ import sys
 import tempfile
 from functools import cache
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from ..errors import FontError
-from .designspace import Designspace, open_designspace
-from .glyphs_file import GlyphsFile, open_glyphs
 from .opentype.containers import FORMATS
 from .opentype.font import Font, open_font
 from .opentype.tables import Location
 from .source import opening
-from .svg_drawings import SvgDrawings, open_svg
-from .ufo import Ufo, open_ufo
 
-AnySource: TypeAlias = Font | Ufo | Designspace | GlyphsFile | SvgDrawings
+if TYPE_CHECKING:
+    from .designspace import Designspace
+    from .glyphs_file import GlyphsFile
+    from .svg_drawings import SvgDrawings
+    from .ufo import Ufo
+
+AnySource: TypeAlias = "Font | Ufo | Designspace | GlyphsFile | SvgDrawings"
 
 STDIN = "-"
 UTF8 = b"\xef\xbb\xbf"
@@ -45,6 +47,10 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     if is_font(path):
         return open_font(_place(path), face_index, location)
     path = _place(path)
+    # Here and not above: a font file needs none of them, and they import a third of fontTools.
+    from .svg_drawings import open_svg
+    from .ufo import open_ufo
+
     if path.is_dir():
         is_ufo = (path / "metainfo.plist").exists()
         if not is_ufo and next(path.glob("*.svg"), None) is None:
@@ -57,8 +63,12 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     if path.is_file():
         head = beginning(path)
         if is_glyphs(head):
+            from .glyphs_file import open_glyphs
+
             return open_glyphs(path, location)
         if b"<designspace" in head:
+            from .designspace import open_designspace
+
             return open_designspace(path, location)
     if location:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))

@@ -1,5 +1,1 @@
-"""The gallery of a finished run."""
-
-from .gallery import write_index, write_report
-
-__all__ = ["write_index", "write_report"]
+"""The gallery of a finished run, and other pages."""

@@ -12,12 +12,8 @@ from typing import Any
 from ..fitting.results import BOUNDS, SOLVED
 from ..types import rounded_up
 from ..writers.svg.markup import Text, document
+from .gallery_files import FOLDER
 from .glyph_measures import MEASURES, glyph_measures
-
-FOLDER = "gallery"
-
-SUFFIX = ".glyph.js"
-"""Suffix of a glyph's file; no other file of the gallery has it."""
 
 COLUMNS = (
     "glyph", "gid", "unicodes", "advance", "status", "file", "error", "contours",

@@ -16,7 +16,8 @@ from typing import Any
 from ..errors import GlyphsplineError
 from ..fitting.options import Options
 from ..fitting.quantities import QUANTITIES
-from .data import COLUMNS, FOLDER, as_json, row_of, script
+from .data import COLUMNS, as_json, row_of, script
+from .gallery_files import FOLDER
 from .glyph_measures import MEASURES
 from .pages import page_of, palette
 

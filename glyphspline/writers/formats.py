@@ -10,12 +10,16 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from typing import TYPE_CHECKING
 
 from ..errors import GlyphsplineError, OptionError, require
 from ..extras import EXTRAS
-from ..fitting.results import GlyphResult
 from .settings import Settings
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+    from ..fitting.results import GlyphResult
 
 GROUP = "glyphspline.formats"
 """The entry point group: the value of an entry point is a :class:`Format` of the same name."""
@@ -91,6 +95,8 @@ def is_format(name: str) -> bool:
 @cache
 def _plug_ins() -> dict[str, EntryPoint]:
     """Entry points of plug-ins by name, of several with one name the first; names of ours are left out."""
+    from importlib.metadata import entry_points  # here and not above: few runs name a plug-in
+
     found: dict[str, EntryPoint] = {}
     for entry in entry_points(group=GROUP):
         if entry.name not in OURS and _NAME.fullmatch(entry.name):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 from ..errors import is_positive, require, require_choice
-from ..outlines.outline import FontMetrics
 from .svg.appearance import PLAIN, Appearance
+
+if TYPE_CHECKING:
+    from ..outlines.outline import FontMetrics
 
 DxfKind = Literal["spline", "polyline"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from glyphspline.report import write_report
+from glyphspline.report.gallery import write_report
 
 
 def opened(page: Any, folder: Path) -> Any:

@@ -15,7 +15,8 @@ from ...outlines.ink import ink_sides
 from ...outlines.joins import Kind, joins
 from ...outlines.outline import Contour
 from ...types import FloatArray
-from ..svg.curvature_map import LONGEST, SPACING, Teeth, Whose, teeth
+from ..svg.appearance import Whose
+from ..svg.curvature_map import LONGEST, SPACING, Teeth, teeth
 from .images import blank, write_pages
 from .patches import ascii_text, colour_bar, comb_patches, outline_patch
 

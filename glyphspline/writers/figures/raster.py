@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...fitting.results import GlyphResult
+from ..svg.appearance import Whose
 from ..svg.colours import class_colour, colour_classes
-from ..svg.curvature_map import LONGEST, Teeth, Whose, curvature_scale, teeth
+from ..svg.curvature_map import LONGEST, Teeth, curvature_scale, teeth
 from .images import ImageKind, blank, saved
 from .patches import ascii_text, colour_bar, outline_patch
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from ...errors import OptionError, require, require_choice
-from .markup import number
 
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
@@ -21,6 +20,10 @@ LARGEST = 200.0
 _LENGTH = re.compile(rf"(\d{{1,6}}(?:\.\d{{1,6}})?)({'|'.join(INCHES)})")
 _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
 _NAME = re.compile(r"[a-z]{3,20}")
+
+Whose = Literal["result", "source"]
+WHOSE: tuple[Whose, ...] = get_args(Whose)
+"""Whose curvature a comb shows: the curve's, or that of the outline it was made of, which is exact."""
 
 CURRENT = "currentColor"
 
@@ -72,6 +75,8 @@ class Appearance:
         found = self.scale(height, units_per_em)
         if found is None:
             return ""
+        from .markup import number  # here and not above: a command reads its options without NumPy
+
         scale, unit = found
         return f' width="{number(width * scale, 4)}{unit}" height="{number(height * scale, 6)}{unit}"'
 

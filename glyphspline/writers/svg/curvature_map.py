@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -14,8 +13,9 @@ from ...curves.curvature import ANGLE, Comb, comb, relative, robust_scale
 from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.sampling import CORNER_ANGLE
+from ...outlines.sampling_limits import CORNER_ANGLE
 from ...types import BoolArray, FloatArray, IntArray
+from .appearance import WHOSE, Whose
 from .colours import SIDES, class_colour
 from .document import title
 from .legend import legend_svg
@@ -44,10 +44,6 @@ PRECISION = 1
 
 NEAR = 1 / 40
 """Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""
-
-Whose = Literal["result", "source"]
-WHOSE: tuple[Whose, ...] = get_args(Whose)
-"""Whose curvature a comb shows: the curve's, or that of the outline it was made of, which is exact."""
 
 
 @dataclass(frozen=True, eq=False)
