@@ -16,7 +16,8 @@ import sys
 import tempfile
 import time
 import urllib.request
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -59,7 +60,12 @@ if "COMPILATIONS" in os.environ:
 
 INTERPOLATE = "import glyphspline as gs; print(gs.interpolate([[0, 0], [9, 1], [8, 9], [-1, 7]]).spline.control_points)"
 
-BRUSH, TYPE, VARIABLE = FONTS / "kouzan-gyosho.ttf", FONTS / "edge-cases.ttf", FONTS / "variable.ttf"
+AREA = (
+    "from glyphspline.batch.warm import DISC; from glyphspline.curves.integrals import area; print(area(DISC.cubics()))"
+)
+"""A program that compiles little."""
+
+BRUSH, VARIABLE = FONTS / "kouzan-gyosho.ttf", FONTS / "variable.ttf"
 
 COMMANDS: dict[str, Sequence[str | Path]] = {
     "interpolate": ["-c", INTERPOLATE],
@@ -90,7 +96,7 @@ class Environment:
         self.variables = {
             "PATH": os.defpath,
             "HOME": "/nonexistent",
-            "TMPDIR": str(self.out / "tmp"),
+            **dict.fromkeys(("TMPDIR", "TEMP"), str(self.out / "tmp")),
             "PYTHONPYCACHEPREFIX": str(self.out / "bytecode"),
             "COMPILATIONS": str(self.log),
         } | {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}
@@ -108,12 +114,21 @@ class Environment:
         (packages / "count_compilations.py").write_text(LISTENER)
         (packages / "count_compilations.pth").write_text("import count_compilations\n")
 
-    def lock(self, writable: bool = False) -> None:
+    def lock(self) -> None:
         """Take the right to write from everybody; root has it all the same, so that commands run as another user."""
         for path in (self.place, *self.place.rglob("*")):
             if not path.is_symlink():
                 mode = path.stat().st_mode
-                path.chmod(mode | 0o200 if writable else (mode | 0o444) & ~0o222 | (mode & 0o100 and 0o111))
+                path.chmod((mode | 0o444 | (0o111 if mode & 0o100 else 0)) & ~0o222)
+
+    @contextmanager
+    def changed(self) -> Iterator[None]:
+        """For a while its owner can write to it."""
+        for path in (self.place, *self.place.rglob("*")):
+            if not path.is_symlink():
+                path.chmod(path.stat().st_mode | 0o200)
+        yield
+        self.lock()
 
     def words(self, words: Sequence[str | Path]) -> list[str]:
         """A command of the package, or Python code."""
@@ -148,8 +163,9 @@ class Environment:
             font = json.load(urllib.request.urlopen(f"{address.rstrip('/')}/api/font", timeout=30))
             state = {"glyph": font["first"], "location": {}, **font["defaults"], "moved": [], "measure": True}
             for route in ("glyph", "steps", "svg", "compare"):
-                body = json.dumps(state).encode()
-                urllib.request.urlopen(f"{address.rstrip('/')}/api/{route}", data=body, timeout=60).read()
+                asked = urllib.request.Request(f"{address.rstrip('/')}/api/{route}", json.dumps(state).encode())
+                asked.add_header("content-type", "application/json")
+                urllib.request.urlopen(asked, timeout=60).read()
         finally:
             server.terminate()
             server.wait()
@@ -172,6 +188,11 @@ def main() -> None:
         environment.listen()
         environment.lock()
         try_commands(environment)
+        if options.all:
+            same_bytes(environment)
+            without_its_code(environment)
+            if uvx := shutil.which("uvx"):
+                by_uvx(uvx, wheel.resolve(), environment)
 
 
 def try_commands(environment: Environment) -> None:
@@ -183,8 +204,75 @@ def try_commands(environment: Environment) -> None:
         if done.returncode > (name == "diff") or "compiling" in done.stderr:
             sys.exit(f"{name}: {done.stdout}{done.stderr}")
     report("view", environment.view(), "")
+    nothing_written(environment)
+
+
+def nothing_written(environment: Environment) -> None:
+    """The end if a command has made a folder for compiled code."""
     left = list((environment.out / "tmp").glob("glyphspline-*-compiled"))
     assert not left, left
+
+
+def same_bytes(environment: Environment) -> None:
+    """What code compiled for this processor, as the checkout keeps it, writes is the same to the byte."""
+    code = environment.out / "code"
+    shutil.copytree(kept_code(), code)
+    for path in (code, *code.iterdir()):
+        path.chmod(0o777)
+    with environment.changed():
+        (environment.package() / "_compiled" / "made_for.json").rename(environment.package() / "made_for.json")
+    for name in ("smooth", "sharp", "type", "masters"):
+        out = f"{name}-here"
+        words = [out if word == name and k else word for k, word in enumerate(COMMANDS[name])]
+        done, compiled = environment.run(*words, NUMBA_CACHE_DIR=str(code))
+        assert done.returncode == 0, done.stderr
+        pairs = [
+            (file, environment.out / out / file.relative_to(environment.out / name))
+            for file in (environment.out / name).rglob("*")
+            if file.suffix in (".svg", ".ttf")
+        ]
+        same = sum(one.read_bytes() == other.read_bytes() for one, other in pairs)
+        print(f"{name}: {same} of {len(pairs)} files have the bytes that code for this processor writes", flush=True)
+        print(f"  ({len(compiled)} functions compiled)", flush=True)
+        assert pairs
+        assert same == len(pairs)
+    with environment.changed():
+        (environment.package() / "made_for.json").rename(environment.package() / "_compiled" / "made_for.json")
+
+
+def without_its_code(environment: Environment) -> None:
+    """Where the wheel's code does not fit, code is compiled, which one line says, and computes the same."""
+
+    def area(why: str, **variables: str) -> float:
+        done, compiled = environment.run("-c", AREA, **variables)
+        lines = [line for line in done.stderr.splitlines() if "compiling once" in line]
+        print(f"{done.stdout.strip()}: {len(compiled)} functions compiled; {lines}", flush=True)
+        if done.returncode or len(lines) != bool(why) or bool(compiled) != bool(why) or why not in "".join(lines):
+            sys.exit(done.stdout + done.stderr)
+        return float(done.stdout)
+
+    shipped = area("")
+    assert abs(area("another processor", NUMBA_CPU_NAME="generic") / shipped - 1) < 1e-12
+    kernel = environment.package() / "curves" / "integrals.py"
+    text = kernel.read_text(encoding="utf-8")
+    with environment.changed():
+        kernel.write_text(text.replace("total / 20", "total / 10"), encoding="utf-8")
+    assert abs(area("sources are not those") / shipped - 2) < 1e-12
+    with environment.changed():
+        kernel.write_text(text, encoding="utf-8")
+        own(environment.python, *INSTALL, "--no-deps", "numba==0.67.*", "llvmlite==0.49.*")
+    assert abs(area("this is numba 0.67") / shipped - 1) < 1e-12
+
+
+def by_uvx(uvx: str, wheel: Path, environment: Environment) -> None:
+    """A command of the wheel without an environment."""
+    places = {"UV_CACHE_DIR": str(environment.out / "uv"), "HOME": str(environment.out)}
+    began = time.monotonic()
+    words = [uvx, "--python", sys.executable, "--from", str(wheel), "glyphspline", *map(str, COMMANDS["smooth"])]
+    done = subprocess.run(words, cwd=environment.out, env=os.environ | places, capture_output=True, text=True)
+    print(f"uvx: {time.monotonic() - began:.0f} s {done.stderr[-300:]}", flush=True)
+    assert done.returncode == 0
+    assert "compiling" not in done.stderr
 
 
 def report(name: str, compiled: list[str], words: str) -> None:
@@ -199,11 +287,15 @@ def build(place: Path, environment: Environment) -> Path:
     copy_tree(place / "tree")
     own(environment.python, *INSTALL, f"{place / 'tree'}[{EXTRAS}]", "setuptools>=77")
     own(environment.python, "-m", "pip", "uninstall", "--quiet", "--yes", "glyphspline")
-    kept = os.environ.get("NUMBA_CACHE_DIR") or str(ROOT / "glyphspline" / "__pycache__" / "compiled")
     words = ("-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", place / "dist")
-    own(environment.python, *words, place / "tree", GLYPHSPLINE_COMPILED="host", NUMBA_CACHE_DIR=kept)
+    own(environment.python, *words, place / "tree", GLYPHSPLINE_COMPILED="host", NUMBA_CACHE_DIR=str(kept_code()))
     (wheel,) = (place / "dist").glob("*.whl")
     return wheel
+
+
+def kept_code() -> Path:
+    """The folder of code compiled in the checkout."""
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or ROOT / "glyphspline" / "__pycache__" / "compiled")
 
 
 def python_for_all() -> str:
