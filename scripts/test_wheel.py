@@ -21,9 +21,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from test_package import INSTALL, ROOT, copy_tree, interpreter
+from scripts.test_package import INSTALL, ROOT, copy_tree, interpreter
 
 FONTS = ROOT / "fonts_test"
 NOBODY = 65534

@@ -2,7 +2,10 @@
 
 ``GLYPHSPLINE_COMPILED=1`` makes the wheel of a release: compiled here, for every processor of this kind that the
 features below stand for. ``GLYPHSPLINE_COMPILED=host`` makes one for this processor, and takes code that is kept in the
-checkout: tests have it in seconds. With ``SOURCE_DATE_EPOCH`` one process compiles, always in the same order.
+checkout: tests have it in seconds.
+
+With ``SOURCE_DATE_EPOCH`` one process compiles, always in the same order: the same sources and libraries, in the same
+folders, give the same bytes. The folders count since errors that numba's functions raise name their files.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from email.parser import HeaderParser
 from hashlib import sha256
 from importlib.metadata import distribution
 from pathlib import Path
-from shutil import copytree
+from shutil import copytree, rmtree
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -67,9 +70,11 @@ def build_wheel(wheel_directory: str, config_settings: Any = None, metadata_dire
     asked = os.environ.get(ASKED)
     if not asked:
         return str(build_meta.build_wheel(wheel_directory, config_settings, metadata_directory))
+    tree = ROOT / "build" / "wheel"  # always the same
+    for old in (tree, ROOT / "build" / "lib"):
+        rmtree(old, ignore_errors=True)
     with TemporaryDirectory(prefix="glyphspline-wheel-") as folder:
         pure = build_meta.build_wheel(folder, config_settings)
-        tree = Path(folder) / "tree"
         with zipfile.ZipFile(Path(folder) / pure) as archive:
             archive.extractall(tree)
         compile_all(tree, Path(folder) / "code", for_this=asked == "host")
