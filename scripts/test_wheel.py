@@ -223,8 +223,7 @@ def same_bytes(environment: Environment) -> None:
         (environment.package() / "_compiled" / "made_for.json").rename(environment.package() / "made_for.json")
     for name in ("smooth", "sharp", "type", "masters"):
         out = f"{name}-here"
-        words = [out if word == name and k else word for k, word in enumerate(COMMANDS[name])]
-        done, compiled = environment.run(*words, NUMBA_CACHE_DIR=str(code))
+        done, compiled = environment.run(*COMMANDS[name][:-1], out, NUMBA_CACHE_DIR=str(code))
         assert done.returncode == 0, done.stderr
         pairs = [
             (file, environment.out / out / file.relative_to(environment.out / name))
@@ -268,7 +267,16 @@ def by_uvx(uvx: str, wheel: Path, environment: Environment) -> None:
     """A command of the wheel without an environment."""
     places = {"UV_CACHE_DIR": str(environment.out / "uv"), "HOME": str(environment.out)}
     began = time.monotonic()
-    words = [uvx, "--python", sys.executable, "--from", str(wheel), "glyphspline", *map(str, COMMANDS["smooth"])]
+    words = [
+        uvx,
+        "--python",
+        sys.executable,
+        "--from",
+        str(wheel),
+        "glyphspline",
+        *map(str, COMMANDS["smooth"][:-1]),
+        "uvx",
+    ]
     done = subprocess.run(words, cwd=environment.out, env=os.environ | places, capture_output=True, text=True)
     print(f"uvx: {time.monotonic() - began:.0f} s {done.stderr[-300:]}", flush=True)
     assert done.returncode == 0
