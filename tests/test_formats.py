@@ -224,7 +224,7 @@ def test_our_formats_are_found_without_scanning_packages(font: gs.Font, tmp_path
         raise AssertionError
 
     registry._plug_ins.cache_clear()
-    monkeypatch.setattr(registry, "entry_points", scanned)
+    monkeypatch.setattr("importlib.metadata.entry_points", scanned)
     convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=90), ("svg", "gallery", "json")), jobs=0)
     convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=90), ("svg", "json")), jobs=0, restart=True)
 
