@@ -220,7 +220,7 @@ def test_a_plug_in_that_does_not_load_is_named(plug_in: dict[str, str], tmp_path
 
 
 def test_our_formats_are_found_without_scanning_packages(font: gs.Font, tmp_path: Path, monkeypatch: Any) -> None:
-    def scanned(group: str) -> tuple[()]:
+    def scanned(group: str = "") -> tuple[()]:
         assert group != registry.GROUP
         return ()  # Numba looks for extensions of its own
 
