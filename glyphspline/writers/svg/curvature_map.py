@@ -237,11 +237,10 @@ def _comb_layer(
 ) -> tuple[list[Text], Box | None]:
     """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
     from .comb_paths import comb_text  # here and not above: the package opens without a compiler
-    from .numbers import figures
 
     text, ends, (left, bottom, right, top) = comb_text(
         curves, sides, corners, corner_offsets, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale,
-        LONGEST, 0.5 * STROKE * em / 1000, figures(precision),
+        LONGEST, 0.5 * STROKE * em / 1000, precision,
     )  # fmt: skip
     view = text.data
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
