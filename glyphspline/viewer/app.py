@@ -34,7 +34,7 @@ LONGEST_BODY = 200_000
 
 OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer_along.js", "viewer.js")
 PACKAGES = dict.fromkeys(OWN, "glyphspline.viewer")
-PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.report")
+PACKAGES |= dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report")
 """All static files and their packages: no path of a request reaches the file system."""
 
 FIRST = "龍龙好gSa"

@@ -66,11 +66,7 @@
     return () => send(JSON.stringify(state));
   };
 
-  const zoom = GS.zoomable(at("picture"), (scale, unit) => {
-    at("zoom-scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
-    const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most)), length = [5, 2, 1].find((k) => k * power <= most) * power;
-    at("ruler").style.width = `${length / unit}px`;
-    at("ruler").textContent = `${+length.toPrecision(2)} units`;
+  const zoom = GS.stage(at("picture"), () => {
     for (const svg of document.querySelectorAll("#compared svg")) svg.setAttribute("viewBox", at("picture").getAttribute("viewBox"));
     beside.follow(zoom.box());
   }, (event) => mayPan(event));
@@ -405,11 +401,7 @@
     at("copy").textContent = "Copied";
     setTimeout(() => { at("copy").textContent = "Copy command"; }, 1200);
   });
-  const download = (svg, name) => {
-    const url = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
-    GS.element("a", { href: url, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
-  };
+  const download = (svg, name) => GS.download(svg, name, "image/svg+xml");
   at("save").addEventListener("click", async () => {
     const answer = await fetch("/api/svg", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(state) });
     const found = await answer.json();
@@ -417,12 +409,6 @@
     download(found.svg, `gid-${shown.gid}.svg`);
   });
   for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
-  at("closer").addEventListener("click", () => zoom.zoom(1.6));
-  at("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
-  at("fit").addEventListener("click", () => zoom.fit());
-  at("theme").addEventListener("click", () => {
-    document.documentElement.dataset.theme = getComputedStyle(document.documentElement).colorScheme === "dark" ? "light" : "dark";
-  });
 
   at("family").textContent = `${font.family} ${font.style}`;
   document.title = `${font.family} – glyphspline`;

@@ -266,7 +266,7 @@ def test_axis_sliders_move_the_combs_of_source_and_result_without_the_server(alo
 
 def test_both_drawings_show_the_same_part(along: Any) -> None:
     boxes = [along.locator(place) for place in ("#beside", "#picture")]
-    for act in (lambda: along.locator("#closer").click(), lambda: boxes[0].dblclick(position={"x": 40, "y": 90})):
+    for act in (lambda: along.locator("[aria-label='Zoom in']").click(), lambda: boxes[0].dblclick(position={"x": 40, "y": 90})):
         before = boxes[1].get_attribute("viewBox")
         act()
         expect(boxes[1]).not_to_have_attribute("viewBox", before)
