@@ -73,15 +73,9 @@
     return contours;
   };
 
-  /** The points of "M x y l dx dy … Z" data, one list a polygon; "M x y x y … Z" will do, too. */
-  GS.polygons = (data) => data.split("M").slice(1).map((part) => {
-    const [first, rest = ""] = part.split("l"), points = pairs(first);
-    for (const [dx, dy] of pairs(rest)) {
-      const [x, y] = points[points.length - 1];
-      points.push([x + dx, y + dy]);
-    }
-    return points;
-  });
+  /** Dots on the points of polygons, "M x y l dx dy … Z". */
+  GS.dotted = (data, name) => GS.svg("path", { class: name, d: data.replaceAll("Z", "")
+    .replace(/(M|l?)\s*(-?[\d.]+)\s*(-?[\d.]+)/g, (_, command, x, y) => `${command === "M" ? "M" : "m"}${x} ${y}h0`) });
 
   const cubic = (p) => {
     if (p.length === 4) return p;
