@@ -101,8 +101,7 @@ def smooth_joints(contour: MasterContour) -> BoolArray:
     """(m,) which joints are smooth in every master."""
     masters = [Contour(each, contour.degrees) for each in contour.points]
     corners = np.array([joins(master).of("corner", 0.0) for master in masters])
-    smooth: BoolArray = ~corners.any(axis=0)
-    return smooth
+    return np.asarray(~corners.any(axis=0), dtype=np.bool_)
 
 
 def curves_payload(arcs: list[Interpolation]) -> dict[str, Any]:

@@ -137,15 +137,15 @@ def _fits(points: FloatArray) -> bool:
 def step(text: Text, at: int, letter: int, dx: float, dy: float, precision: int) -> int:
     """A command with one pair of numbers."""
     text[at] = letter
-    at = decimal(text, at + 1, np.int64(dx), precision)
-    return _separated(text, at, -np.int64(dy), precision)
+    at = decimal(text, at + 1, int(dx), precision)
+    return _separated(text, at, -int(dy), precision)
 
 
 @compiled
 def more(text: Text, at: int, dx: float, dy: float, precision: int) -> int:
     """One more pair of numbers of the command before."""
-    at = _separated(text, at, np.int64(dx), precision)
-    return _separated(text, at, -np.int64(dy), precision)
+    at = _separated(text, at, int(dx), precision)
+    return _separated(text, at, -int(dy), precision)
 
 
 @compiled
