@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
@@ -90,30 +87,6 @@ def _keep_alive(context: Any, owners: Any) -> Any:
     return types.none(owners), code
 
 
-def _store(context: Any, address: Any, word: Any) -> Any:
-    """Write an unsigned integer, lowest byte first, to an address of any alignment.
-
-    Eight characters at a time, and no array whose references are counted: a counted one takes four times as long as
-    writing a number. The owner keeps the array until the last use.
-    """
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        address, word = arguments
-        builder.store(word, builder.inttoptr(address, ir.PointerType(word.type)), align=1)
-        return context.get_dummy_value()
-
-    return types.void(types.uint64, word), code
-
-
-def _load(context: Any, address: Any) -> Any:
-    """The uint64 at an address."""
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.load(builder.inttoptr(arguments[0], ir.PointerType(ir.IntType(64))), align=1)
-
-    return types.uint64(types.uint64), code
-
-
 def _in(compiler: Callable[..., Any], python: Callable[..., Any]) -> Any:
     """What compiled functions call, or Python's equivalent if nothing is compiled."""
     return intrinsic(compiler) if JIT else python
@@ -124,5 +97,3 @@ select = _in(_select, lambda condition, a, b: a if condition else b)
 wide_vectors = _in(_wide_vectors, lambda: None)
 borrowed = _in(_borrowed, lambda value: value)
 keep_alive = _in(_keep_alive, lambda owners: None)
-store = _in(_store, lambda address, word: ctypes.memmove(int(address), word.tobytes(), word.nbytes))
-load = _in(_load, lambda address: np.uint64(ctypes.c_uint64.from_address(int(address)).value))

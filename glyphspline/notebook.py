@@ -68,22 +68,14 @@ def _cells(measures: Measures, em: float) -> str:
 
 def outline_svg(outline: Outline) -> str:
     """The outline, filled, in its em box."""
-    from .writers.svg.document import em_box, shown_box, title
-    from .writers.svg.markup import data_attributes, view_box_value
-    from .writers.svg.path_data import curves_data
+    from .writers.svg.document import to_svg
 
-    path = curves_data(outline.arrays, 2)[0]
-    box = view_box_value(shown_box(em_box(outline), path.box, "em"), 1)
-    return _sized(
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" role="img" {data_attributes(outline, 2)}>'
-        f"<title>{title(outline)}</title>"
-        f'<path fill="currentColor" d="{bytes(path.text).decode()}"/></svg>'
-    )
+    return _sized(to_svg(as_glyph(outline)))
 
 
 def spline_svg(spline: Spline) -> str:
     """The curve, its control polygon, and its knots on the curve."""
-    from .writers.svg.markup import number, view_box_value
+    from .writers.svg.markup import head, number, view_box_value
     from .writers.svg.path_data import dots_data, polyline_data
 
     control, knots = spline.control_points, spline(spline.knots)
@@ -94,11 +86,10 @@ def spline_svg(spline: Spline) -> str:
     digits = max(0, 4 - int(np.floor(np.log10(extent))))
     box = view_box_value((left - margin, bottom - margin, right + margin, top + margin), digits)
     curve = _cubic_data(spline, digits)
+    pen = f' fill="none" stroke="currentColor" stroke-width="{width}" stroke-linejoin="round" stroke-linecap="round"'
     return _sized(
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" fill="none" stroke="currentColor"'
-        f' stroke-width="{width}" stroke-linejoin="round" stroke-linecap="round" role="img"><title>Spline of degree'
-        f" {spline.degree}, {len(control)} control points</title>"
-        f'<path stroke="#75c" stroke-opacity=".7" d="{polyline_data(control, digits, closed=spline.closed)}"/>'
+        head(box, "spline-title", f"Spline of degree {spline.degree}, {len(control)} control points", pen)
+        + f'<path stroke="#75c" stroke-opacity=".7" d="{polyline_data(control, digits, closed=spline.closed)}"/>'
         f'<path d="{curve}"/><path stroke="#0a7" stroke-width="{number(0.016 * extent, 9)}"'
         f' d="{bytes(dots_data(knots, digits)).decode()}"/></svg>'
     )

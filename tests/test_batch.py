@@ -28,7 +28,7 @@ from glyphspline.batch import (
     worker,
     write_gallery,
 )
-from glyphspline.batch.entry import contour_texts
+from glyphspline.batch.entry import contour_entries
 from glyphspline.batch.file_names import LONGEST_NAME, file_names
 from glyphspline.batch.files import write_whole
 from glyphspline.batch.job import Task
@@ -263,7 +263,7 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
         "vertices": [3, 4], "iterations": [9, None], "residual": [0.001, np.inf], "converged": [True, False],
         "rate_bound": [1.5, np.nan], "deviation": [0.123456789, 2.0],
     }  # fmt: skip
-    good, bad = (json.loads(text) for text in contour_texts(columns, np.array([0, 1, 1, 2])) if text)
+    (good,), _, (bad,) = contour_entries(columns, np.array([0, 1, 1, 2]))
     assert (good["vertices"], good["residual"], good["converged"], good["rate_bound"]) == (3, 0.001, True, 1.5)
     assert (bad["iterations"], bad["residual"], bad["converged"], bad["rate_bound"]) == (None, None, False, None)
     assert (good["deviation"], good["length"], bad["length"]) == (0.1234568, None, None)

@@ -53,7 +53,7 @@ def test_a_glyphs_file_has_its_drawing(tmp_path: Path) -> None:
     source, polygon, control = (part.text for part in (*source_data([result]), *polygon_data([result])[0]))
     drawing: dict[str, Any] = {"source": source, "result": "M0 0Z", "polygon": polygon, "control": control}
     files = {"svg": "svg/odd #%?name.svg", "gallery": "gallery/odd.glyph.js"}
-    (tmp_path / "a.js").write_bytes(glyph_text(drawing, files, '{"vertices":12,"deviation":null}'))
+    (tmp_path / "a.js").write_bytes(glyph_text(drawing, files, [{"vertices": 12, "deviation": None}]))
     glyph = data(tmp_path / "a.js")
     assert len(parse_path(glyph["source"])) == 8
     assert glyph["result"] == "M0 0Z"

@@ -22,6 +22,7 @@ from glyphspline.types import FloatArray
 from glyphspline.viewer import conversion, make_app
 from glyphspline.viewer.app import first_glyph
 from glyphspline.viewer.conversion import shown_steps
+from glyphspline.writers.svg.path_data import path_data
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
 HOST = "127.0.0.1:8642"
@@ -203,18 +204,16 @@ def test_axes_of_a_variable_font_change_the_source(variable: TestClient) -> None
     assert f"{axis['tag']}={axis['maximum']:g}" in found["command"]
 
 
-def test_a_variable_glyph_is_sent_in_all_masters(variable: TestClient) -> None:
-    found = ask(variable, "masters", glyph="o", sampling="tolerance", amount=1, corners="sharp")
+def test_a_variable_glyph_is_sent_at_a_location(variable: TestClient) -> None:
+    found = ask(variable, "masters", glyph="o", location={"wght": 650}, sampling="tolerance", amount=1, corners="sharp")
     masters = gs.open_font(FONTS / "variable.ttf").masters("o")
-    assert len(found["regions"]) + 1 == len(found["inverse"]) == len(masters) > 1
-    assert [axis["tag"] for axis in found["axes"]] == [axis.tag for axis in masters.axes]
-    at = masters.normalised({"wght": 650})
-    weights = masters.scalars(at) @ np.array(found["inverse"])
-    np.testing.assert_allclose(weights, masters.weights({"wght": 650}), atol=1e-12)
-    for sent, contour in zip(found["source"], masters.contours, strict=True):
-        assert sent["degrees"] == contour.degrees.tolist()
-        points = np.array(sent["points"]).reshape(contour.points.shape) * (1, -1)
-        np.testing.assert_allclose(points, contour.points, atol=1e-4)
+    result = gs.convert_masters(masters, gs.Options(corners="sharp", tolerance=1.0))
+    assert found["masters"] == len(masters) > 1
+    for side, outline in (("source", masters), ("result", result)):
+        drawn = outline.instance({"wght": 650})
+        assert found[side]["path"] == path_data(drawn.contours, 4)
+        assert found[side]["segments"] == sum(map(len, drawn.contours))
+    assert found["result"]["turn"] == pytest.approx(result.turn({"wght": 650}), abs=1e-6)
     assert 0 < found["bound"] <= 1
     words = shlex.split(found["command"])
     assert words[:2] == ["glyphspline", "atlas"]

@@ -1,44 +1,42 @@
-"""A glyph's line of the manifest and of the journal, as JSON text."""
+"""A glyph's line of the manifest and of the journal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain, pairwise
-from json.encoder import encode_basestring_ascii as quoted
-
-import numpy as np
+from itertools import pairwise
+from typing import Any
 
 from ..fitting.results import BOUNDS, MEASURES, MeasureColumns
-from ..report.data import DECIMALS, number
+from ..report.data import DECIMALS, plain
 from ..types import IntArray, rounded_up
 
 
-def manifest_line(
+def manifest_entry(
     glyph: str,
     gid: int,
     unicodes: Sequence[int],
     advance: float | None,
     status: str,
-    files: str,
-    contours: str | None,
+    files: Mapping[str, str],
+    contours: Sequence[Mapping[str, Any]] | None,
     *,
     deviation: float | None = None,
     notes: Sequence[str] = (),
     error: str | None = None,
-) -> str:
-    """One glyph's line, without the line end; ``files`` and ``contours`` are JSON without the brackets.
-
-    ``contours`` is None if nothing was fitted.
-    """
-    said = ",".join(map(quoted, notes))
-    codes = ",".join([f'"U+{code:04X}"' for code in unicodes])
-    failed = "null" if error is None else quoted(error)
-    measures = "null" if contours is None else f"[{contours}]"
-    return (
-        f'{{"glyph":{quoted(glyph)},"gid":{gid},"unicodes":[{codes}],"advance":{number(advance)},'
-        f'"status":"{status}","files":{{{files}}},"deviation":{number(deviation)},"contours":{measures},'
-        f'"notes":[{said}],"error":{failed}}}'
-    )
+) -> dict[str, Any]:
+    """One glyph's line, as JSON has it; ``contours`` is None if nothing was fitted."""
+    return {
+        "glyph": glyph,
+        "gid": gid,
+        "unicodes": [f"U+{code:04X}" for code in unicodes],
+        "advance": plain(advance),
+        "status": status,
+        "files": files,
+        "deviation": plain(deviation),
+        "contours": contours,
+        "notes": notes,
+        "error": error,
+    }
 
 
 def journal_line(sizes: Iterable[int], line: str) -> bytes:
@@ -46,36 +44,23 @@ def journal_line(sizes: Iterable[int], line: str) -> bytes:
     return f"{','.join(map(str, sizes))}\t{line}\n".encode()
 
 
-def contour_texts(measures: MeasureColumns, offsets: IntArray) -> list[str]:
-    """The measures of each glyph's contours as JSON objects between commas.
+def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[dict[str, Any]]]:
+    """The measures of each glyph's contours; what is not known, or not finite, is None.
 
     Args:
         measures: columns of all contours. offsets: (G + 1,) where the contours of each glyph begin.
     """
-    template, columns = [], []
-    for name in MEASURES:
-        form = "null"
-        if name in measures:
-            form, column = _written(measures[name], name in BOUNDS)
-            columns.append(column)
-        template.append(f'"{name}":{form}')
-    text = (
-        ("{" + ",".join(template) + "}\n") * int(offsets[-1]) % tuple(chain.from_iterable(zip(*columns, strict=True)))
-    )
-    lines = text.splitlines()
-    return [",".join(lines[a:b]) for a, b in pairwise(offsets.tolist())]
+    count = int(offsets[-1])
+    columns = [_written(measures[name], name in BOUNDS) if name in measures else [None] * count for name in MEASURES]
+    entries = [dict(zip(MEASURES, row, strict=True)) for row in zip(*columns, strict=True)]
+    return [entries[a:b] for a, b in pairwise(offsets.tolist())]
 
 
-def _written(column: Sequence[float | None], is_bound: bool) -> tuple[str, Sequence[object]]:
-    """A format for ``%`` and its arguments, which write the values of a column as :func:`number` does; bounds up."""
+def _written(column: Sequence[float | None], is_bound: bool) -> list[Any]:
+    """The values of a column with the digits that are written; bounds are rounded up."""
     if is_bound:
         column = [value if value is None else rounded_up(value, DECIMALS) for value in column]
-    values = np.array(column)
-    if values.dtype.kind == "i":
-        return "%d", column
-    if values.dtype.kind == "f" and np.isfinite(values).all():
-        return "%.7g", column
-    return "%s", [number(value) for value in column]
+    return [plain(value) for value in column]
 
 
 def columns_of(contours: Sequence[Mapping[str, float | None]]) -> MeasureColumns:

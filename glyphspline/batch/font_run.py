@@ -228,7 +228,7 @@ def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) ->
             name, status, row, facts = record.notes.get(gid) or _noted(line)
             summary.count(name, status, json.loads(line)["error"] if status == "failed" else None, facts)
             if gallery:
-                gallery.add(row or row_of(line))
+                gallery.add(row or row_of(json.loads(line)))
         if gallery:
             gallery.close(read_run(out) or {})
 

@@ -13,7 +13,7 @@ from defusedxml.ElementTree import fromstring
 
 from ..errors import GlyphsplineError, OutputError
 from ..readers import Source, open_source
-from ..report.data import as_json, glyph_text, inside
+from ..report.data import glyph_text, inside
 from ..report.gallery import write_index, write_report
 from ..report.gallery_files import FOLDER, SUFFIX
 from ..writers.svg.path_data import path_data
@@ -69,8 +69,7 @@ def _with_drawings(folder: Path, run: Mapping[str, Any], font: Path | None) -> I
                 precision = int(run.get("options", {}).get("precision", 2))
                 drawing["source"] = path_data(source.outline(entry["glyph"]).contours, precision)
             files[FOLDER] = f"{FOLDER}/{PurePosixPath(next(iter(files.values()))).stem}{SUFFIX}"
-            measures = as_json(entry.get("contours") or [])[1:-1]
-            write_whole(f"{folder}/{files[FOLDER]}", glyph_text(drawing, files, measures))
+            write_whole(f"{folder}/{files[FOLDER]}", glyph_text(drawing, files, entry.get("contours") or ()))
             entry = entry | {"files": files}
         yield entry
 

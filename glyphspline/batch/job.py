@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..outlines.outline import FontMetrics
-from .entry import journal_line, manifest_line
+from ..report.data import encoded
+from .entry import journal_line, manifest_entry
 from .spec import RunSpec
 from .summary import NO_FACTS, Facts
 
@@ -60,5 +61,5 @@ class Done(NamedTuple):
 
 def failed(task: Task, error: str, seconds: float = 0.0) -> Done:
     """The message for a glyph that could not be converted, or whose worker was lost."""
-    line = manifest_line(task.name, task.gid, task.unicodes, None, "failed", "", "", error=error)
-    return Done(task.gid, task.name, "failed", journal_line((), line), seconds, NO_FACTS, "")
+    entry = manifest_entry(task.name, task.gid, task.unicodes, None, "failed", {}, (), error=error)
+    return Done(task.gid, task.name, "failed", journal_line((), encoded(entry)), seconds, NO_FACTS, "")

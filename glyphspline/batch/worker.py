@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ..outlines.outline import Outline
 from ..readers import Source, open_source
 from ..readers.opentype.bulk import BulkReader
 from ..readers.source import reason as library_reason
-from ..report.data import files_text, glyph_text, row_of
+from ..report.data import encoded, glyph_text, row_of
 from ..report.gallery_files import FOLDER as GALLERY
 from ..writers.figures.images import ImageKind
 from ..writers.formats import format_named
@@ -30,7 +30,7 @@ from ..writers.svg.curvature_map import combs, curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.polygon_drawing import PolygonData, polygon_data, polygon_document, source_data
-from .entry import contour_texts, journal_line, manifest_line
+from .entry import contour_entries, journal_line, manifest_entry
 from .files import write_whole
 from .job import Done, Job, Task, failed
 from .pool import sign_of_life
@@ -205,14 +205,14 @@ class Glyph(NamedTuple):
     Attributes:
         path: of the result. source: of the source; None if no format shows it.
         polygons: None without a gallery.
-        measures: of the contours, as JSON without the brackets; None if nothing is fitted. facts: for the summary.
+        measures: of the contours; None if nothing is fitted. facts: for the summary.
     """
 
     result: GlyphResult
     path: PathData
     source: PathData | None
     polygons: PolygonData | None
-    measures: str | None
+    measures: list[dict[str, Any]] | None
     facts: Facts
 
 
@@ -229,7 +229,7 @@ def drawn(job: Job, results: Sequence[GlyphResult]) -> list[Glyph]:
     sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
     polygons = polygon_data(results) if GALLERY in spec.formats else nothing
     facts = [facts_of(arrays.measures, a, b) for a, b in pairwise(offsets.tolist())]
-    return list(map(Glyph, results, paths, sources, polygons, contour_texts(arrays.measures, offsets), facts))
+    return list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets), facts))
 
 
 def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seconds: float) -> Done:
@@ -241,13 +241,13 @@ def write_files(job: Job, formats: Sequence[str], task: Task, glyph: Glyph, seco
     status, advance = "empty" if empty else "ok", glyph.result.outline.advance
     notes = tuple(dict.fromkeys([*glyph.result.outline.notes, *glyph.result.notes]))
     facts = glyph.facts._replace(notes=notes if empty else ())
-    line = manifest_line(
-        task.name, task.gid, task.unicodes, advance, status, files_text(files), glyph.measures,
+    entry = manifest_entry(
+        task.name, task.gid, task.unicodes, advance, status, files, glyph.measures,
         deviation=facts.deviation, notes=notes,
     )  # fmt: skip
-    row = row_of(line) if GALLERY in formats else ""
+    row = row_of(entry) if GALLERY in formats else ""
     seconds += time.perf_counter() - started
-    return Done(task.gid, task.name, status, journal_line(sizes, line), seconds, facts, row)
+    return Done(task.gid, task.name, status, journal_line(sizes, encoded(entry)), seconds, facts, row)
 
 
 def reason(error: Exception) -> str:

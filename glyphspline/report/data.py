@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Mapping
-from json.encoder import encode_basestring_ascii as quoted
+from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -24,64 +23,58 @@ COLUMNS = (
 DIGITS = 5
 """Significant digits of the table's measures."""
 
-_NULL = re.compile(r',"[a-z_]+":null')
+DECIMALS = 7
+"""Significant digits of measures, beyond which they are rounding noise."""
 
-_encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
+WHOLE = 1e15
+"""Below this a float without decimals is written as an integer."""
+
+encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
+"""Data as ASCII JSON in one line."""
 
 
-def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: str) -> bytes:
+def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: Sequence[Mapping[str, Any]]) -> bytes:
     """A glyph's data file.
 
     Args:
         drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown.
         files: by format, relative to the run's folder.
-        contours: the measures of its contours as JSON without the brackets; nulls are left out.
+        contours: the measures of its contours; what is None is left out.
     """
-    links = files_text({name: path for name, path in files.items() if name != FOLDER})
+    links = {name: path for name, path in files.items() if name != FOLDER}
+    known = [{name: value for name, value in contour.items() if value is not None} for contour in contours]
     parts: list[Text] = ["glyphsplineData({"]
     for name, data in drawing.items():
         parts += [f'"{name}":"', data, '",']
-    parts.append(f'"files":{{{escaped(links)}}},"contours":[{escaped(_NULL.sub("", contours))}]}});\n')
+    parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}}});\n')
     return document(parts)
 
 
-def files_text(files: Mapping[str, str]) -> str:
-    """Files by format as JSON without the braces."""
-    return ",".join([f"{quoted(name)}:{quoted(path)}" for name, path in files.items()])
+def plain(value: Any, digits: int = DECIMALS) -> Any:
+    """A value as JSON has it: a float of so many significant digits, an integer if it is whole, None if not finite."""
+    if not isinstance(value, float):
+        return value
+    near = float(f"{value:.{digits}g}")
+    if not isfinite(near):
+        return None
+    return int(near) if near.is_integer() and abs(near) < WHOLE else near
 
 
-DECIMALS = 7
-"""Significant digits of measures, beyond which they are rounding noise."""
-
-
-def number(value: float | None, digits: int = DECIMALS) -> str:
-    """A number as JSON, of so many significant digits; not finite is null."""
-    if value is None:
-        return "null"
-    if value is True or value is False:
-        return "true" if value else "false"
-    if isinstance(value, int):
-        return str(value)
-    text = f"{value:.{digits}g}"
-    return "null" if "n" in text else text
-
-
-def row_of(line: str | bytes | Mapping[str, Any]) -> str:
-    """The row of the table for a line of a manifest, parsed or not. Only files inside the run's folder become links."""
-    entry = line if isinstance(line, Mapping) else json.loads(line)
+def row_of(entry: Mapping[str, Any]) -> str:
+    """The row of the table for a line of a manifest, parsed. Only files inside the run's folder become links."""
     contours = entry.get("contours") or ()
     measures = glyph_measures(contours)
     file = (entry.get("files") or {}).get(FOLDER)
     row = [
-        as_json(str(entry["glyph"])), str(int(entry["gid"])), as_json(" ".join(map(str, entry.get("unicodes") or ()))),
-        number(entry.get("advance")), as_json(str(entry["status"])), as_json(file if inside(file) else None),
-        as_json(entry.get("error")), str(len(contours)),
+        str(entry["glyph"]), int(entry["gid"]), " ".join(map(str, entry.get("unicodes") or ())),
+        plain(entry.get("advance")), str(entry["status"]), file if inside(file) else None, entry.get("error"),
+        len(contours),
     ]  # fmt: skip
     measures |= {name: rounded_up(value, DIGITS) for name in BOUNDS if (value := measures[name]) is not None}
-    row += [number(measures[name], DIGITS) for name in COLUMNS[len(row) :]]
-    while row[-1] == "null":
+    row += [plain(measures[name], DIGITS) for name in COLUMNS[len(row) :]]
+    while row[-1] is None:
         row.pop()
-    return f"[{','.join(row)}]"
+    return as_json(row)
 
 
 def inside(path: object) -> bool:
@@ -97,9 +90,4 @@ def script(data: Any) -> str:
 
 def as_json(data: Any) -> str:
     """ASCII JSON for a script or a page, without "<", which could end it."""
-    return escaped(_encoded(data))
-
-
-def escaped(text: str) -> str:
-    """JSON without "<"."""
-    return text.replace("<", "\\u003c")
+    return encoded(data).replace("<", "\\u003c")

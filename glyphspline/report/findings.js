@@ -147,10 +147,6 @@
   at("font").closest("label").hidden = !several;
   at("left").textContent = setup.left ? `${setup.left} more are left out here; CSV and JSON have all.` : "";
   document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
-  at("theme").addEventListener("click", () => {
-    const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
-    document.documentElement.dataset.theme = dark ? "light" : "dark";
-  });
   const choose = () => { update(); scrollTo(0, 0); };
   for (const item of [...boxes, at("font")]) item.addEventListener("change", choose);
   let pause;

@@ -24,7 +24,7 @@ LISTED = 20_000
 PRECISION = 2
 """Decimals of path data and points."""
 
-SCRIPTS = ("shapes.js", "findings.js")
+SCRIPTS = ("page.js", "shapes.js", "findings.js")
 
 NUMBERS = {kind.name: k for k, kind in enumerate(KINDS)}
 

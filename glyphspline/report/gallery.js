@@ -18,10 +18,6 @@
   };
 
   document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
-  at("theme").addEventListener("click", () => {
-    const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
-    document.documentElement.dataset.theme = dark ? "light" : "dark";
-  });
 
   let runs;
   try {
@@ -92,11 +88,7 @@
     histogram(sort);
     at("sort").title = GS.measures.get(sort)?.about ?? "";
   };
-  at("csv").addEventListener("click", () => {
-    const url = URL.createObjectURL(new Blob([GS.csv(chosen)], { type: "text/csv" }));
-    GS.element("a", { href: url, download: "glyphs.csv" }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
-  });
+  at("csv").addEventListener("click", () => GS.download(GS.csv(chosen), "glyphs.csv", "text/csv"));
 
   const redraw = () => {
     showLayers();

@@ -25,7 +25,7 @@ TABLE = 5000
 """Glyphs in a file of measures."""
 
 SCRIPTS = (
-    "shapes.js", "zoom.js", "gallery_data.js", "gallery_table.js", "gallery_grid.js", "gallery_detail.js", "gallery.js",
+    "page.js", "shapes.js", "gallery_data.js", "gallery_table.js", "gallery_grid.js", "gallery_detail.js", "gallery.js",
 )  # fmt: skip
 """In the order of their dependencies."""
 

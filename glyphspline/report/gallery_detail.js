@@ -6,19 +6,8 @@
   GS.detail = (dialog, layersOn, shows) => {
     const find = (name) => dialog.querySelector(`[data-part="${name}"]`);
     const picture = find("picture"), fade = find("fade");
-    const zoom = GS.zoomable(picture, (scale, unit) => {
-      find("scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
-      ruler(unit);
-    });
+    const zoom = GS.stage(picture);
     let rows = [], position = 0, drawing = null, every = false, closed = () => {};
-
-    /** A ruler of a round number of font units, so that a zoom means something. */
-    const ruler = (unit) => {
-      const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most));
-      const length = [5, 2, 1].find((k) => k * power <= most) * power;
-      find("ruler").style.width = `${length / unit}px`;
-      find("ruler").textContent = `${+length.toPrecision(2)} units`;
-    };
 
     const draw = () => {
       if (!drawing) return;
@@ -73,9 +62,6 @@
 
     find("before").addEventListener("click", () => show(position - 1));
     find("after").addEventListener("click", () => show(position + 1));
-    find("closer").addEventListener("click", () => zoom.zoom(1.6));
-    find("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
-    find("fit").addEventListener("click", () => zoom.fit());
     find("close").addEventListener("click", () => dialog.close());
     fade.addEventListener("input", fading);
     dialog.addEventListener("close", () => { shows(null); closed(position); });

@@ -31,7 +31,7 @@
     if (drawing.control) group.append(GS.svg("path", { class: "control", d: drawing.control }));
     if (drawing.polygon) {
       group.append(GS.svg("path", { class: "polygon", d: drawing.polygon }));
-      if (on.has("vertices")) group.append(GS.dots(GS.polygons(drawing.polygon).flat(), "vertices"));
+      if (on.has("vertices")) group.append(GS.dotted(drawing.polygon, "vertices"));
     }
     return group;
   };

@@ -1,10 +1,7 @@
 "use strict";
 /* Path data to Bézier pieces, and from those what is drawn over them: combs, colours, vertices. SVG coordinates, y down. */
 
-const GS = {};
-
 (() => {
-  const SVG = "http://www.w3.org/2000/svg";
   const TURN = Math.PI / 12; // a tooth at least every 15 degrees of turn, as in the curvature maps
   const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
   const MOST_TEETH = 400; // a piece
@@ -24,16 +21,6 @@ const GS = {};
   };
   GS.shown = (name, value, em) => (typeof value === "number" && GS.measures.get(name)?.unit === "1/em" ? value * em : value);
 
-  /** Three digits; proven bounds are rounded up. */
-  GS.number = (value, up = false) => {
-    if (value === null || value === undefined) return "–";
-    if (value === true) return "yes";
-    if (value === false) return "no";
-    if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
-    let near = +value.toPrecision(3);
-    if (up && near < value) near = +(near + 10 ** (Math.floor(Math.log10(value)) - 2)).toPrecision(3);
-    return String(near).replace("-", "\u2212");
-  };
   GS.isBound = (name) => name.endsWith("_bound");
 
   /** Measures that are listed at once; the others are switched on. */
@@ -57,24 +44,6 @@ const GS = {};
       return GS.element("tr", { "data-measure": name, title: about }, GS.element("th", { scope: "row" }, label,
         ...(unit ? [" ", GS.element("small", { class: "unit" }, unit)] : [])), ...contours.map(cell));
     })];
-  };
-
-  GS.svg = (name, attributes = {}, ...children) => {
-    const node = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-    node.append(...children);
-    return node;
-  };
-
-  GS.element = (name, attributes = {}, ...children) => {
-    const node = document.createElement(name);
-    for (const [key, value] of Object.entries(attributes)) {
-      if (key === "class") node.className = value;
-      else if (key in node && key !== "list" && typeof value !== "string") node[key] = value;
-      else node.setAttribute(key, value);
-    }
-    node.append(...children);
-    return node;
   };
 
   const numbers = (text) => (text.match(/-?[\d.]+(?:e[-+]?\d+)?/g) || []).map(Number);
@@ -104,15 +73,9 @@ const GS = {};
     return contours;
   };
 
-  /** The points of "M x y l dx dy … Z" data, one list a polygon; "M x y x y … Z" will do, too. */
-  GS.polygons = (data) => data.split("M").slice(1).map((part) => {
-    const [first, rest = ""] = part.split("l"), points = pairs(first);
-    for (const [dx, dy] of pairs(rest)) {
-      const [x, y] = points[points.length - 1];
-      points.push([x + dx, y + dy]);
-    }
-    return points;
-  });
+  /** Dots on the points of polygons, "M x y l dx dy … Z". */
+  GS.dotted = (data, name) => GS.svg("path", { class: name, d: data.replaceAll("Z", "")
+    .replace(/(M|l?)\s*(-?[\d.]+)\s*(-?[\d.]+)/g, (_, command, x, y) => `${command === "M" ? "M" : "m"}${x} ${y}h0`) });
 
   const cubic = (p) => {
     if (p.length === 4) return p;

@@ -25,16 +25,16 @@ from ..report.pages import palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
 from .guard import Guard
-from .payload import glyph_payload, masters_payload, result_payload, step_payload
+from .payload import glyph_payload, instance_payload, result_payload, step_payload
 from .search import search
 from .state import State, read_state
 
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""
 
-OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer_along.js", "viewer.js")
+OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js")
 PACKAGES = dict.fromkeys(OWN, "glyphspline.viewer")
-PACKAGES |= dict.fromkeys(("theme.css", "shapes.js", "zoom.js"), "glyphspline.report")
+PACKAGES |= dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report")
 """All static files and their packages: no path of a request reaches the file system."""
 
 FIRST = "龍龙好gSa"
@@ -138,10 +138,11 @@ def text_answer(work: Work, state: State) -> dict[str, Any]:
 
 
 def masters_answer(work: Work, state: State) -> dict[str, Any]:
-    """The glyph in all masters, source and result, and the command that draws it along an axis."""
+    """The glyph, converted in all masters at once, at a location; and the command that draws it along an axis."""
     if not work.font.axes:
         raise GlyphsplineError("not a variable font: it has no axes", font=str(work.path))
-    return masters_payload(work.in_all_masters(state.glyph, state.options)) | {"command": work.axis_command(state)}
+    result = work.in_all_masters(state.glyph, state.options)
+    return instance_payload(result, dict(state.location)) | {"command": work.axis_command(state)}
 
 
 ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {

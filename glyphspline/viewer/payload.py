@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,17 +12,18 @@ import numpy as np
 from ..fitting.convert_masters import MastersResult
 from ..fitting.results import GlyphResult
 from ..interpolation.result import Interpolation
+from ..outlines.joins import joins
 from ..outlines.masters import MasterContour
 from ..outlines.outline import Contour, Outline
-from ..types import FloatArray, rounded_up
+from ..types import BoolArray, FloatArray, rounded_up
 from ..writers.svg.markup import code_points
 from ..writers.svg.path_data import path_data, polyline_data
 from .conversion import is_smooth, shown_steps, updates_of
 
 DIGITS = 2
 
-MASTER_DIGITS = 4
-"""Decimals of masters: with fewer, combs of short segments are uneven."""
+INSTANCE_DIGITS = 4
+"""Decimals of instances: with fewer, combs of short segments are uneven."""
 
 ARC = 7
 """Points of the polyline that shows the interval of a footpoint."""
@@ -54,30 +57,51 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
     }
 
 
-def masters_payload(result: MastersResult) -> dict[str, Any]:
-    """A glyph in all masters, source and result, and what the page needs to mix them at any location."""
-    masters = result.masters
+def instance_payload(result: MastersResult, location: Mapping[str, float]) -> dict[str, Any]:
+    """A glyph converted in all masters, as it is at a location: source and result."""
+    masters, curves = result.masters, [contour.curve for contour in result.contours]
+    weights = masters.weights(location)
+    every = np.concatenate([np.zeros((0, 2)), *(contour.points.reshape(-1, 2) for contour in masters.contours)])
     return {
         "glyph": masters.name,
         "gid": masters.gid,
-        "unicodes": code_points(result.mixed(np.eye(len(masters))[0])),
-        "axes": [
-            {"tag": a.tag, "minimum": a.minimum, "default": a.default, "maximum": a.maximum, "mapping": a.mapping}
-            for a in masters.axes
-        ],
-        "regions": masters.regions.tolist(),
-        "inverse": np.linalg.inv(masters.scalars(masters.peaks)).tolist(),
-        "source": [master_contour(contour) for contour in masters.contours],
-        "result": [master_contour(contour.curve) for contour in result.contours],
+        "unicodes": code_points(result.mixed(weights)),
+        "masters": len(masters),
+        "corners": points(np.array([every.min(axis=0), every.max(axis=0)])) if len(every) else [],
+        "source": side_payload(masters.contours, weights),
+        "result": side_payload(curves, weights),
         "bound": rounded_up(max((contour.deviation_bound for contour in result.contours), default=0.0), 3),
         "notes": list(result.notes),
     }
 
 
-def master_contour(contour: MasterContour) -> dict[str, Any]:
-    """Degrees of its segments, and its points in each master, x and y in turn, y down."""
-    points = np.round(contour.points * (1, -1), MASTER_DIGITS) + 0.0
-    return {"degrees": contour.degrees.tolist(), "points": points.reshape(len(points), -1).tolist()}
+def side_payload(contours: Sequence[MasterContour], weights: FloatArray) -> dict[str, Any]:
+    """The path of contours with weights of the masters, and where the joint turns most that is smooth in every master.
+
+    The turn is in degrees; None without such a joint.
+    """
+    drawn = [contour.mixed(weights) for contour in contours]
+    found = [joins(contour) for contour in drawn]
+    turned = np.degrees(np.abs(np.concatenate([np.zeros(0), *(each.turns for each in found)])))
+    turned[~np.concatenate([np.zeros(0, np.bool_), *map(smooth_joints, contours)])] = -1.0
+    side: dict[str, Any] = {
+        "path": path_data(drawn, INSTANCE_DIGITS),
+        "segments": sum(map(len, contours)),
+        "turn": None,
+    }
+    if turned.max(initial=-1.0) >= 0.0:
+        worst = int(turned.argmax())
+        place = np.concatenate([each.points for each in found])[worst : worst + 1]
+        side |= {"turn": float(turned[worst]), "point": points(place)[0]}
+    return side
+
+
+@lru_cache(maxsize=256)
+def smooth_joints(contour: MasterContour) -> BoolArray:
+    """(m,) which joints are smooth in every master."""
+    masters = [Contour(each, contour.degrees) for each in contour.points]
+    corners = np.array([joins(master).of("corner", 0.0) for master in masters])
+    return np.asarray(~corners.any(axis=0), dtype=np.bool_)
 
 
 def curves_payload(arcs: list[Interpolation]) -> dict[str, Any]:

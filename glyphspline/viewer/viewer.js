@@ -10,6 +10,8 @@
   };
   /** Measures of the iteration, which keep their rows where nothing is iterated. */
   const ITERATED = new Set(["iterations", "residual", "converged", "rate_bound"]);
+  const CHOICES = ["variant", "sampling", "corners", "continuity", "effort"];
+  const choiceOf = (name, value) => document.querySelector(`[name=${name}][value="${value}"]`);
   const AXES = 3; // whose sliders are in sight; those of others are in a list
   const number = GS.number;
 
@@ -37,10 +39,10 @@
   const em = font.metrics.units_per_em;
   const state = { glyph: font.first, location: {}, ...font.defaults, moved: [], measure: false };
   /* The page opens on the command line's defaults. */
-  for (const name of ["variant", "sampling", "corners", "continuity", "effort"]) document.querySelector(`[name=${name}][value="${state[name]}"]`).checked = true;
+  for (const name of CHOICES) choiceOf(name, state[name]).checked = true;
   at("margin").value = String(state.margin);
   const layers = new Set(["source", "result", "vertices"]);
-  let along = null; // the glyph in all masters, while it is shown along the axes
+  let along = null; // the instance at the sliders' location, while the glyph is shown along the axes
   let compared = null, steps = null, playing = null;
   let asked = 0; // how often the curve has been asked for: what was sent before the last time is out of date
 
@@ -66,11 +68,7 @@
     return () => send(JSON.stringify(state));
   };
 
-  const zoom = GS.zoomable(at("picture"), (scale, unit) => {
-    at("zoom-scale").textContent = `${scale < 10 ? scale.toFixed(1) : Math.round(scale)}×`;
-    const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most)), length = [5, 2, 1].find((k) => k * power <= most) * power;
-    at("ruler").style.width = `${length / unit}px`;
-    at("ruler").textContent = `${+length.toPrecision(2)} units`;
+  const zoom = GS.stage(at("picture"), () => {
     for (const svg of document.querySelectorAll("#compared svg")) svg.setAttribute("viewBox", at("picture").getAttribute("viewBox"));
     beside.follow(zoom.box());
   }, (event) => mayPan(event));
@@ -87,13 +85,12 @@
   const mapped = () => ["comb", "source-comb", "colour"].some((name) => layers.has(name));
   const combs = () => ({ smooth: state.corners === "smooth", gain: 2 ** +at("gain").value });
 
-  /** Source and result at the sliders' location, mixed here of their masters. */
+  /** Source and result at the sliders' location. */
   const drawAlong = () => {
-    const weights = GS.masterWeights(along, state.location), { gain } = combs();
-    for (const [whose, place, out] of [["source", "beside", "source-turn"], ["result", "picture", "result-turn"]]) {
-      const contours = GS.mixed(along[whose], weights), worst = GS.largestTurn(contours, along.smooth[whose]);
-      at(place).replaceChildren(GS.alongDrawing(font, contours, worst, whose, gain));
-      at(out).textContent = `${whose}: ${worst ? `largest turn ${worst.turn.toFixed(1)}°` : "no smooth joints"}`;
+    for (const [whose, place] of [["source", "beside"], ["result", "picture"]]) {
+      const { turn } = along[whose];
+      at(place).replaceChildren(GS.alongDrawing(font, along[whose], whose, combs().gain));
+      at(`${whose}-turn`).textContent = `${whose}: ${turn === null ? "no smooth joints" : `largest turn ${turn.toFixed(1)}°`}`;
     }
     at("gain").disabled = false;
     at("legend").replaceChildren(GS.legend(em, font.scale));
@@ -189,13 +186,12 @@
       at("about").textContent = found.error;
       return;
     }
-    const count = found.regions.length + 1, segments = (contours) => contours.reduce((sum, { degrees }) => sum + degrees.length, 0);
     const other = along?.glyph !== found.glyph;
-    along = { ...found, smooth: { source: GS.smoothJoints(found.source, count), result: GS.smoothJoints(found.result, count) } };
+    along = found;
     at("stage").classList.add("along");
-    if (other) for (const each of [beside, zoom]) each.fit(GS.boxAround(font, along.source.flatMap(({ points }) => points.flatMap(GS.pairsOf))));
+    if (other) for (const each of [beside, zoom]) each.fit(GS.boxAround(font, found.corners));
     title(found);
-    at("about").textContent = [`gid ${found.gid}`, found.unicodes, `${count} masters`, `${segments(found.source)} segments in the source, ${segments(found.result)} in the result`,
+    at("about").textContent = [`gid ${found.gid}`, found.unicodes, `${found.masters} masters`, `${found.source.segments} segments in the source, ${found.result.segments} in the result`,
       `within ${found.bound} units at every location`, ...found.notes].filter(Boolean).join(" · ");
     at("chart").textContent = "–";
     at("measures").replaceChildren();
@@ -251,11 +247,8 @@
     at("amount-out").textContent = `${state.amount}${UNITS[state.sampling][1]}`;
   };
   const read = () => {
-    state.variant = +document.querySelector("[name=variant]:checked").value;
-    state.sampling = document.querySelector("[name=sampling]:checked").value;
-    state.corners = document.querySelector("[name=corners]:checked").value;
-    state.continuity = document.querySelector("[name=continuity]:checked").value;
-    state.effort = document.querySelector("[name=effort]:checked").value;
+    for (const name of CHOICES) state[name] = document.querySelector(`[name=${name}]:checked`).value;
+    state.variant = +state.variant;
     state.margin = +at("margin").value;
     at("margin-out").textContent = state.margin.toFixed(3);
     const sharp = state.corners === "sharp", fitted = sharp && state.continuity === "g1"; // G1 cubics: nothing is iterated
@@ -272,8 +265,7 @@
   };
   /* Step and count sample whole contours, which sharp corners cut. */
   const together = (sampling, corners) => {
-    document.querySelector(`[name=sampling][value=${sampling}]`).checked = true;
-    document.querySelector(`[name=corners][value=${corners}]`).checked = true;
+    choiceOf("sampling", sampling).checked = choiceOf("corners", corners).checked = true;
     at("amount").value = START[sampling];
   };
   for (const input of document.querySelectorAll("[name=corners], [name=sampling]")) {
@@ -285,7 +277,7 @@
   for (const input of document.querySelectorAll("[name=preset]")) {
     input.addEventListener("change", () => {
       for (const [key, value] of Object.entries(font.presets[input.value])) {
-        const choice = document.querySelector(`[name=${key}][value="${value}"]`);
+        const choice = choiceOf(key, value);
         if (choice) choice.checked = true;
         else at(key).value = String(value);
       }
@@ -296,10 +288,13 @@
       ask();
     });
   }
-  for (const input of document.querySelectorAll("[name=sampling]")) input.addEventListener("change", () => { at("amount").value = START[input.value]; });
-  for (const input of document.querySelectorAll("[name=sampling], [name=corners], [name=continuity], [name=effort], #amount")) input.addEventListener("input", () => { state.moved = []; });
-  for (const input of document.querySelectorAll("[name=variant], [name=sampling], [name=corners], [name=continuity], [name=effort], #margin, #amount")) {
-    input.addEventListener(input.type === "radio" ? "change" : "input", () => { read(); ask(); });
+  for (const input of document.querySelectorAll(`${CHOICES.map((name) => `[name=${name}]`)}, #margin, #amount`)) {
+    input.addEventListener(input.type === "radio" ? "change" : "input", () => {
+      if (input.name === "sampling") at("amount").value = START[input.value];
+      if (input.name !== "variant" && input.id !== "margin") state.moved = []; // these sample anew
+      read();
+      ask();
+    });
   }
   const more = GS.element("details", {}, GS.element("summary", {}, font.axes.length - AXES === 1 ? "1 more axis" : `${font.axes.length - AXES} more axes`));
   font.axes.forEach((axis, index) => {
@@ -309,11 +304,9 @@
     input.addEventListener("input", () => {
       state.location[axis.tag] = +(+input.value).toPrecision(4);
       out.textContent = number(state.location[axis.tag]);
-      if (along) return draw();
       state.moved = [];
       ask();
     });
-    input.addEventListener("change", () => along && ask()); // the command names the location
     (index < AXES ? at("axes") : more).append(GS.element("label", { class: "slider" }, `${axis.name} (${axis.tag})`, out, input));
   });
   if (font.axes.length > AXES) at("axes").append(more);
@@ -326,7 +319,7 @@
     if (at("along").checked) { // masters are converted so
       if (at("compare").checked) at("compare").click();
       together("tolerance", "sharp");
-      document.querySelector("[name=continuity][value=c2]").checked = true;
+      choiceOf("continuity", "c2").checked = true;
       state.moved = [];
     } else if (shown) zoom.fit(GS.viewerBox(font, shown));
     read();
@@ -405,11 +398,7 @@
     at("copy").textContent = "Copied";
     setTimeout(() => { at("copy").textContent = "Copy command"; }, 1200);
   });
-  const download = (svg, name) => {
-    const url = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
-    GS.element("a", { href: url, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
-  };
+  const download = (svg, name) => GS.download(svg, name, "image/svg+xml");
   at("save").addEventListener("click", async () => {
     const answer = await fetch("/api/svg", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(state) });
     const found = await answer.json();
@@ -417,12 +406,6 @@
     download(found.svg, `gid-${shown.gid}.svg`);
   });
   for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
-  at("closer").addEventListener("click", () => zoom.zoom(1.6));
-  at("farther").addEventListener("click", () => zoom.zoom(1 / 1.6));
-  at("fit").addEventListener("click", () => zoom.fit());
-  at("theme").addEventListener("click", () => {
-    document.documentElement.dataset.theme = getComputedStyle(document.documentElement).colorScheme === "dark" ? "light" : "dark";
-  });
 
   at("family").textContent = `${font.family} ${font.style}`;
   document.title = `${font.family} – glyphspline`;

@@ -32,6 +32,14 @@
     return group;
   };
 
+  /** One side at an instance: its outline and comb, and a ring around the smooth joint that turns most, if that shows. */
+  GS.alongDrawing = (font, { path, turn, point }, name, gain) => {
+    const group = GS.svg("g", {}, GS.svg("path", { class: name, d: path }),
+      GS.comb(GS.contours(path), font.metrics.units_per_em, font.scale, { name: name === "source" ? "source-comb" : "comb", gain }));
+    if (turn >= 0.05) group.append(GS.dots([point], "kink"));
+    return group;
+  };
+
   /** A box around points with room for combs; the em where there are none. */
   GS.boxAround = (font, points, advance) => {
     const { units_per_em: em, ascender, descender } = font.metrics, room = 0.09 * em;

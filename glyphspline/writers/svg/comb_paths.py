@@ -6,7 +6,6 @@ All of it is relative but for the first point, in units of the last decimal, so 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...compiled import compiled
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
@@ -15,8 +14,7 @@ from ...outlines.ink import turned_about
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from .colours import SIDES
-from .numbers import LARGEST, SLACK, WIDEST, Figures
-from .path_text import LINE_BY, MOVE, MOVE_BY, TIE, dots, more, step
+from .path_text import LARGEST, LINE_BY, MOVE, MOVE_BY, TIE, WIDEST, Text, dots, more, step
 
 CLASSES = 2 * SIDES + 1
 LAYERS = CLASSES + 2
@@ -29,8 +27,8 @@ FLAT = -1
 def comb_text(
     curves: ContourArrays, sides: FloatArray, corners: FloatArray, corner_offsets: IntArray, near: float,
     spacing: float, most_teeth: float, angle: float, tooth: float, scale: float, longest: float, least: float,
-    tables: Figures,
-) -> tuple[NDArray[np.uint8], IntArray, FloatArray]:  # fmt: skip
+    precision: int,
+) -> tuple[Text, IntArray, FloatArray]:  # fmt: skip
     """The texts of a glyph's comb.
 
     Args:
@@ -40,21 +38,20 @@ def comb_text(
         spacing, angle: largest distance and turn from tooth to tooth. most_teeth: beyond so many, spacing grows.
         tooth: length of a tooth at the scale. scale: in 1/unit; 0 draws no teeth. longest: where teeth are cut, in
             units of the scale. least: teeth shorter than this are left out.
-        tables: for numbers of the decimals wanted.
+        precision: decimals.
 
     Returns:
         The text as bytes; (LAYERS + 1,) where each part of it begins; (4,) left, bottom, right, top of feet and tips,
         infinite the wrong way round without any.
     """
-    power = tables.power
-    figures = Figures(tables.precision, power, tables.limit, np.uint64(tables.words.ctypes.data))
+    power = 10.0**precision
     cubics = all_cubics(curves)
     spacing = max(spacing, control_length(cubics) / most_teeth)
     samples, starts = sampled(cubics, spacing, angle, scale * least / tooth)
     k = len(samples)
     points, classes = np.empty((k, 4)), np.empty(k, dtype=np.int64)
     ends = np.zeros(len(curves.offsets), dtype=np.int64)
-    text = np.empty(k * 10 * WIDEST + SLACK, dtype=np.uint8)
+    text = np.empty(k * 10 * WIDEST, dtype=np.uint8)
     parts = np.zeros(LAYERS + 1, dtype=np.int64)
     used = 0
     for c in range(len(ends) - 1):
@@ -64,21 +61,20 @@ def comb_text(
         used = _place(part, sides[c], hidden, tooth, scale, longest, least, power, points, classes, used)
         ends[c + 1] = used
     box = _bounds(points[:used])
-    start = np.uint64(text.ctypes.data)
-    at = start
+    at = 0
     if used and max(box[2], box[3], -box[0], -box[1]) < LARGEST:
-        at = _teeth(at, points, classes[:used], parts, figures)
-        at = _line(at, points, classes, ends, figures)
-        parts[CLASSES + 1] = np.int64(at - start)
-        at = dots(at, points[:used, 2:][classes[:used] >= CLASSES], figures)
-    parts[LAYERS] = np.int64(at - start)
-    return text[: parts[LAYERS]], parts, box / power
+        at = _teeth(text, points, classes[:used], parts, precision)
+        at = _line(text, at, points, classes, ends, precision)
+        parts[CLASSES + 1] = at
+        at = dots(text, at, points[:used, 2:][classes[:used] >= CLASSES], precision)
+    parts[LAYERS] = at
+    return text[:at], parts, box / power
 
 
 @compiled
 def _place(
     samples: FloatArray, side: float, hidden: BoolArray, tooth: float, scale: float, longest: float,
-    least: float, power: int, points: FloatArray, classes: IntArray, used: int,
+    least: float, power: float, points: FloatArray, classes: IntArray, used: int,
 ) -> int:  # fmt: skip
     """Write a contour's feet and tips, rounded, and colour classes: FLAT if left out, CLASSES or above if cut.
 
@@ -126,9 +122,9 @@ def _bounds(points: FloatArray) -> FloatArray:
 
 
 @compiled
-def _teeth(at: np.uint64, points: FloatArray, classes: IntArray, parts: IntArray, figures: Figures) -> np.uint64:
+def _teeth(text: Text, points: FloatArray, classes: IntArray, parts: IntArray, precision: int) -> int:
     """Every tooth a stroke from foot to tip, class after class."""
-    start = at
+    at = 0
     order = np.empty(len(classes), dtype=np.int64)
     places = np.zeros(CLASSES + 1, dtype=np.int64)
     for i in range(len(classes)):
@@ -146,16 +142,16 @@ def _teeth(at: np.uint64, points: FloatArray, classes: IntArray, parts: IntArray
         letter = MOVE
         for k in range(places[c], places[c + 1]):
             i = order[k]
-            at = step(at, letter, points[i, 0] - x, points[i, 1] - y, figures)
+            at = step(text, at, letter, points[i, 0] - x, points[i, 1] - y, precision)
             x, y = points[i, 2], points[i, 3]
-            at = step(at, LINE_BY, x - points[i, 0], y - points[i, 1], figures)
+            at = step(text, at, LINE_BY, x - points[i, 0], y - points[i, 1], precision)
             letter = MOVE_BY
-        parts[c + 1] = np.int64(at - start)
+        parts[c + 1] = at
     return at
 
 
 @compiled
-def _line(at: np.uint64, points: FloatArray, classes: IntArray, ends: IntArray, figures: Figures) -> np.uint64:
+def _line(text: Text, at: int, points: FloatArray, classes: IntArray, ends: IntArray, precision: int) -> int:
     """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
     x = y = 0.0
     letter = MOVE
@@ -169,10 +165,10 @@ def _line(at: np.uint64, points: FloatArray, classes: IntArray, ends: IntArray, 
                 continue
             dx, dy = points[j, 2] - points[i, 2], points[j, 3] - points[i, 3]
             if down:
-                at = more(at, dx, dy, figures)
+                at = more(text, at, dx, dy, precision)
             else:
-                at = step(at, letter, points[i, 2] - x, points[i, 3] - y, figures)
-                at = step(at, LINE_BY, dx, dy, figures)
+                at = step(text, at, letter, points[i, 2] - x, points[i, 3] - y, precision)
+                at = step(text, at, LINE_BY, dx, dy, precision)
             letter, down = MOVE_BY, True
             x, y = points[j, 2], points[j, 3]
     return at

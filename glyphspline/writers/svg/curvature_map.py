@@ -19,7 +19,7 @@ from .appearance import WHOSE, Whose
 from .colours import SIDES, class_colour
 from .document import title
 from .legend import legend_svg
-from .markup import Text, data_attributes, document, id_prefix, number, union, view_box_value
+from .markup import Text, data_attributes, document, head, id_prefix, number, union, view_box_value
 from .path_data import Box, PathData, curves_data, dots_data, polylines_data
 
 SPACING = 1 / 140
@@ -211,13 +211,13 @@ def map_document(
     margin = 0.02 * em
     box = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
     prefix, drawn = id_prefix(outline.name, outline.gid), "" if whose == "result" else ", source"
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" role="img"'
-        f' aria-labelledby="{prefix}-map-title" {data_attributes(outline, precision)}'
-        f' data-scale="{scale:.6g}" fill="none" stroke-linecap="round" stroke-linejoin="round">\n'
-        f'<title id="{prefix}-map-title">Curvature of {title(outline)}{drawn}</title>\n'
+    attributes = (
+        f'{data_attributes(outline, precision)} data-scale="{scale:.6g}" fill="none" stroke-linecap="round"'
+        ' stroke-linejoin="round"'
     )
-    return document([head, *layers, legend, "\n</svg>\n"])
+    value = view_box_value(box, precision)
+    begin = head(value, f"{prefix}-map-title", f"Curvature of {title(outline)}{drawn}", attributes)
+    return document([begin, *layers, legend, "\n</svg>\n"])
 
 
 @cache
@@ -237,11 +237,10 @@ def _comb_layer(
 ) -> tuple[list[Text], Box | None]:
     """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
     from .comb_paths import comb_text  # here and not above: the package opens without a compiler
-    from .numbers import figures
 
     text, ends, (left, bottom, right, top) = comb_text(
         curves, sides, corners, corner_offsets, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale,
-        LONGEST, 0.5 * STROKE * em / 1000, figures(precision),
+        LONGEST, 0.5 * STROKE * em / 1000, precision,
     )  # fmt: skip
     view = text.data
     layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']

@@ -6,7 +6,7 @@ from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from .appearance import CURRENT, PLAIN, VIEW_BOXES, Appearance, ViewBox
-from .markup import code_points, data_attributes, document, id_prefix, number, text, union, view_box_value
+from .markup import code_points, data_attributes, document, head, id_prefix, number, text, union, view_box_value
 from .path_data import Box, PathData, curves_data
 
 STROKE = 1 / 1000
@@ -58,21 +58,17 @@ def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -
     em = outline.metrics.units_per_em
     box = shown_box(em_box(outline), path.box, look.view_box)
     prefix = id_prefix(outline.name, outline.gid)
-    head = (
-        f'{opening(box, look, em, precision)} aria-labelledby="{prefix}-title" {data_attributes(outline, precision)}>\n'
-        f'<title id="{prefix}-title">{title(outline)}</title>\n'
-        f'<path id="{prefix}-outline" {painting(look, em)} d="'
-    )
-    return document([head, path.text, '"/>\n</svg>\n'])
+    value, shape = shown_as(box, look, em, precision)
+    begin = head(value, f"{prefix}-title", title(outline), data_attributes(outline, precision), shape)
+    return document([begin, f'<path id="{prefix}-outline" {painting(look, em)} d="', path.text, '"/>\n</svg>\n'])
 
 
-def opening(box: Box, look: Appearance, em: float, precision: int) -> str:
-    """The beginning of a drawing's ``<svg>``: its region and size."""
+def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str, str]:
+    """The ``viewBox`` of a drawing's region, and its size as attributes."""
     value = view_box_value(box, precision)
     width, height = map(float, value.split()[2:])
     overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
-    size = look.attributes(width, height, em)
-    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{value}"{size}{overflow} role="img"'
+    return value, look.attributes(width, height, em) + overflow
 
 
 def painting(look: Appearance, em: float) -> str:

@@ -23,6 +23,19 @@ def document(parts: Iterable[Text]) -> bytes:
     return b"".join([part.encode() if isinstance(part, str) else part for part in parts])
 
 
+def head(box: str, name: str, title: str, attributes: str = "", shape: str = "") -> str:
+    """The beginning of a document.
+
+    Args:
+        box: value of its ``viewBox``. name: id of its title. title: escaped.
+        attributes, shape: further attributes, each after a space; those of its size come first.
+    """
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"{shape} role="img" aria-labelledby="{name}"'
+        f'{attributes}>\n<title id="{name}">{title}</title>\n'
+    )
+
+
 @lru_cache(maxsize=4096)
 def number(value: float, precision: int) -> str:
     """One number with at most ``precision`` decimals: no zeros at the end, no "-0"."""
@@ -49,7 +62,7 @@ def code_points(outline: Outline) -> str:
 def data_attributes(outline: Outline, precision: int) -> str:
     """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
     return (
-        f'data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
+        f' data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
         f' data-advance="{number(outline.advance, precision)}" {_font_attributes(outline.metrics, precision)}'
     )
 

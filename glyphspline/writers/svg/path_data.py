@@ -51,10 +51,9 @@ def polylines_data(lines: Polylines, precision: int, glyphs: IntArray | None = N
 
 def dots_data(points: FloatArray, precision: int) -> memoryview:
     """Path data of a dot on each of the points (n, 2), to be stroked with round caps."""
-    from .numbers import figures  # here and not above: the package opens without a compiler
-    from .path_text import dots_text
+    from .path_text import dots_text  # here and not above: the package opens without a compiler
 
-    return dots_text(np.ascontiguousarray(points), figures(precision)).data
+    return dots_text(np.ascontiguousarray(points), precision).data
 
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
@@ -71,11 +70,10 @@ def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -
 
 
 def _written(curves: ContourArrays, closed: BoolArray, precision: int, glyphs: IntArray | None) -> list[PathData]:
-    from .numbers import figures  # here and not above: the package opens without a compiler
-    from .path_text import path_text
+    from .path_text import path_text  # here and not above: the package opens without a compiler
 
     bounds = np.asarray([0, curves.num_contours] if glyphs is None else glyphs, dtype=np.int64)
-    text, ends, boxes, too_large = path_text(curves, closed, bounds, figures(precision))
+    text, ends, boxes, too_large = path_text(curves, closed, bounds, precision)
     parts = [text.data[a:b] for a, b in pairwise(ends.tolist())]
     for glyph in np.flatnonzero(too_large).tolist():
         parts[glyph] = _of_any_size(curves, closed, range(*bounds[glyph : glyph + 2].tolist()), precision)

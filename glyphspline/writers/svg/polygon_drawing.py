@@ -9,7 +9,7 @@ from ...fitting.results import GlyphResult, end_to_end
 from ...outlines.contour_arrays import joined, offsets_of
 from .curvature_map import comb_precision
 from .document import title
-from .markup import data_attributes, document, id_prefix, number, union, view_box_value
+from .markup import data_attributes, document, head, id_prefix, number, union, view_box_value
 from .path_data import PathData, curves_data, dots_data, polylines_data
 
 
@@ -52,10 +52,11 @@ def polygon_document(glyph: GlyphResult, source: PathData, data: PolygonData) ->
     em = outline.metrics.units_per_em
     box = union((0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender), source.box)
     prefix = id_prefix(outline.name, outline.gid)
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box_value(box, precision)}" overflow="visible"'
-        f' role="img" aria-labelledby="{prefix}-source-title" {data_attributes(outline, precision)}>\n'
-        f'<title id="{prefix}-source-title">Source outline and polygon of {title(outline)}</title>\n'
+    begin = head(
+        view_box_value(box, precision), f"{prefix}-source-title", f"Source outline and polygon of {title(outline)}",
+        data_attributes(outline, precision), ' overflow="visible"',
+    )  # fmt: skip
+    source_group = (
         f"<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
         f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
         f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero" d="'
@@ -70,6 +71,6 @@ def polygon_document(glyph: GlyphResult, source: PathData, data: PolygonData) ->
     )
     dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
     return document([
-        head, source.text, polygon, data.polygon.text, f'"/><path stroke-width="{number(em / 100, 3)}" d="', dots,
-        control, data.control.text, '"/></g>\n</svg>\n',
+        begin, source_group, source.text, polygon, data.polygon.text,
+        f'"/><path stroke-width="{number(em / 100, 3)}" d="', dots, control, data.control.text, '"/></g>\n</svg>\n',
     ])  # fmt: skip

@@ -10,8 +10,8 @@ import numpy as np
 from ...fitting.results import GlyphResult, end_to_end
 from ...layout.placed import Layout
 from .appearance import PLAIN, Appearance
-from .document import opening, painting, shown_box
-from .markup import document, id_prefix, number, text
+from .document import painting, shown_as, shown_box
+from .markup import document, head, id_prefix, number, text
 from .path_data import curves_data
 
 
@@ -40,11 +40,9 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     ]
     ink = curves_data(layout.placed(results).arrays.curves, precision)[0].box
     box = shown_box(layout.box, ink, look.view_box)
-    parts: list[str | memoryview] = [
-        f'{opening(box, look, em, precision)} aria-labelledby="text-title"'
-        f' data-units-per-em="{number(em, precision)}">\n'
-        f'<title id="text-title">{text(layout.text)}</title>\n<defs>\n'
-    ]
+    value, shape = shown_as(box, look, em, precision)
+    units = f' data-units-per-em="{number(em, precision)}"'
+    parts: list[str | memoryview] = [head(value, "text-title", text(layout.text), units, shape), "<defs>\n"]
     for name, path in zip(ids, paths, strict=True):
         if path.text:
             parts += [f'<path id="{name}" d="', path.text, '"/>\n']

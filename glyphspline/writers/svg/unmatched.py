@@ -10,7 +10,7 @@ from ...outlines.joins import joins
 from ...outlines.outline import Contour, Outline
 from ...types import FloatArray
 from .document import title
-from .markup import document, id_prefix, number, text, view_box_value
+from .markup import document, head, id_prefix, number, text, view_box_value
 from .path_data import path_data
 
 CONTOURS = ("#d33", "#06c", "#082", "#a0a", "#b60", "#077")
@@ -59,12 +59,9 @@ def to_unmatched_svg(outlines: Sequence[Outline], reason: str = "") -> str:
     edge = 2 * SIZE * em
     box = view_box_value((-edge, below - edge, x - GAP * em + edge, high + edge), 2)
     prefix = id_prefix(first.name, first.gid)
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" role="img" aria-labelledby="{prefix}-title">\n'
-        f'<title id="{prefix}-title">{counted_title(outlines)}</title>\n'
-        f'<g font-family="sans-serif" font-size="{number(SIZE * em, 2)}" stroke-width="{number(em / 400, 3)}">\n'
-    )
-    return document([head, *parts, words, "</g>\n</svg>\n"]).decode()
+    begin = head(box, f"{prefix}-title", counted_title(outlines))
+    group = f'<g font-family="sans-serif" font-size="{number(SIZE * em, 2)}" stroke-width="{number(em / 400, 3)}">\n'
+    return document([begin, group, *parts, words, "</g>\n</svg>\n"]).decode()
 
 
 def counted_title(outlines: Sequence[Outline]) -> str:

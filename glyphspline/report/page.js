@@ -1,8 +1,51 @@
 "use strict";
-/* Zoom and pan of an SVG drawing by its view box: wheel, drag, pinch, double click, keys. */
+/* What all pages have: elements, numbers, the theme, downloads, and drawings that zoom and pan by their view box. */
+
+const GS = {};
 
 (() => {
+  const SVG = "http://www.w3.org/2000/svg";
   const CLOSEST = 4000; // times
+
+  /** Three digits; proven bounds are rounded up. */
+  GS.number = (value, up = false) => {
+    if (value === null || value === undefined) return "–";
+    if (value === true) return "yes";
+    if (value === false) return "no";
+    if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+    let near = +value.toPrecision(3);
+    if (up && near < value) near = +(near + 10 ** (Math.floor(Math.log10(value)) - 2)).toPrecision(3);
+    return String(near).replace("-", "\u2212");
+  };
+  GS.svg = (name, attributes = {}, ...children) => {
+    const node = document.createElementNS(SVG, name);
+    for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+    node.append(...children);
+    return node;
+  };
+
+  GS.element = (name, attributes = {}, ...children) => {
+    const node = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) {
+      if (key === "class") node.className = value;
+      else if (key in node && key !== "list" && typeof value !== "string") node[key] = value;
+      else node.setAttribute(key, value);
+    }
+    node.append(...children);
+    return node;
+  };
+
+  /** Offer a text as a file. */
+  GS.download = (text, name, type) => {
+    const url = URL.createObjectURL(new Blob([text], { type }));
+    GS.element("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  };
+
+  document.getElementById("theme").addEventListener("click", () => {
+    const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
+    document.documentElement.dataset.theme = dark ? "light" : "dark";
+  });
 
   /** Make `svg` zoomable; returns {fit(box), follow(box), zoom(factor), pan(dx, dy), key(event), box()}. `changed` hears the scale. */
   GS.zoomable = (svg, changed = () => {}, mayDrag = () => true) => {
@@ -93,5 +136,27 @@
       return true;
     };
     return { fit, follow, zoom, pan, key, place, unit, box: () => [...box] };
+  };
+
+  /** The same, with a ruler and buttons for zoom beside `svg`. */
+  GS.stage = (svg, changed = () => {}, mayDrag = () => true) => {
+    const ruler = GS.element("span", { class: "ruler" }), scale = GS.element("span");
+    const zoom = GS.zoomable(svg, (times, unit) => {
+      scale.textContent = `${times < 10 ? times.toFixed(1) : Math.round(times)}×`;
+      // A round number of font units, so that a zoom means something.
+      const most = 120 * unit, power = 10 ** Math.floor(Math.log10(most)), length = [5, 2, 1].find((k) => k * power <= most) * power;
+      ruler.style.width = `${length / unit}px`;
+      ruler.textContent = `${+length.toPrecision(2)} units`;
+      changed();
+    }, mayDrag);
+    const buttons = [["−", "Zoom out", () => zoom.zoom(1 / 1.6)], ["+", "Zoom in", () => zoom.zoom(1.6)], ["Fit", "Fit", () => zoom.fit()]]
+      .map(([text, label, act]) => {
+        const button = GS.element("button", { type: "button", "aria-label": label }, text);
+        button.addEventListener("click", act);
+        return button;
+      });
+    svg.after(GS.element("div", { class: "over left" }, ruler),
+      GS.element("div", { class: "over right", role: "group", "aria-label": "Zoom" }, scale, ...buttons));
+    return zoom;
   };
 })();
