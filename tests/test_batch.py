@@ -31,13 +31,11 @@ from glyphspline.batch import (
 from glyphspline.batch.entry import contour_texts
 from glyphspline.batch.file_names import LONGEST_NAME, file_names
 from glyphspline.batch.files import write_whole
-from glyphspline.batch.job import Task
 from glyphspline.batch.manifest import JOURNAL
 from glyphspline.batch.summary import Facts, facts_of
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
-from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
@@ -187,7 +185,7 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
 def opened_as(font: Font) -> Any:
     """Workers of this process find this font where they would open it."""
     patch = pytest.MonkeyPatch()
-    patch.setattr("glyphspline.batch.worker.source_of", lambda *key: font)
+    patch.setattr("glyphspline.readers.open_source", lambda *key: font)
 
     class Undo:
         def __enter__(self) -> None: ...
@@ -205,7 +203,7 @@ def test_a_fault_of_ours_costs_only_its_glyph(font: Font, tmp_path: Path, monkey
         return convert_many(outlines, options, errors="return")
 
     monkeypatch.setattr(worker, "convert_many", faulty)
-    monkeypatch.setattr("glyphspline.batch.schedule.slices", lambda tasks, size: [tasks])
+    monkeypatch.setattr("glyphspline.batch.engine.slices", lambda tasks, size: [tasks])
     summary = convert_font(font, font.select(text="OB8 "), tmp_path / "out", SPEC, jobs=0)
     assert summary.failures == [("B", "ZeroDivisionError: a fault")]
     assert summary.statuses == {"ok": 2, "empty": 1, "failed": 1}
@@ -237,15 +235,6 @@ def test_drawings_alone_are_written_without_a_gallery(font: Font, tmp_path: Path
     convert_font(font, font.select(text="O "), tmp_path, SPEC, jobs=0, restart=True)
     convert_font(font, font.select(text="O "), tmp_path, replace(SPEC, formats=("svg",)), jobs=0, restart=True)
     assert content(tmp_path).keys() == alone
-
-
-def test_batches_are_bounded_and_of_one_em(font: Font) -> None:
-    def read(cost: float, em: float = 1000.0) -> worker.Read:
-        return worker.Read(Task(1, "a", "a", ()), Outline("a", metrics=FontMetrics(em)), cost)
-
-    glyphs = [read(worker.BATCH / 2), read(worker.BATCH / 2), read(1.0), read(1.0, 2048.0), read(9 * worker.BATCH)]
-    assert [len(batch) for batch in worker.batches(glyphs)] == [2, 1, 1, 1]
-    assert list(worker.batches([])) == []
 
 
 @pytest.mark.parametrize("step", [20.0, 90.0])

@@ -95,11 +95,6 @@ def test_every_room_is_on_the_plan() -> None:
     assert {room(module) for module in MODULES} == PLAN.keys()
 
 
-def test_files_of_one_name_are_in_one_place_only() -> None:
-    names = [path.name for path in MODULES.values() if path.name != "__init__.py"]
-    assert len(names) == len(set(names)), sorted(name for name in set(names) if names.count(name) > 1)
-
-
 @pytest.mark.parametrize("module", MODULES)
 def test_a_file_imports_only_what_its_room_may(module: str) -> None:
     allowed = PLAN[room(module)] | {room(module)}

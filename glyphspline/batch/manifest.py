@@ -21,7 +21,7 @@ from typing import Any, BinaryIO
 
 from ..errors import OutputError
 from .files import O_BINARY, PARTIAL, sizes, writing
-from .job import Done
+from .jobs.glyphs import Done
 from .spec import is_folder
 from .summary import Facts, Summary
 

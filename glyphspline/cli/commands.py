@@ -205,7 +205,7 @@ def info(
 
 def look_deep(font: Path, facts: dict[str, Any]) -> None:
     """Add what needs all outlines, with progress on a terminal."""
-    from ..batch.deep_facts import add_glyph_facts
+    from ..batch.jobs.deep_facts import add_glyph_facts
     from ..batch.schedule import workers
     from ..readers.open import STDIN, standard_input
 

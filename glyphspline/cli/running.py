@@ -84,7 +84,7 @@ def convert_face(
         stop("none of the glyphs asked for is in the font")
     heading, restart = None if alone else name, not given["resume"]
     summary = run(source, names, out, spec, executor, restart=restart, quiet=quiet, json_log=json_log, name=heading)
-    if alone and not (quiet or json_log) and looks_like_type(source, names, out, spec, executor):
+    if alone and not (quiet or json_log) and looks_like_type(source, names, spec, executor):
         say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
     return FontRun(name, out, summary)
 
@@ -162,11 +162,11 @@ def run(
     return summary
 
 
-def looks_like_type(source: Source, names: Sequence[str], out: Path, spec: RunSpec, executor: Executor) -> bool:
+def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec, executor: Executor) -> bool:
     """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
-    from ..batch.calls import corners_of
-    from ..batch.font_run import job_of
-    from ..batch.job import Task
+    from ..batch.jobs.glyphs import Task
+    from ..batch.jobs.survey import corners_of
+    from ..batch.places import side_of
     from ..errors import GlyphsplineError
 
     if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
@@ -174,5 +174,5 @@ def looks_like_type(source: Source, names: Sequence[str], out: Path, spec: RunSp
     chosen = names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]
     tasks = [Task(source.glyph_names.index(name), name, "", ()) for name in chosen]
     with suppress(GlyphsplineError):  # its worker is lost or killed: nothing is known of these glyphs
-        return executor.submit(corners_of, job_of(source, out, spec), tasks).result() > 0.5
+        return executor.submit(corners_of, side_of(source), tasks).result() > 0.5
     return False
