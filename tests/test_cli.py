@@ -97,7 +97,6 @@ def test_quiet_says_nothing(tmp_path: Path) -> None:
         (["missing.ttf", "--all"], "missing.ttf"),
         ([FONT, "--text-file", "missing.txt"], "missing.txt"),
         ([FONT, "--all", "--variant", "7"], "variant"),
-        ([FONT, "--all", "--preset", "paper", "--corners", "sharp"], "--preset paper sets --corners smooth"),
         ([FONT, "--all", "--preset", "type", "--step", "9"], "give a tolerance"),
     ],
 )
@@ -159,7 +158,7 @@ def test_help_imports_nothing_heavy() -> None:
            "assert CliRunner().invoke(app, ['--help']).exit_code == 0; print(*sys.modules)"  # fmt: skip
     loaded = call("-c", code).stdout.split()
     assert "glyphspline.cli" in loaded
-    assert not {"matplotlib", "fontTools.ttLib", "glyphspline.batch"} & set(loaded)
+    assert not {"matplotlib", "fontTools.ttLib", "numpy"} & set(loaded)
 
 
 def test_the_batch_script_gives_each_font_a_folder(tmp_path: Path) -> None:
@@ -335,7 +334,7 @@ def test_short_help_version_and_completion() -> None:
     said = runner.invoke(app, ["-h"]).stdout
     assert "--show-completion" in said
     said = runner.invoke(app, ["convert", "-h"]).stdout
-    for words in ("Which glyphs", "How close to the source", "How sharp a turn counts as a corner", "Lemma 2"):
+    for words in ("Which glyphs", "How close to the source", "how sharp a turn counts as a corner", "Lemma 2"):
         assert words in said
 
 
