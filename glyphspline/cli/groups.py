@@ -66,7 +66,7 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
     for name, hint in hints.items():
         kind: Any
         kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
-        if is_dataclass(kind):
+        if isinstance(kind, type) and is_dataclass(kind):
             shown = next((extra for extra in extras if isinstance(extra, Shown)), Shown())
             base: Any = kind() if defaults[name] is Parameter.empty else defaults[name]
             groups[name] = base, shown
