@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -69,14 +68,11 @@ def outlines(font: Path) -> Iterator[Any]:
 
 def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
-    from typer.main import get_command
-
+    from .cli.arguments import Instance, Reported, Run, Sought, Subset
     from .cli.checking import asked_of, check_fonts
-    from .cli.commands import app
 
-    command: Any = get_command(app)
-    given = command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]).params
-    faces = list(check_fonts([font], replace(asked_of(given), kept="INFO"), given, alone=False))
+    asked = asked_of(Sought(), Reported(loglevel="INFO"))
+    faces = list(check_fonts([font], asked, Subset(), Instance(), Run(jobs=0, quiet=True), alone=False))
     for face in faces:
         if face.error is not None:
             raise GlyphsplineError(face.error)

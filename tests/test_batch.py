@@ -37,6 +37,8 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
+from glyphspline.writers.settings import Settings
+from glyphspline.writers.svg.appearance import Appearance
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
 SPEC = RunSpec(Options(step=80))
@@ -159,7 +161,9 @@ def test_other_options_are_refused_with_the_difference(finished: Path, font: Fon
 def test_restart_does_it_anew(font: Font, tmp_path: Path) -> None:
     out = tmp_path / "out"
     convert_font(font, font.select(text="O "), out, SPEC, jobs=0)
-    convert_font(font, font.select(text=" "), out, replace(SPEC, view_box="ink"), jobs=0, restart=True)
+    convert_font(
+        font, font.select(text=" "), out, replace(SPEC, settings=Settings(Appearance("ink"))), jobs=0, restart=True
+    )
     assert [entry["glyph"] for entry in entries_of(out)] == ["space"]
 
 
@@ -262,10 +266,10 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"view_box": "bbox"}, {"options": None}],
+    [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"names": "n"}, {"options": None}, {"settings": None}],
 )
 def test_a_run_that_makes_no_sense_is_refused(wrong: dict[str, Any]) -> None:
-    with pytest.raises(GlyphsplineError, match=r"formats|no format|view_box|Options"):
+    with pytest.raises(GlyphsplineError, match=r"formats|no format|names|Options"):
         RunSpec(**wrong)
 
 

@@ -34,7 +34,7 @@ from glyphspline.cli import app
 from glyphspline.dataset import plan, shards
 from glyphspline.dataset.card import command
 from glyphspline.dataset.chunk_rows import Made, RowsJob
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
 from glyphspline.dataset.licences import licence_of
 from glyphspline.dataset.plan import Plan, Task, plan_of
 from glyphspline.dataset.scan import SPLITS, FontFacts, split_of
@@ -99,7 +99,7 @@ MAKE = """
 import sys, time
 import glyphspline as gs
 from glyphspline.dataset import plan, shards
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)
@@ -617,6 +617,13 @@ def test_the_status_says_that_something_failed(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, call)
     assert found.exit_code == 1
     assert "1 glyph failed" in found.output
+
+
+def test_a_command_names_only_options_that_there_are() -> None:
+    assert command(DatasetSpec(options=replace(FIT, max_iterations=7))) == "glyphspline dataset FONTS… --out DIR"
+    assert command(DatasetSpec(options=None, characters="`")) == (
+        "glyphspline dataset FONTS… --out DIR --text-file CHARACTERS.txt --no-fit"
+    )
 
 
 def test_a_command_names_what_is_not_default() -> None:

@@ -16,7 +16,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"compiled", "errors", "extras", "intrinsics", "types", "_version"}
+BASE = {"compiled", "errors", "extras", "fields", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
@@ -27,6 +27,7 @@ PLAN = {
     "intrinsics": {"compiled"},
     "errors": set(),
     "extras": {"errors"},
+    "fields": {"errors"},
     "types": set(),
     "curves": BASE,
     "interpolation": CURVES,

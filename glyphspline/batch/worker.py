@@ -154,12 +154,12 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
     writer = SHARING.get(name)
     if writer is not None:
         return writer(job, glyph, files)
-    return format_named(name).write(glyph.result, job.spec.settings(glyph.result.outline.metrics))
+    return format_named(name).write(glyph.result, job.spec.settings.scaled(glyph.result.outline.metrics))
 
 
 def _source(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert glyph.source is not None
-    return svg_document(glyph.result, glyph.source, job.spec.look)
+    return svg_document(glyph.result, glyph.source, job.spec.settings.look)
 
 
 def _polygon(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
@@ -170,22 +170,24 @@ def _polygon(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 def _curvature(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
     assert job.curvature_scale is not None
-    result, whose = glyph.result, job.spec.comb
+    result, whose = glyph.result, job.spec.maps.comb
     path = glyph.path if whose == "result" else curves_data(curves_of(result, whose), result.options.precision)[0]
-    return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.corner_teeth)
+    return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.maps.corner_teeth)
 
 
 def _drawing(job: Output, glyph: Glyph, kind: ImageKind) -> bytes:
     from ..writers.figures.drawing import drawing_image  # imports matplotlib
 
-    return drawing_image(glyph.result, kind, job.spec.look, glyph.path.box)
+    return drawing_image(glyph.result, kind, job.spec.settings.look, glyph.path.box)
 
 
 def _map(job: Output, glyph: Glyph, kind: ImageKind) -> bytes:
     from ..writers.figures.raster import map_image
 
     spec = job.spec
-    return map_image(glyph.result, kind, comb=spec.comb, scale=job.curvature_scale, in_corners=spec.corner_teeth)
+    return map_image(
+        glyph.result, kind, comb=spec.maps.comb, scale=job.curvature_scale, in_corners=spec.maps.corner_teeth
+    )
 
 
 def _gallery(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
@@ -199,7 +201,7 @@ def _gallery(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
 
 SHARING: dict[str, Callable[[Output, Glyph, dict[str, str]], str | bytes]] = {
     "source": _source,
-    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.look),
+    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.settings.look),
     "curvature": _curvature,
     "png": lambda job, glyph, files: _drawing(job, glyph, "png"),
     "pdf": lambda job, glyph, files: _drawing(job, glyph, "pdf"),

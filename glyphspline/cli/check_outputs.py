@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import typer
 
 from ..checks.kinds import Level
 from ..errors import OutputError
+from . import arguments as opt
 from .checking import Face, asked_of, check_fonts, level_number, require_figure
 from .findings import as_csv, as_json, as_markdown, sentences, table, worst_first
 from .messages import say, stop
@@ -17,48 +17,55 @@ from .messages import say, stop
 STDOUT = Path("-")
 
 
-def run(given: Mapping[str, Any]) -> list[Face]:
-    """The command, from its arguments by name: check, write what is asked for, and say the rest.
+def run(
+    given: Sequence[str],
+    sought: opt.Sought,
+    reported: opt.Reported,
+    subset: opt.Subset,
+    instance: opt.Instance,
+    run: opt.Run,
+) -> list[Face]:
+    """The command with its arguments: check write what is asked for, and say the rest.
 
     Raises:
         GlyphsplineError: an option or a file of it is of no use.
     """
     from ..batch import find_fonts
 
-    piped = [name for name in ("csv", "ghmarkdown", "html") if given[name] == STDOUT]
-    if len(piped) + given["as_json"] > 1:
+    piped = [path for path in (reported.csv, reported.ghmarkdown, reported.html) if path == STDOUT]
+    if len(piped) + run.as_json > 1:
         stop("only one of --json, --csv - and the like goes to standard output")
-    require_figure(given["plot"])
-    for name in ("csv", "ghmarkdown", "html", "plot", "write_baseline"):
-        require_folder(given[name])
-    asked = asked_of(given)
-    fonts = find_fonts(given["fonts"])
+    require_figure(reported.plot)
+    for path in (reported.csv, reported.ghmarkdown, reported.html, reported.plot, reported.write_baseline):
+        require_folder(path)
+    asked = asked_of(sought, reported, run.as_json)
+    fonts = find_fonts(given)
     if not fonts:
         stop("no fonts found")
-    alone = len(given["fonts"]) == 1 and fonts == [Path(given["fonts"][0])]
-    if given["plot"] is not None and not alone:
+    alone = len(given) == 1 and fonts == [Path(given[0])]
+    if reported.plot is not None and not alone:
         stop("--plot takes one font")
-    faces = list(check_fonts(fonts, asked, given, alone))
-    if asked.written is not None:
-        asked.written.write(given["write_baseline"])
-    level: Level = given["loglevel"] or "WARN"
+    faces = list(check_fonts(fonts, asked, subset, instance, run, alone=alone))
+    if asked.written is not None and reported.write_baseline is not None:
+        asked.written.write(reported.write_baseline)
+    level: Level = reported.loglevel or "WARN"
     found = worst_first(faces)
     shown = [pair for pair in found if level_number(pair[1].level) >= level_number(level)]
-    if given["csv"] is not None:
-        put(given["csv"], as_csv(found))
-    if given["ghmarkdown"] is not None:
-        put(given["ghmarkdown"], as_markdown(faces, shown, level))
-    if given["html"] is not None:
+    if reported.csv is not None:
+        put(reported.csv, as_csv(found))
+    if reported.ghmarkdown is not None:
+        put(reported.ghmarkdown, as_markdown(faces, shown, level))
+    if reported.html is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
         drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(given["html"], findings_page(drawn))
-    if given["as_json"]:
+        put(reported.html, findings_page(drawn))
+    if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
-    elif shown and not piped and not given["quiet"]:
-        put(STDOUT, table(shown, given["rows"], len(faces) > 1))
-    if not given["quiet"]:
-        for line in sentences(faces, len(shown), given["rows"], level):
+    elif shown and not piped and not run.quiet:
+        put(STDOUT, table(shown, reported.rows, len(faces) > 1))
+    if not run.quiet:
+        for line in sentences(faces, len(shown), reported.rows, level):
             say(line)
     return faces
 

@@ -134,23 +134,23 @@ def require_figure(path: Path | None) -> None:
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
 
 
-def asked_of(given: Mapping[str, Any]) -> Asked:
-    """What is looked for, from the command's arguments by name.
+def asked_of(sought: opt.Sought, reported: opt.Reported, as_json: bool = False) -> Asked:
+    """What is looked for, from the command's arguments.
 
     Raises:
         GlyphsplineError: an option or the baseline is of no use.
     """
-    every = any(given[name] for name in ("as_json", "csv", "html"))
+    every = as_json or reported.csv or reported.html
     return Asked(
-        thresholds=thresholds_of(given["thresholds"], given["corner_angle"]),
-        kinds=kinds_of(given["kinds"]),
-        kept=given["loglevel"] or ("INFO" if every else "WARN"),
-        axis=given["axis"],
-        steps=given["steps"],
-        baseline=None if given["baseline"] is None else Baseline.read(Path(given["baseline"])),
-        written=None if given["write_baseline"] is None else Baseline(),
-        plot=given["plot"],
-        drawn=given["html"] is not None,
+        thresholds=thresholds_of(sought.thresholds, sought.corner_angle),
+        kinds=kinds_of(sought.kinds),
+        kept=reported.loglevel or ("INFO" if every else "WARN"),
+        axis=sought.axis,
+        steps=sought.steps,
+        baseline=None if reported.baseline is None else Baseline.read(reported.baseline),
+        written=None if reported.write_baseline is None else Baseline(),
+        plot=reported.plot,
+        drawn=reported.html is not None,
     )
 
 
@@ -159,7 +159,9 @@ def reaches(face: Face, level: Level) -> bool:
     return any(level_number(own) >= level_number(level) for own in face.levels)
 
 
-def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], alone: bool) -> Iterator[Face]:
+def check_fonts(
+    fonts: Sequence[Path], asked: Asked, subset: opt.Subset, instance: opt.Instance, run: opt.Run, *, alone: bool
+) -> Iterator[Face]:
     """Check the faces of fonts, one after the other.
 
     Of several, every glyph is checked unless some are asked for, and a font that cannot be read has an error instead
@@ -167,23 +169,23 @@ def check_fonts(fonts: Sequence[Path], asked: Asked, given: Mapping[str, Any], a
     """
     from ..batch import faces_of
 
-    face_index = given["face_index"]
+    face_index = instance.face_index
     if alone:
         face_index = face_index or 0
-    location = opt.location_of(given["location"])
+    location = instance.place
     with ExitStack() as stack:
         pool: Executor | None = None
         for font in fonts:
             try:
                 for source in faces_of(font, location, face_index):
                     least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
-                    names = opt.selection_of(source, given) if opt.is_selected(given) else source.glyph_names
-                    if pool is None and (given["jobs"] or (given["jobs"] is None and len(names) >= least)):
+                    names = subset.of(source) if subset.is_given else source.glyph_names
+                    if pool is None and (run.jobs or (run.jobs is None and len(names) >= least)):
                         from ..batch.schedule import workers
 
-                        pool = stack.enter_context(workers(given["jobs"], PATIENCE, also=("checks",)))
+                        pool = stack.enter_context(workers(run.jobs, PATIENCE, also=("checks",)))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
-                    yield check_face(source, name, names, asked, pool, alone=alone, quiet=given["quiet"])
+                    yield check_face(source, name, names, asked, pool, alone=alone, quiet=run.quiet)
             except GlyphsplineError as error:
                 if alone:
                     raise
