@@ -19,7 +19,7 @@ from glyphspline import Outline, open_font
 from glyphspline.batch import locked
 from glyphspline.batch.summary import Facts, Summary
 from glyphspline.cli import app
-from glyphspline.outlines.corner_share import share_of_corners
+from glyphspline.outlines.joins import share_of_corners
 
 from .polygons import circle_contour, square_contour
 from .test_batch import content

@@ -35,8 +35,8 @@ def look(place: Place, gids: Sequence[int]) -> dict[str, Any]:
 
 
 def corners_of(job: Job, tasks: Sequence[Task]) -> float:
-    """:func:`..outlines.corner_share.share_of_corners` of the glyphs that can be read, in a worker."""
-    from ..outlines.corner_share import share_of_corners
+    """:func:`..outlines.joins.share_of_corners` of the glyphs that can be read, in a worker."""
+    from ..outlines.joins import share_of_corners
     from ..outlines.outline import Outline
     from .worker import outlines
 
