@@ -16,9 +16,9 @@ import glyphspline as gs
 from glyphspline.batch import check_run, schedule
 from glyphspline.batch.check_run import GlyphFindings, check_font
 from glyphspline.batch.schedule import workers
-from glyphspline.checks.axis_kinks import kinks
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import Thresholds
+from glyphspline.checks.kinks import kinks
 from glyphspline.errors import FontError
 from glyphspline.outlines.masters import MasterContour, Masters
 

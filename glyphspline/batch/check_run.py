@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks.axis_numbers import AxisNumbers
-from ..checks.check import THRESHOLDS, findings
-from ..checks.columns import Measured, nothing
-from ..checks.finding import Finding
+from ..checks.check import THRESHOLDS
+from ..checks.finding import Finding, Measured, findings
 from ..checks.kinds import DIRECTION, Thresholds
+from ..checks.kinks import AxisNumbers
 from ..errors import FontError, GlyphsplineError
 from ..outlines.masters import Masters
 from ..outlines.outline import FontMetrics, Outline
@@ -291,4 +290,4 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
 
 
 def _nothing(errors: dict[int, str]) -> Checked:
-    return Checked([], nothing(), [], np.zeros(0, dtype=np.int64), errors)
+    return Checked([], Measured.joined(()), [], np.zeros(0, dtype=np.int64), errors)
