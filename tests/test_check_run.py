@@ -17,9 +17,9 @@ from glyphspline.batch import check_run
 from glyphspline.batch.check_run import GlyphFindings, check_font
 from glyphspline.batch.jobs.check import CheckJob
 from glyphspline.batch.schedule import workers
-from glyphspline.checks.axis_kinks import kinks
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import Thresholds
+from glyphspline.checks.kinks import kinks
 from glyphspline.errors import FontError
 from glyphspline.outlines.masters import MasterContour, Masters
 

@@ -25,7 +25,7 @@ from glyphspline.cli.groups import grouped, without
 from glyphspline.dataset.dataset_spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
-from glyphspline.outlines.corner_share import share_of_corners
+from glyphspline.outlines.joins import share_of_corners
 from glyphspline.writers.settings import Maps, Settings
 from glyphspline.writers.svg.appearance import Appearance
 

@@ -32,14 +32,15 @@ PLAN = {
     "curves": BASE,
     "interpolation": CURVES,
     "outlines": CURVES,
+    "matching": CURVES | {"outlines"},
     "checks": CHECKS,
     "comparing": CHECKS | {"comparing"},
     "fitting": FITTING,
-    "readers": CURVES | {"outlines"},
+    "readers": CURVES | {"outlines", "matching"},
     "layout": FITTING | {"readers"},
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
-    "batch": WRITERS | {"comparing", "report"},
+    "batch": WRITERS | {"matching", "comparing", "report"},
     "dataset": WRITERS | {"report", "batch"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
@@ -51,7 +52,7 @@ PLAN = {
 
 FONT_LIBRARIES = {"fontTools", "uharfbuzz", "svgpathtools", "pathops"}
 DRAWING_LIBRARIES = {"matplotlib", "PIL"}
-CORE = {"curves", "interpolation", "outlines", "fitting"}
+CORE = {"curves", "interpolation", "outlines", "matching", "fitting"}
 
 
 def name_of(path: Path) -> str:

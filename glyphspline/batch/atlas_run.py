@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias, TypeVar
 
-from ..checks.axis_kinks import tags_of
+from ..checks.kinks import tags_of
 from ..errors import GlyphsplineError, OptionError
 from ..fitting.convert import convert
 from ..fitting.convert_masters import MastersResult, convert_masters

@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks.axis_numbers import AxisNumbers
-from ..checks.check import THRESHOLDS, findings
-from ..checks.finding import Finding
+from ..checks.check import THRESHOLDS
+from ..checks.finding import Finding, findings
 from ..checks.kinds import DIRECTION, KINDS, Thresholds
+from ..checks.kinks import AxisNumbers
 from ..errors import FontError
 from ..readers import Source
 from ..types import BoolArray, IntArray

@@ -6,7 +6,7 @@ quadratic polynomials, and the turn is stationary at the roots of another: its l
 curvature is sampled, and its maxima are refined.
 
 A joint is an array (…, 2, 4, 2): the control points from the joint on, of the segment that arrives, reversed, and of
-the next; see :func:`.axis_kinks.joint_controls`.
+the next; see :func:`.kinks.joint_controls`.
 """
 
 from __future__ import annotations

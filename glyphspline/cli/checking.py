@@ -9,10 +9,10 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
-from ..checks.axis_numbers import AxisNumbers
 from ..checks.baseline import Baseline
 from ..checks.finding import Finding, severity
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
+from ..checks.kinks import AxisNumbers
 from ..errors import GlyphsplineError, OptionError
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
@@ -229,7 +229,7 @@ def tags_of(source: Source, asked: Asked, alone: bool) -> list[str]:
     Raises:
         GlyphsplineError: the only font has no axes, or not the one asked for.
     """
-    from ..checks.axis_kinks import tags_of
+    from ..checks.kinks import tags_of
 
     if asked.axis is None and not (alone and asked.plot):
         return [axis.tag for axis in source.axes]
@@ -258,7 +258,7 @@ def keep(face: Face, findings: list[Finding], asked: Asked) -> None:
 
 def write_plot(path: Path, source: Source, names: Sequence[str], asked: Asked) -> None:
     """Draw the largest turn of any joint against the axes; see :func:`require_figure`."""
-    from ..checks.axis_kinks import kinks
+    from ..checks.kinks import kinks
     from ..writers.figures.turns import turns_figure
 
     kind: Any = path.suffix[1:].lower()

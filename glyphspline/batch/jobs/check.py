@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...checks.axis_numbers import AxisNumbers
-from ...checks.columns import Measured, nothing
+from ...checks.finding import Measured
 from ...checks.kinds import KINDS, Thresholds
+from ...checks.kinks import AxisNumbers
 from ...errors import GlyphsplineError
 from ..engine import Item, Job, reason
 from ..places import Side, readers, sources
@@ -85,7 +85,7 @@ class CheckJob(Job[Task, Checked]):
 
     def failed(self, task: Task, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
-        return Checked(nothing(), [()], np.zeros(0, dtype=np.int64), reason(error))
+        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), reason(error))
 
     def failures(self, result: Checked) -> int:
         """Number of glyphs that could not be checked."""

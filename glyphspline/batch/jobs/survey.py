@@ -48,8 +48,8 @@ class SurveyJob(Job[Task, "list[Comb]"]):
 
 
 def corners_of(side: Side, tasks: Sequence[Task]) -> float:
-    """:func:`..outlines.corner_share.share_of_corners` of the glyphs that can be read, in a worker."""
-    from ...outlines.corner_share import share_of_corners
+    """:func:`..outlines.joins.share_of_corners` of the glyphs that can be read, in a worker."""
+    from ...outlines.joins import share_of_corners
     from ...outlines.outline import Outline
 
     (read,) = readers(side)

@@ -1,7 +1,9 @@
 """Kinks along the axes of a variable font: how far smooth joints turn between the masters.
 
 A joint that is smooth in every master need not be so between them: the tangents on its two sides are mixed, not their
-directions. An axis is measured from tick to tick; :mod:`.between_ticks` has the formulas.
+directions. Every joint is a row of findings at its worst place; :func:`glyphspline.kinks` shows all rows, and
+:func:`.on_axes.on_axes` takes those that count. An axis is measured from tick to tick; :mod:`.between_ticks` has the
+formulas.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, Protocol, overload
+from typing import Protocol, overload
 
 import numpy as np
 
@@ -18,8 +20,9 @@ from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
-from .axis_numbers import AxisNumbers
 from .between_ticks import largest_jumps, largest_turns, turns_of
+from .finding import Measured
+from .kinds import KINK
 
 PROFILE = 96
 """Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
@@ -38,23 +41,6 @@ class Source(Protocol):
 
     def masters(self, name: str) -> Masters:
         """A glyph in all its masters."""
-
-
-class Glyphs:
-    """Some glyphs as a font of their own.
-
-    Args:
-        masters: one glyph or more, of one font. location: axis tag to user-space value.
-    """
-
-    def __init__(self, masters: Sequence[Masters], location: Mapping[str, float]) -> None:
-        self.path, self.axes, self.location = Path(masters[0].name), masters[0].axes, location
-        self.glyph_names = tuple([item.name for item in masters])
-        self._masters = {item.name: item for item in masters}
-
-    def masters(self, name: str) -> Masters:
-        """A glyph."""
-        return self._masters[name]
 
 
 @dataclass(frozen=True)
@@ -88,75 +74,119 @@ class Kink:
     jump_location: dict[str, float]
 
 
+@dataclass(frozen=True)
+class AxisNumbers:
+    """The smooth joints of some glyphs along one axis; see :class:`Kink`.
+
+    Attributes:
+        axis: its tag. joints: how many there are. masters: user-space values of the masters on the axis, ascending.
+        largest_turn, largest_turn_at_masters, largest_made: in degrees; None without joints.
+        turns_over_1, made_over_1: number of joints with more than a degree.
+        jumps_over_10_percent: number of joints where curvature jumps by more.
+    """
+
+    axis: str
+    joints: int
+    masters: tuple[float, ...]
+    largest_turn: float | None = None
+    largest_turn_at_masters: float | None = None
+    largest_made: float | None = None
+    turns_over_1: int = 0
+    made_over_1: int = 0
+    jumps_over_10_percent: int = 0
+
+    def __add__(self, other: AxisNumbers) -> AxisNumbers:
+        """Those of the glyphs of both, along the same axis."""
+        return AxisNumbers(
+            self.axis, self.joints + other.joints, tuple(sorted({*self.masters, *other.masters})),
+            _larger(self.largest_turn, other.largest_turn),
+            _larger(self.largest_turn_at_masters, other.largest_turn_at_masters),
+            _larger(self.largest_made, other.largest_made), self.turns_over_1 + other.turns_over_1,
+            self.made_over_1 + other.made_over_1, self.jumps_over_10_percent + other.jumps_over_10_percent,
+        )  # fmt: skip
+
+
+def _larger(a: float | None, b: float | None) -> float | None:
+    return max([value for value in (a, b) if value is not None], default=None)
+
+
 @dataclass(frozen=True, eq=False)
 class AxisKinks(Sequence[Kink]):
     """All smooth joints of the glyphs along one axis, the largest turn first.
 
     Attributes:
-        axis: which axis. base: normalised location, of which the axis's own value does not count.
-        positions: user-space values of the masters on the axis.
-        turns, jumps: (n,) of the joints, as in :class:`Kink`.
-        turns_at_masters: (n,) the largest turn of each joint in the masters on the axis.
+        axis: which axis. axes: of the font. glyphs: name and glyph index of each glyph that was measured.
+        rows: (n,) the joints as findings: the value is the largest turn, the detail what interpolation makes of it.
+        at_masters: of each joint (2, P) normalised values of the masters on the axis, and the turns there.
+        jumps: (n,) largest relative jumps of curvature, as in :class:`Kink`; jumps_at: user-space values of the axis.
         profile: (v, 2) user-space values of the axis, ascending, and the largest turn of any joint there; even steps,
             and where joints turn most.
     """
 
     axis: DesignAxis
     axes: tuple[DesignAxis, ...]
-    base: FloatArray
-    positions: tuple[float, ...]
-    turns: FloatArray
-    turns_at_masters: FloatArray
+    glyphs: Sequence[tuple[str, int]]
+    rows: Measured
+    at_masters: Sequence[FloatArray]
     jumps: FloatArray
+    jumps_at: FloatArray
     profile: FloatArray
-    _where: tuple[FloatArray, FloatArray]
-    _glyphs: Sequence[tuple[str, int]]
-    _rows: IntArray
-    _points: FloatArray
-    _masters: Sequence[FloatArray]
 
     @property
     def joints(self) -> IntArray:
         """(n, 3) which joints: number of the glyph, of its contour, and of the segment that begins there."""
-        return self._rows
+        return np.column_stack([self.rows.glyphs, self.rows.contours, self.rows.segments])
+
+    @property
+    def turns(self) -> FloatArray:
+        """(n,) the largest turn of each joint, in degrees."""
+        return self.rows.numbers[:, 1]
+
+    @property
+    def turns_at_masters(self) -> FloatArray:
+        """(n,) the largest turn of each joint in the masters on the axis."""
+        return np.array([turns.max() for _, turns in self.at_masters])
 
     @property
     def made(self) -> FloatArray:
         """(n,) degrees by which the turn of each joint exceeds its turns in the masters."""
-        made: FloatArray = np.maximum(self.turns - self.turns_at_masters, 0.0)
-        return made
+        return self.rows.numbers[:, 2]
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """User-space values of the masters on the axis, ascending."""
+        return self._users(self.at_masters)
+
+    def _users(self, at_masters: Iterable[FloatArray]) -> tuple[float, ...]:
+        return tuple(sorted({self.axis.user(x) for x in (0.0, *(x for at, _ in at_masters for x in at.tolist()))}))
 
     def __len__(self) -> int:
-        return len(self.turns)
+        return len(self.at_masters)
 
     @overload
     def __getitem__(self, index: int) -> Kink: ...
     @overload
     def __getitem__(self, index: slice) -> list[Kink]: ...
     def __getitem__(self, index: int | slice) -> Kink | list[Kink]:
-        """The kink of so many larger ones."""
+        """One kink, or several."""
         if isinstance(index, slice):
             return [self[k] for k in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(index)
-        glyph, contour, joint = self._rows[index].tolist()
-        name, gid = self._glyphs[glyph]
-        x, jump_x = (float(values[index]) for values in self._where)
-        at, turns = self._masters[index]
-        x0 = max([value for value in at.tolist() if value <= x], default=x)
-        x1 = min([value for value in at.tolist() if value >= x], default=x)
+        glyph, contour, joint, _, (_, turn, made, _), (x, y), location, (low, high) = (
+            column[index].tolist() for column in self.rows
+        )
+        at = dict(zip([axis.tag for axis in self.axes], location, strict=True))
+        at_masters = [(self.axis.user(value), turn) for value, turn in self.at_masters[index].T.tolist()]
         return Kink(
-            name, gid, contour, joint, (float(self._points[index, 0]), float(self._points[index, 1])), self.axis.tag,
-            float(self.turns[index]), self._location(x), (self.axis.user(x0), self.axis.user(x1)),
-            tuple((self.axis.user(float(value)), float(turn)) for value, turn in zip(at, turns, strict=True)),
-            float(self.made[index]), float(self.jumps[index]), self._location(jump_x),
+            *self.glyphs[glyph], contour, joint, (x, y), self.axis.tag, turn, at, (low, high), tuple(at_masters), made,
+            float(self.jumps[index]), at | {self.axis.tag: float(self.jumps_at[index])},
         )  # fmt: skip
 
     def numbers_of(self, glyph: int) -> AxisNumbers:
         """The joints of one glyph, by its number, in numbers."""
-        own = np.flatnonzero(self._rows[:, 0] == glyph)
-        at = [0.0, *(self._masters[own[0]][0].tolist() if len(own) else ())]
-        masters = tuple(sorted({self.axis.user(x) for x in at}))
+        own = np.flatnonzero(self.rows.glyphs == glyph)
+        masters = self._users([self.at_masters[k] for k in own[:1]])
         if not len(own):
             return AxisNumbers(self.axis.tag, 0, masters)
         turns, made = self.turns[own], self.made[own]
@@ -164,10 +194,6 @@ class AxisKinks(Sequence[Kink]):
             self.axis.tag, len(own), masters, float(turns.max()), float(self.turns_at_masters[own].max()),
             float(made.max()), int((turns > 1).sum()), int((made > 1).sum()), int((self.jumps[own] > 0.1).sum()),
         )  # fmt: skip
-
-    def _location(self, x: float) -> dict[str, float]:
-        values = {axis.tag: axis.user(float(value)) for axis, value in zip(self.axes, self.base, strict=True)}
-        return values | {self.axis.tag: self.axis.user(x)}
 
     def __repr__(self) -> str:
         largest = f", the largest turn {self.turns[0]:.1f}°" if len(self) else ""
@@ -227,24 +253,40 @@ def kinks(
     """
     tags = tags_of(source, axis)
     require(is_positive(corner_angle, 180), "corner_angle is above 0 and up to 180 degrees", corner_angle)
-    return kinks_along(source, glyphs, [k for k, tag in enumerate(tags) if axis in (None, tag)], corner_angle)
-
-
-def kinks_along(source: Source, glyphs: Iterable[str] | None, chosen: Sequence[int], corner_angle: float) -> KinkReport:
-    """As :func:`kinks`, along the ``chosen`` of the source's axes, by their numbers."""
-    parts: list[list[_Measured]] = [[] for _ in chosen]
-    names: list[tuple[str, int]] = []
     failed: list[tuple[str, str]] = []
-    axes: tuple[DesignAxis, ...] = source.axes
-    base: FloatArray = np.zeros(len(axes))
-    for masters in _batches(source, source.glyph_names if glyphs is None else glyphs, failed):
-        axes, base = masters[0].axes, masters[0].normalised(source.location)
-        joints = [_Joints(item, corner_angle) for item in masters]
+
+    def read() -> Iterator[Masters]:
+        for name in source.glyph_names if glyphs is None else glyphs:
+            try:
+                yield source.masters(name)
+            except GlyphsplineError as error:
+                failed.append((name, error.message))
+
+    chosen = [k for k, tag in enumerate(tags) if axis in (None, tag)]
+    found = kinks_along(read(), source.axes, source.location, chosen, corner_angle)
+    return KinkReport(tuple(found), len(found[0].glyphs), corner_angle, tuple(failed))
+
+
+def kinks_along(
+    glyphs: Iterable[Masters], axes: tuple[DesignAxis, ...], location: Mapping[str, float], chosen: Sequence[int],
+    corner_angle: float, at_once: int = AT_ONCE,
+) -> list[AxisKinks]:  # fmt: skip
+    """The smooth joints of glyphs along the ``chosen`` of a font's axes, by their numbers.
+
+    Args:
+        glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
+        location: user-space values of the other axes. at_once: number of glyphs that are measured in one pass.
+    """
+    parts: list[list[_Batch]] = [[] for _ in chosen]
+    names: list[tuple[str, int]] = []
+    each = iter(glyphs)
+    while batch := list(islice(each, at_once)):
+        axes, base = batch[0].axes, batch[0].normalised(location)
+        joints = [_Joints(item, corner_angle) for item in batch]
         for k, part in zip(chosen, parts, strict=True):
             part.append(_measured(joints, k, base, len(names)))
-        names += [(item.name, item.gid) for item in masters]
-    found = [_gathered(part, axes[k], axes, base, names) for k, part in zip(chosen, parts, strict=True)]
-    return KinkReport(tuple(found), len(names), corner_angle, tuple(failed))
+        names += [(item.name, item.gid) for item in batch]
+    return [_gathered(part, axes, k, names) for k, part in zip(chosen, parts, strict=True)]
 
 
 def tags_of(source: Source, axis: str | None = None) -> list[str]:
@@ -259,21 +301,6 @@ def tags_of(source: Source, axis: str | None = None) -> list[str]:
     if axis is not None and axis not in tags:
         raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}", font=str(source.path))
     return tags
-
-
-def _batches(source: Source, names: Iterable[str], failed: list[tuple[str, str]]) -> Iterator[list[Masters]]:
-    """Glyphs in their masters, many at once; those that cannot be read are added to ``failed``."""
-
-    def read() -> Iterator[Masters]:
-        for name in names:
-            try:
-                yield source.masters(name)
-            except GlyphsplineError as error:
-                failed.append((name, error.message))
-
-    each = read()
-    while batch := list(islice(each, AT_ONCE)):
-        yield batch
 
 
 def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
@@ -318,14 +345,6 @@ class _Joints:
         return np.tensordot(self.masters.weights_at(at), self.controls, axes=1)
 
 
-def ticks_of(masters: Masters, axis: int) -> FloatArray:
-    """Normalised values of an axis between which every master's weight is linear: of regions and of the axis's ends."""
-    of_axis = masters.axes[axis]
-    ends = [-1.0 * (of_axis.minimum < of_axis.default), 0.0, 1.0 * (of_axis.maximum > of_axis.default)]
-    counts = masters.regions[:, axis, 1] != 0
-    return np.unique([*ends, *np.clip(masters.regions[counts, axis].ravel(), ends[0], ends[2])])
-
-
 def grid_of(axis: DesignAxis) -> FloatArray:
     """Normalised values of an axis, even in user space, with those where its mapping bends."""
     users = [*np.linspace(axis.minimum, axis.maximum, PROFILE + 1).tolist(), axis.default]
@@ -345,28 +364,24 @@ def masters_on(masters: Masters, axis: int, base: FloatArray, ticks: FloatArray)
 
 
 @dataclass(frozen=True, eq=False)
-class _Measured:
-    """Columns of the joints of a batch of glyphs; see :class:`AxisKinks`.
+class _Batch:
+    """The joints of some glyphs along an axis; see :class:`AxisKinks`.
 
     Attributes:
-        masters: of each joint (2, P), positions of masters on the axis and turns there.
         largest: at each value of :func:`grid_of` the axis, the largest turn of any joint.
     """
 
-    rows: IntArray
-    turns: FloatArray
-    at: FloatArray
+    rows: Measured
+    at_masters: list[FloatArray]
     jumps: FloatArray
-    jump_at: FloatArray
-    points: FloatArray
-    at_masters: FloatArray
-    masters: list[FloatArray]
+    jumps_at: FloatArray
     largest: FloatArray
 
 
-def _measured(glyphs: Sequence[_Joints], axis: int, base: FloatArray, first: int) -> _Measured:
+def _measured(glyphs: Sequence[_Joints], axis: int, base: FloatArray, first: int) -> _Batch:
     """The joints of glyphs along an axis, all at once; ``first`` is the number of the first glyph."""
-    ticks = [ticks_of(glyph.masters, axis) for glyph in glyphs]
+    axes = glyphs[0].masters.axes
+    ticks = [glyph.masters.ticks(axis) for glyph in glyphs]
     ends = [glyph.along(axis, base, values) for glyph, values in zip(glyphs, ticks, strict=True)]
     # A row for each joint and each interval of its glyph; those of a joint are neighbours.
     start = np.concatenate([np.swapaxes(item[:-1], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
@@ -379,26 +394,41 @@ def _measured(glyphs: Sequence[_Joints], axis: int, base: FloatArray, first: int
     turns, turn_ways = largest_turns(start, end)
     jumps, jump_ways = largest_jumps(start, end, em)
     row, jump_row = _first_largest(turns, intervals), _first_largest(jumps, intervals)
-    masters: list[FloatArray] = []
-    grid = grid_of(glyphs[0].masters.axes[axis])
+    at, jumps_at = (
+        low[row] + turn_ways[row] * (high - low)[row],
+        low[jump_row] + jump_ways[jump_row] * (high - low)[jump_row],
+    )
+    owners, user = np.repeat(np.arange(len(glyphs)), joints), axes[axis].user
+    at_masters: list[FloatArray] = []
+    between = np.empty((len(row), 2))
+    grid = grid_of(axes[axis])
     largest = np.zeros(len(grid))
-    for glyph, values, at_ticks in zip(glyphs, ticks, ends, strict=True):
+    for g, (glyph, values, at_ticks) in enumerate(zip(glyphs, ticks, ends, strict=True)):
         on = masters_on(glyph.masters, axis, base, values)
-        of_masters = np.abs(turns_of(at_ticks[on]))  # (P, J)
-        masters += [np.stack([values[on], of_joint]) for of_joint in of_masters.T]
+        at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
+        between[owners == g] = _around(values[on], at[owners == g])
         k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
         way = ((grid - values[k]) / (values[k + 1] - values[k]))[:, None, None, None, None]
         on_grid = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
         largest = np.maximum(largest, np.nan_to_num(on_grid).max(axis=1, initial=0.0))
-    return _Measured(
-        np.column_stack(
-            [np.repeat(first + np.arange(len(glyphs)), joints), np.concatenate([glyph.places for glyph in glyphs])]
-        ),
-        turns[row], low[row] + turn_ways[row] * (high - low)[row],
-        jumps[jump_row], low[jump_row] + jump_ways[jump_row] * (high - low)[jump_row],
-        start[row, 0, 0] + turn_ways[row, None] * (end - start)[row, 0, 0],
-        np.array([item[1].max() for item in masters]), masters, largest,
+    made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
+    locations = np.tile([of_font.user(x) for of_font, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
+    locations[:, axis] = [user(x) for x in at.tolist()]
+    contours, segments = np.concatenate([glyph.places for glyph in glyphs]).T
+    rows = Measured(
+        first + owners, contours, segments, np.full(len(row), KINK),
+        np.column_stack([np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0)]),
+        start[row, 0, 0] + turn_ways[row, None] * (end - start)[row, 0, 0], locations,
+        np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
     )  # fmt: skip
+    return _Batch(rows, at_masters, jumps[jump_row], np.array([user(x) for x in jumps_at.tolist()]), largest)
+
+
+def _around(masters: FloatArray, at: FloatArray) -> FloatArray:
+    """(n, 2) the masters before and behind (n,) places; a place itself where there is none."""
+    bounds = np.concatenate([[-np.inf], masters, [np.inf]])
+    found = np.column_stack([bounds[np.searchsorted(bounds, at, "right") - 1], bounds[np.searchsorted(bounds, at)]])
+    return np.where(np.isfinite(found), found, at[:, None])
 
 
 def _first_largest(values: FloatArray, counts: IntArray) -> IntArray:
@@ -412,26 +442,21 @@ def _first_largest(values: FloatArray, counts: IntArray) -> IntArray:
 
 
 def _gathered(
-    parts: Sequence[_Measured], axis: DesignAxis, axes: tuple[DesignAxis, ...], base: FloatArray,
-    names: Sequence[tuple[str, int]],
-) -> AxisKinks:  # fmt: skip
+    parts: Sequence[_Batch], axes: tuple[DesignAxis, ...], axis: int, glyphs: Sequence[tuple[str, int]]
+) -> AxisKinks:
     """All batches along an axis, the largest turn first."""
-
-    def column(name: str, shape: tuple[int, ...] = (0,)) -> Any:
-        return np.concatenate([np.zeros(shape, dtype=np.int64), *(getattr(part, name) for part in parts)])
-
-    turns, at, at_masters, rows = column("turns"), column("at"), column("at_masters"), column("rows", (0, 3))
-    order = np.argsort(-turns, kind="stable")
-    masters = [item for part in parts for item in part.masters]
-    positions = sorted({0.0, *(value for item in masters for value in item[0].tolist())})
-    grid = grid_of(axis)
+    rows = Measured.joined([part.rows for part in parts], len(axes))
+    jumps, jumps_at = (
+        np.concatenate([[], *each]) for each in zip(*((p.jumps, p.jumps_at) for p in parts), strict=True)
+    )
+    grid = np.array([axes[axis].user(x) for x in grid_of(axes[axis]).tolist()])
     largest = np.max([np.zeros(len(grid)), *(part.largest for part in parts)], axis=0)
+    turns, at = rows.numbers[:, 1], rows.locations[:, axis]
     above = turns > np.interp(at, grid, largest)  # where a joint's largest turn lies between the grid's values
     profile = np.column_stack([np.append(grid, at[above]), np.append(largest, turns[above])])
-    profile = profile[np.argsort(profile[:, 0], kind="stable")]
-    profile[:, 0] = [axis.user(float(value)) for value in profile[:, 0]]
+    order = np.argsort(-turns, kind="stable")
+    at_masters = [item for part in parts for item in part.at_masters]
     return AxisKinks(
-        axis, axes, base, tuple(axis.user(value) for value in positions), turns[order], at_masters[order],
-        column("jumps")[order], profile, (at[order], column("jump_at")[order]), names, rows[order],
-        column("points", (0, 2))[order], [masters[k] for k in order],
+        axes[axis], axes, glyphs, rows.chosen(order), [at_masters[k] for k in order], jumps[order], jumps_at[order],
+        profile[np.argsort(profile[:, 0], kind="stable")],
     )  # fmt: skip
