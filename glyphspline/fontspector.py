@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -68,11 +69,16 @@ def outlines(font: Path) -> Iterator[Any]:
 
 def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
-    from .cli.arguments import Instance, Reported, Run, Sought, Subset
+    from typer.main import get_command
+
+    from .cli import commands
     from .cli.checking import asked_of, check_fonts
 
-    asked = asked_of(Sought(), Reported(loglevel="INFO"))
-    faces = list(check_fonts([font], asked, Subset(), Instance(), Run(jobs=0, quiet=True), alone=False))
+    command: Any = get_command(commands.app)
+    check: Any = commands.check
+    given = check.values(command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]))
+    asked = replace(asked_of(given["sought"], given["reported"]), kept="INFO")
+    faces = list(check_fonts([font], asked, given["subset"], given["instance"], given["run"], alone=False))
     for face in faces:
         if face.error is not None:
             raise GlyphsplineError(face.error)

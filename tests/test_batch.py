@@ -269,7 +269,7 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
     [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"names": "n"}, {"options": None}, {"settings": None}],
 )
 def test_a_run_that_makes_no_sense_is_refused(wrong: dict[str, Any]) -> None:
-    with pytest.raises(GlyphsplineError, match=r"formats|no format|names|Options"):
+    with pytest.raises(GlyphsplineError, match=r"formats|no format|names|Options|Settings"):
         RunSpec(**wrong)
 
 

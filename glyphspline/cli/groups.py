@@ -56,7 +56,8 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
     """A command for typer, from a function that takes values and returns the exit status.
 
     Expected errors end the command with status 2, those of making the values too. A field whose option is not given,
-    neither on the command line nor in a file, keeps the value of the parameter's default, or that of the preset.
+    neither on the command line nor in a file, keeps the value of the parameter's default, or that of the preset. The
+    command's attribute ``values`` is the function that makes the values from typer's context.
     """
     hints = get_type_hints(function, include_extras=True)
     hints.pop("return")
@@ -74,17 +75,20 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
         else:
             flat[name] = _parameter(name, hint, defaults[name])
 
-    def command(context: typer.Context, **given: Any) -> None:
-        source = context.get_parameter_source
+    def values(context: Any) -> dict[str, Any]:
+        given, source = context.params, context.get_parameter_source
         own = {name: value for name, value in given.items() if getattr(source(name), "name", "") != "DEFAULT"}
+        return {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
+
+    def command(context: typer.Context, **given: Any) -> None:
         quiet = bool(given.get("quiet"))
         with errors(quiet, bool(given.get("json_log"))):
             listen(quiet)
-            values = {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
-            status = function(**values)
+            status = function(**values(context))
         if status:
             raise typer.Exit(status)
 
+    command.values = values  # type: ignore[attr-defined]
     command.__name__, command.__doc__ = function.__name__, function.__doc__
     command.__annotations__ = {name: parameter.annotation for name, parameter in flat.items()}
     command.__signature__ = signature(function).replace(  # type: ignore[attr-defined]
