@@ -14,8 +14,9 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 
 import glyphspline as gs
 from glyphspline.batch import check_run
+from glyphspline.batch.check_fonts import Asked, check_fonts
 from glyphspline.batch.check_run import GlyphFindings, check_font
-from glyphspline.batch.jobs.check import CheckJob
+from glyphspline.batch.jobs.check import AxesJob, CheckJob
 from glyphspline.batch.schedule import workers
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import Thresholds
@@ -242,3 +243,14 @@ def test_glyphs_and_axes_that_are_not_there_are_refused(variable: Path) -> None:
         check_font(font, ["k"], axes=["wdth"])
     with pytest.raises(FontError, match="no such glyph"):
         check_font(font, ["z"])
+
+
+def test_joints_of_chunks_are_those_of_the_whole_font(variable: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AxesJob, "chunk", 1)
+    for path in (variable, FONTS / "variable.ttf"):
+        (face,) = check_fonts([path], Asked(joints=True), jobs=0, alone=True)
+        assert face.kinks is not None
+        for own, whole in zip(face.kinks, kinks(gs.open_source(path)), strict=True):
+            assert list(own) == list(whole)
+            assert (own.profile == whole.profile).all()
+            assert own.positions == whole.positions

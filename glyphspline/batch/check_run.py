@@ -16,7 +16,7 @@ import numpy as np
 from ..checks.check import THRESHOLDS
 from ..checks.finding import Finding, findings
 from ..checks.kinds import DIRECTION, KINDS, Thresholds
-from ..checks.kinks import AxisNumbers
+from ..checks.kinks import AxisKinks, AxisNumbers
 from ..errors import FontError
 from ..readers import Source
 from ..types import BoolArray, IntArray
@@ -55,6 +55,7 @@ def check_font(
     executor: Executor | None = None,
     observer: Observer | None = None,
     once: bool = True,
+    kinks: list[Sequence[AxisKinks]] | None = None,
 ) -> Iterator[GlyphFindings]:
     """Check glyphs of a font; yield them in glyph index order. Nothing is fitted.
 
@@ -71,6 +72,7 @@ def check_font(
         observer: called after each chunk of glyphs.
         once: a contour that stands in several glyphs, as components do, is reported in the first one only, and so are
             two that touch or cross. Directions, which depend on all contours of a glyph, are reported in each.
+        kinks: gets the smooth joints of each batch of glyphs along each axis.
 
     Raises:
         FontError: the source has no such glyph, or no such axis.
@@ -86,8 +88,8 @@ def check_font(
     looked = frozenset(kind.name for kind in KINDS) if kinds is None else kinds
     job = CheckJob(side_of(source), thresholds, looked, source.outer)
     if chosen:
-        job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps)
-    return _found(job, tasks, tags if chosen else (), executor, observer, once)
+        job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps, kinks is not None)
+    return _found(job, tasks, tags if chosen else (), executor, observer, once, kinks)
 
 
 def _found(
@@ -97,12 +99,15 @@ def _found(
     executor: Executor | None,
     observer: Observer | None,
     once: bool,
+    kinks: list[Sequence[AxisKinks]] | None,
 ) -> Iterator[GlyphFindings]:
     """Findings glyph by glyph, without those of a shape that was reported for an earlier glyph."""
     reported = _Reported() if once else None
     with nullcontext(executor) if executor else InProcess() as pool:
         for part in run(job, tasks, pool, ordered=True, observer=observer):
-            rows, axes, shapes, error = part.result
+            rows, axes, shapes, along, error = part.result
+            if kinks is not None and along:
+                kinks.append(along)
             if reported is not None:
                 rows = rows.chosen(np.flatnonzero(reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
             found = findings([(task.name, task.gid) for task in part.tasks], rows, tags)

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
+from functools import partial
 from pathlib import Path
+from typing import Any, get_args
 
 import typer
 
-from ..checks.kinds import Level
-from ..errors import OutputError
+from ..batch.check_fonts import Asked, Face, check_fonts, worst_first
+from ..batch.check_run import STEPS
+from ..batch.files import writing
+from ..checks.baseline import Baseline
+from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
+from ..errors import OptionError, OutputError
+from ..writers.figures.images import FigureKind
 from . import arguments as opt
-from .checking import Face, asked_of, check_fonts, level_number, require_figure
-from .findings import as_csv, as_json, as_markdown, sentences, table, worst_first
+from .findings import as_csv, as_json, as_markdown, sentences, table
 from .messages import say, stop
+from .progress import progress
 
 STDOUT = Path("-")
+
+NAMES = [kind.name for kind in KINDS]
 
 
 def run(
@@ -45,12 +55,19 @@ def run(
     alone = len(given) == 1 and fonts == [Path(given[0])]
     if reported.plot is not None and not alone:
         stop("--plot takes one font")
-    faces = list(check_fonts(fonts, asked, subset, instance, run, alone=alone))
+    faces: list[Face] = []
+    for face in check_fonts(
+        fonts, asked, chosen=subset.of if subset.is_given else None, face_index=instance.face_index,
+        location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
+    ):  # fmt: skip
+        faces.append(face)
+        if face.remark is not None:
+            say(face.remark)
     if asked.written is not None and reported.write_baseline is not None:
         asked.written.write(reported.write_baseline)
     level: Level = reported.loglevel or "WARN"
     found = worst_first(faces)
-    shown = [pair for pair in found if level_number(pair[1].level) >= level_number(level)]
+    shown = [pair for pair in found if LEVELS.index(pair[1].level) >= LEVELS.index(level)]
     if reported.csv is not None:
         put(reported.csv, as_csv(found))
     if reported.ghmarkdown is not None:
@@ -60,6 +77,13 @@ def run(
 
         drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
         put(reported.html, findings_page(drawn))
+    if reported.plot is not None and faces[0].kinks is not None:
+        from ..readers import open_source
+        from ..writers.figures.turns import turns_figure
+
+        kind: Any = reported.plot.suffix[1:].lower()
+        source = open_source(fonts[0], instance.face_index or 0, instance.place)
+        put(reported.plot, turns_figure(source, faces[0].kinks, kind))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
@@ -70,22 +94,80 @@ def run(
     return faces
 
 
+def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
+    """Thresholds as ``kink=1,short=2``; of one that is given twice the last counts.
+
+    Raises:
+        GlyphsplineError: one is not known, or is no number above 0.
+    """
+    names = [each.name for each in fields(Thresholds)]
+    found: dict[str, float] = {}
+    for item in filter(None, (text or "").replace(" ", "").split(",")):
+        name, _, value = item.partition("=")
+        if name.replace("-", "_") not in names:
+            raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
+        try:
+            found[name.replace("-", "_")] = float(value)
+        except ValueError:
+            raise OptionError(f"--thresholds is like kink=1,short=2, not {item!r}") from None
+    if corner_angle is not None:
+        found["corner_angle"] = corner_angle
+    return Thresholds(**found)
+
+
+def kinds_of(text: str | None) -> frozenset[str]:
+    """The kinds asked for; without any, all.
+
+    Raises:
+        OptionError: there is no such kind.
+    """
+    names = [name for name in (text or "").replace(" ", "").split(",") if name]
+    for name in names:
+        if name not in NAMES:
+            raise OptionError(f"--kinds has no {name!r}: there are {', '.join(NAMES)}")
+    return frozenset(names or NAMES)
+
+
+def require_figure(path: Path | None) -> None:
+    """Raise an error unless a diagram can be written as what the file's suffix says."""
+    if path is not None and path.suffix[1:].lower() not in get_args(FigureKind):
+        raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
+
+
+def asked_of(sought: opt.Sought, reported: opt.Reported, as_json: bool = False) -> Asked:
+    """What is looked for, from the command's arguments.
+
+    Raises:
+        GlyphsplineError: an option or the baseline is of no use.
+    """
+    every = as_json or reported.csv or reported.html
+    return Asked(
+        thresholds=thresholds_of(sought.thresholds, sought.corner_angle),
+        kinds=kinds_of(sought.kinds),
+        kept=reported.loglevel or ("INFO" if every else "WARN"),
+        axis=sought.axis,
+        steps=STEPS if sought.steps is None else sought.steps,
+        baseline=None if reported.baseline is None else Baseline.read(reported.baseline),
+        written=None if reported.write_baseline is None else Baseline(),
+        drawn=reported.html is not None,
+        joints=reported.plot is not None,
+    )
+
+
 def require_folder(path: Path | None) -> None:
     """Raise an error before anything is checked, unless a file's folder exists."""
     if path is not None and path != STDOUT and not path.parent.is_dir():
         raise OutputError("cannot be written: there is no such folder", font=str(path))
 
 
-def put(path: Path, text: str) -> None:
+def put(path: Path, content: str | bytes) -> None:
     """Write a file, or standard output.
 
     Raises:
         OutputError: the file cannot be written.
     """
-    if path == STDOUT:
-        typer.echo(text, nl=not text.endswith("\n"))
+    if path == STDOUT and isinstance(content, str):
+        typer.echo(content, nl=not content.endswith("\n"))
         return
-    try:
-        path.write_text(text, encoding="utf-8", errors="replace", newline="")  # paths need not be UTF-8
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
+    with writing(path):
+        path.write_bytes(content.encode(errors="replace") if isinstance(content, str) else content)  # of paths

@@ -255,13 +255,12 @@ def check(
     for it, and 2 if a font cannot be read.
     """
     from .check_outputs import run as run_check
-    from .checking import reaches
 
     faces = run_check(fonts, sought, reported, subset, instance, run)
     if any(face.error is not None for face in faces):
         return 2
     level = reported.error_level
-    return level is not None and any(reaches(face, level) for face in faces)
+    return level is not None and any(face.reaches(level) for face in faces)
 
 
 @app.command()

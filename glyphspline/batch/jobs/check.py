@@ -11,7 +11,7 @@ import numpy as np
 
 from ...checks.finding import Measured
 from ...checks.kinds import KINDS, Thresholds
-from ...checks.kinks import AxisNumbers
+from ...checks.kinks import AxisKinks, AxisNumbers
 from ...errors import GlyphsplineError
 from ..engine import Item, Job, reason
 from ..places import Side, readers, sources
@@ -37,12 +37,14 @@ class Checked(NamedTuple):
 
     Attributes:
         rows: of the tasks that were done together. axes: kinks of each along each axis, in numbers.
-        shapes: (n,) of the row's contour, wherever it stands. error: why the only task could not be checked, or None.
+        shapes: (n,) of the row's contour, wherever it stands. kinks: along each axis, if they are asked for.
+        error: why the only task could not be checked, or None.
     """
 
     rows: Measured
     axes: Sequence[tuple[AxisNumbers, ...]]
     shapes: IntArray
+    kinks: Sequence[AxisKinks] = ()
     error: str | None = None
 
 
@@ -59,6 +61,8 @@ class CheckJob(Job[Task, Checked]):
     kinds: frozenset[str]
     outer: int
 
+    joints = False
+
     chunk = 200
     """A few megabytes of outlines."""
 
@@ -70,22 +74,22 @@ class CheckJob(Job[Task, Checked]):
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Checked:
         """Measure glyphs."""
-        rows, axes = self.measured(contents)
-        numbers = [number for number, kind in enumerate(KINDS) if kind.name in self.kinds]
-        rows = rows.chosen(np.flatnonzero(np.isin(rows.kinds, numbers)))
-        return Checked(rows, axes, _shapes(contents, rows))
+        rows, kinks = self.measured(contents)
+        looked_for = [number for number, kind in enumerate(KINDS) if kind.name in self.kinds]
+        rows = rows.chosen(np.flatnonzero(np.isin(rows.kinds, looked_for)))
+        numbers = [tuple(along.numbers_of(g) for along in kinks) for g in range(len(contents))]
+        return Checked(rows, numbers, _shapes(contents, rows), kinks if self.joints else ())
 
-    def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[tuple[AxisNumbers, ...]]]:
-        """Findings of every kind, and kinks along each axis in numbers."""
+    def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[AxisKinks]]:
+        """Findings of every kind, and all smooth joints along each axis."""
         from ...checks.measured import measured
 
         arrays = [outline.arrays for outline in glyphs]
-        rows = measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer)
-        return rows, [()] * len(glyphs)
+        return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer), ()
 
     def failed(self, task: Task, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
-        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), reason(error))
+        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), error=reason(error))
 
     def failures(self, result: Checked) -> int:
         """Number of glyphs that could not be checked."""
@@ -94,10 +98,14 @@ class CheckJob(Job[Task, Checked]):
 
 @dataclass(frozen=True)
 class AxesJob(CheckJob):
-    """Glyphs checked in their masters and along ``axes``, which are tags, at the ends of ``steps`` of each."""
+    """Glyphs checked in their masters and along ``axes``, which are tags, at the ends of ``steps`` of each.
+
+    ``joints``: all smooth joints are part of the result.
+    """
 
     axes: tuple[str, ...]
     steps: int
+    joints: bool
 
     chunk = 8
 
@@ -112,7 +120,7 @@ class AxesJob(CheckJob):
                 found.append(error)
         return found
 
-    def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[tuple[AxisNumbers, ...]]]:
+    def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[AxisKinks]]:
         """As for a font where it is open, at the worst place of each finding."""
         from ...checks.on_axes import on_axes
 
