@@ -30,10 +30,10 @@ from glyphspline.batch import (
 )
 from glyphspline.batch.entry import contour_texts
 from glyphspline.batch.file_names import LONGEST_NAME, file_names
-from glyphspline.batch.files import write_whole
 from glyphspline.batch.manifest import JOURNAL
 from glyphspline.batch.summary import Facts, facts_of
 from glyphspline.errors import GlyphsplineError
+from glyphspline.files import write_whole
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font

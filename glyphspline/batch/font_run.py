@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..curves.curvature import robust_scale
 from ..errors import OutputError
+from ..files import make_folder, remove_partials
 from ..readers import Source
 from ..readers.svg_drawings import SvgDrawings
 from ..report.data import row_of
@@ -20,7 +21,6 @@ from ..report.gallery_files import FOLDER as GALLERY
 from ..types import Names
 from .engine import Job, Observer, Part, run
 from .file_names import file_names
-from .files import make_folder, remove_partials
 from .jobs.convert import ConvertJob
 from .jobs.glyphs import Done, Task
 from .jobs.survey import SurveyJob

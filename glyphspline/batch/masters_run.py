@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError, OutputError
+from ..files import remove_partials, write_whole, writing
 from ..fitting.convert_masters import MastersResult, check_options
 from ..readers import Font, Source
 from ..readers.single_fonts import axis_of
@@ -23,7 +24,6 @@ from ..types import MadeOnDemand, counted, rounded_up
 from ..writers.font.font_glyphs import Flavour
 from ..writers.font.master_deltas import Redrawn
 from .engine import Observer
-from .files import remove_partials, write_whole, writing
 from .font_run import prepare, recorded, tasks_of
 from .jobs.masters import MastersJob
 from .lock import locked

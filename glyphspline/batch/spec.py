@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any
 from .._version import __version__
 from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require
 from ..fields import WRITTEN, arguments, check, instance_arguments, option
+from ..files import write_whole
 from ..fitting.options import Options
 from ..report.gallery_files import FOLDER as GALLERY
 from ..report.gallery_files import SUFFIX
 from ..types import Names
 from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import Maps, Settings
-from .files import write_whole
 
 if TYPE_CHECKING:
     from ..readers import Source

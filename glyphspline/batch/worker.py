@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import GlyphsplineError
+from ..files import write_whole
 from ..fitting.convert import convert_many, unfitted
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult, end_to_end
@@ -26,7 +27,6 @@ from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.polygon_drawing import PolygonData, polygon_data, polygon_document, source_data
 from .engine import Item
 from .entry import contour_texts, journal_line, manifest_line
-from .files import write_whole
 from .jobs.glyphs import Done, Output, Task, failed
 from .places import Side, readers
 from .result_text import to_text

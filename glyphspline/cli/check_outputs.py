@@ -12,10 +12,10 @@ import typer
 
 from ..batch.check_fonts import Asked, Face, check_fonts, worst_first
 from ..batch.check_run import STEPS
-from ..batch.files import writing
 from ..checks.baseline import Baseline
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError, OutputError
+from ..files import writing
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
 from .findings import as_csv, as_json, as_markdown, sentences, table

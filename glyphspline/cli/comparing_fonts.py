@@ -128,7 +128,7 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
     Raises:
         OutputError: the file cannot be written.
     """
-    from ..errors import OutputError
+    from ..files import writing
     from ..outlines.outline import Outline
     from ..report.comparison import comparison_page
 
@@ -142,7 +142,5 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
         facts.append(f"the worst {DRAWN} of {len(found.differences)} are drawn")
     heading = f"{old.path.name} and {new.path.name}"
     page = comparison_page(heading, facts, list(zip(worst, *read, strict=True)), found.tolerance)
-    try:
+    with writing(path):
         path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error

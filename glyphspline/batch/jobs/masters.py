@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...errors import GlyphsplineError
+from ...files import make_folder, write_whole
 from ...fitting.options import Options
 from ...types import rounded_up
 from ..engine import Job, reason
 from ..entry import journal_line
-from ..files import make_folder, write_whole
 from ..places import Place, sources
 from ..spec import RESULTS
 from .glyphs import Done, Task
