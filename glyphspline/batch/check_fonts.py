@@ -27,9 +27,6 @@ POOL_FROM = 2000
 POOL_FROM_ALONG_AXES = 100
 """Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
 
-PATIENCE = 60.0
-"""Seconds that a worker may be silent."""
-
 
 @dataclass(frozen=True)
 class Asked:
@@ -141,7 +138,7 @@ def check_fonts(
                     names = source.glyph_names if chosen is None else chosen(source)
                     least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
                     if pool is None and (jobs or (jobs is None and len(names) >= least)):
-                        pool = stack.enter_context(workers(jobs, PATIENCE, also=("checks",)))
+                        pool = stack.enter_context(workers(jobs, also=("checks",)))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
                     with watch() as observer:
                         face = check_face(source, name, names, asked, pool, observer, alone=alone)

@@ -11,6 +11,7 @@ from ..fitting.options import Options
 from .places import forget_opened
 from .pool import WorkerPool
 from .preload import code_for, kinds_for
+from .spec import Limits
 
 
 class InProcess(Executor):
@@ -32,7 +33,7 @@ class InProcess(Executor):
 
 def workers(
     jobs: int | None,
-    seconds: float,
+    seconds: float = Limits.seconds,
     options: Options | None = None,
     formats: Sequence[str] = (),
     expected: int = 0,

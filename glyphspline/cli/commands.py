@@ -24,9 +24,6 @@ from .messages import listen, printable, say, stop
 from .progress import progress
 from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, workplace
 
-PATIENCE = 60.0
-"""Time limit in seconds of ``info --deep`` for some hundred glyphs."""
-
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
 
@@ -162,7 +159,7 @@ def look_deep(font: Path, facts: dict[str, Any]) -> None:
 
     path = standard_input() if str(font) == STDIN else font
     # In processes with a time limit: counting the contours of a hostile font can take years.
-    with workers(None, PATIENCE) as executor, progress(quiet=False) as observer:
+    with workers(None) as executor, progress(quiet=False) as observer:
         add_glyph_facts(path.absolute(), facts, executor, observer)
 
 
