@@ -16,7 +16,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "glyphspline"
 
-BASE = {"compiled", "errors", "extras", "intrinsics", "types", "_version"}
+BASE = {"compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
@@ -27,6 +27,8 @@ PLAN = {
     "intrinsics": {"compiled"},
     "errors": set(),
     "extras": {"errors"},
+    "files": {"errors"},
+    "fields": {"errors"},
     "types": set(),
     "curves": BASE,
     "interpolation": CURVES,
@@ -44,7 +46,7 @@ PLAN = {
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
     "cli": WRITERS | {"comparing", "report", "batch", "dataset", "viewer"},
-    "fontspector": WRITERS | {"cli"},
+    "fontspector": WRITERS | {"batch", "cli"},
     "__main__": {"cli"},
 }
 """What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""

@@ -9,6 +9,7 @@ from typing import TypeAlias, TypeVar
 
 from ..checks.kinks import tags_of
 from ..errors import GlyphsplineError, OptionError
+from ..files import make_folder
 from ..fitting.convert import convert
 from ..fitting.convert_masters import MastersResult, convert_masters
 from ..fitting.options import Options
@@ -18,7 +19,6 @@ from ..writers.figures.atlas import Glyph, write_atlas
 from ..writers.figures.axis_pages import OfAxis, write_axis_atlas
 from ..writers.svg.appearance import Whose
 from ..writers.svg.curvature_map import curvature_scale
-from .files import make_folder
 from .font_run import SCALE_SAMPLE
 
 Result = TypeVar("Result", GlyphResult, MastersResult)

@@ -164,7 +164,6 @@ def checks() -> None:
 def comparisons() -> None:
     """Outlines compared: one moved, one that lacks a contour."""
     from ..comparing.compare import compare
-    from . import compare_glyphs  # noqa: F401
 
     read()
     compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))

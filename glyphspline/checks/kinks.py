@@ -191,6 +191,21 @@ class AxisKinks(Sequence[Kink]):
             float(made.max()), int((turns > 1).sum()), int((made > 1).sum()), int((self.jumps[own] > 0.1).sum()),
         )  # fmt: skip
 
+    @classmethod
+    def joined(cls, parts: Sequence[AxisKinks]) -> AxisKinks:
+        """The joints of all parts along their axis, as if their glyphs had been measured at once."""
+        first = parts[0]
+        before = np.cumsum([0, *(len(part.glyphs) for part in parts[:-1])]).tolist()
+        rows = [part.rows._replace(glyphs=part.rows.glyphs + n) for part, n in zip(parts, before, strict=True)]
+        grid = users_of_grid(first.axis)  # a profile has its grid's values before others at the same place
+        return _sorted(
+            first.axes, [axis.tag for axis in first.axes].index(first.axis.tag),
+            [glyph for part in parts for glyph in part.glyphs], Measured.joined(rows, len(first.axes)),
+            [item for part in parts for item in part.at_masters], np.concatenate([part.jumps for part in parts]),
+            np.concatenate([part.jumps_at for part in parts]),
+            [part.profile[np.searchsorted(part.profile[:, 0], grid), 1] for part in parts],
+        )  # fmt: skip
+
     def __repr__(self) -> str:
         largest = f", the largest turn {self.turns[0]:.1f}°" if len(self) else ""
         return f"<AxisKinks along {self.axis.tag}: {counted(len(self), 'joint')}{largest}>"
@@ -318,14 +333,27 @@ def _gathered(
     jumps, jumps_at = (
         np.concatenate([[], *each]) for each in zip(*((p.jumps, p.jumps_at) for p in parts), strict=True)
     )
-    grid = np.array([axes[axis].user(x) for x in grid_of(axes[axis]).tolist()])
-    largest = np.max([np.zeros(len(grid)), *(part.largest for part in parts)], axis=0)
+    at_masters = [item for part in parts for item in part.at_masters]
+    return _sorted(axes, axis, glyphs, rows, at_masters, jumps, jumps_at, [part.largest for part in parts])
+
+
+def _sorted(
+    axes: tuple[DesignAxis, ...], axis: int, glyphs: Sequence[tuple[str, int]], rows: Measured,
+    at_masters: Sequence[FloatArray], jumps: FloatArray, jumps_at: FloatArray, on_grid: Sequence[FloatArray],
+) -> AxisKinks:  # fmt: skip
+    """Joints along an axis, the largest turn first; ``on_grid``: largest turns of parts of them on the grid."""
+    grid = users_of_grid(axes[axis])
+    largest = np.max([np.zeros(len(grid)), *on_grid], axis=0)
     turns, at = rows.numbers[:, 1], rows.locations[:, axis]
     above = turns > np.interp(at, grid, largest)  # where a joint's largest turn lies between the grid's values
     profile = np.column_stack([np.append(grid, at[above]), np.append(largest, turns[above])])
     order = np.argsort(-turns, kind="stable")
-    at_masters = [item for part in parts for item in part.at_masters]
     return AxisKinks(
         axes[axis], axes, glyphs, rows.chosen(order), [at_masters[k] for k in order], jumps[order], jumps_at[order],
         profile[np.argsort(profile[:, 0], kind="stable")],
     )  # fmt: skip
+
+
+def users_of_grid(axis: DesignAxis) -> FloatArray:
+    """The values of :func:`grid_of` in user space, ascending."""
+    return np.array([axis.user(x) for x in grid_of(axis).tolist()])

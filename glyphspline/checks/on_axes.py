@@ -17,7 +17,7 @@ from .finding import Measured
 from .joints import rounding_turn
 from .joints_along import joint_controls, turns_of
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
-from .kinks import AxisKinks, AxisNumbers, kinks_along
+from .kinks import AxisKinks, kinks_along
 from .measured import measured
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
@@ -30,8 +30,8 @@ ALIKE = 9
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
     outer: int = 0,
-) -> tuple[Measured, list[tuple[AxisNumbers, ...]]]:  # fmt: skip
-    """Measure glyphs of a variable font: each finding at its worst place, and each glyph's kinks in numbers.
+) -> tuple[Measured, list[AxisKinks]]:  # fmt: skip
+    """Measure glyphs of a variable font: each finding at its worst place, and all smooth joints along each axis.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
@@ -55,8 +55,7 @@ def on_axes(
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
     worst = _worst(Measured.joined([kinks, rows]))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
-    numbers = [tuple(along.numbers_of(g) for along in along_axes) for g in range(len(glyphs))]
-    return worst._replace(locations=np.array(users).reshape(-1, len(axes))), numbers
+    return worst._replace(locations=np.array(users).reshape(-1, len(axes))), along_axes
 
 
 def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[int], steps: int) -> FloatArray:
