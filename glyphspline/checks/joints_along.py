@@ -12,7 +12,6 @@ the next; see :func:`joint_controls`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -201,23 +200,15 @@ def masters_on(masters: Masters, axis: int, base: FloatArray, ticks: FloatArray)
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class JointsAlong:
-    """The joints of some glyphs along an axis; see :class:`.kinks.AxisKinks`.
+def joints_along(
+    glyphs: Sequence[Joints], axis: int, base: FloatArray
+) -> tuple[Measured, list[FloatArray], FloatArray, FloatArray, list[FloatArray]]:
+    """The joints of glyphs along an axis, all at once; ``base`` is their normalised location, but for the axis.
 
-    Attributes:
-        largest: at each value of :func:`grid_of` the axis, the largest turn of any joint.
+    Returns:
+        Rows, masters on the axis, jumps and their places, as in :class:`.kinks.AxisKinks`; and of each glyph the
+        largest turn of any joint at each value of :func:`grid_of` the axis.
     """
-
-    rows: Measured
-    at_masters: list[FloatArray]
-    jumps: FloatArray
-    jumps_at: FloatArray
-    largest: FloatArray
-
-
-def joints_along(glyphs: Sequence[Joints], axis: int, base: FloatArray, first: int) -> JointsAlong:
-    """The joints of glyphs along an axis, all at once; ``first`` is the number of the first glyph."""
     axes = glyphs[0].masters.axes
     ticks = [glyph.masters.ticks(axis) for glyph in glyphs]
     ends = [glyph.along(axis, base, values) for glyph, values in zip(glyphs, ticks, strict=True)]
@@ -240,7 +231,7 @@ def joints_along(glyphs: Sequence[Joints], axis: int, base: FloatArray, first: i
     at_masters: list[FloatArray] = []
     between = np.empty((len(row), 2))
     grid = grid_of(axes[axis])
-    largest = np.zeros(len(grid))
+    largest: list[FloatArray] = []
     for g, (glyph, values, at_ticks) in enumerate(zip(glyphs, ticks, ends, strict=True)):
         on = masters_on(glyph.masters, axis, base, values)
         at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
@@ -248,18 +239,18 @@ def joints_along(glyphs: Sequence[Joints], axis: int, base: FloatArray, first: i
         k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
         way = ((grid - values[k]) / (values[k + 1] - values[k]))[:, None, None, None, None]
         on_grid = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
-        largest = np.maximum(largest, np.nan_to_num(on_grid).max(axis=1, initial=0.0))
+        largest.append(np.nan_to_num(on_grid).max(axis=1, initial=0.0))
     made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
     locations = np.tile([of_font.user(x) for of_font, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
     locations[:, axis] = [user(x) for x in at.tolist()]
     contours, segments = np.concatenate([glyph.places for glyph in glyphs]).T
     rows = Measured(
-        first + owners, contours, segments, np.full(len(row), KINK),
+        owners, contours, segments, np.full(len(row), KINK),
         np.column_stack([np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0)]),
         start[row, 0, 0] + turn_ways[row, None] * (end - start)[row, 0, 0], locations,
         np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
     )  # fmt: skip
-    return JointsAlong(rows, at_masters, jumps[jump_row], np.array([user(x) for x in jumps_at.tolist()]), largest)
+    return rows, at_masters, jumps[jump_row], np.array([user(x) for x in jumps_at.tolist()]), largest
 
 
 def _around(masters: FloatArray, at: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import FloatArray, IntArray, counted
 from .finding import Measured
-from .joints_along import Joints, JointsAlong, grid_of, joint_controls, joints_along, turns_of
+from .joints_along import Joints, grid_of, joint_controls, joints_along, turns_of
 
 AT_ONCE = 64
 """Glyphs that are measured in one pass."""
@@ -288,16 +288,19 @@ def kinks_along(
         glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
         location: user-space values of the other axes. at_once: number of glyphs that are measured in one pass.
     """
-    parts: list[list[JointsAlong]] = [[] for _ in chosen]
-    names: list[tuple[str, int]] = []
+    parts: list[list[AxisKinks]] = [[] for _ in chosen]
     each = iter(glyphs)
     while batch := list(islice(each, at_once)):
         axes, base = batch[0].axes, batch[0].normalised(location)
         joints = [Joints(item, corner_angle) for item in batch]
+        names = [(item.name, item.gid) for item in batch]
         for k, part in zip(chosen, parts, strict=True):
-            part.append(joints_along(joints, k, base, len(names)))
-        names += [(item.name, item.gid) for item in batch]
-    return [_gathered(part, axes, k, names) for k, part in zip(chosen, parts, strict=True)]
+            part.append(_sorted(axes, k, names, *joints_along(joints, k, base)))
+    nothing = Measured.joined((), len(axes)), [], np.zeros(0), np.zeros(0), []
+    return [
+        AxisKinks.joined(part) if part else _sorted(axes, k, [], *nothing)
+        for k, part in zip(chosen, parts, strict=True)
+    ]
 
 
 def tags_of(source: Source, axis: str | None = None) -> list[str]:
@@ -323,18 +326,6 @@ def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
     controls = joint_controls(masters.contours[kink.contour])[:, kink.joint]
     turns: FloatArray = np.abs(turns_of(np.tensordot(masters.weights_at(at), controls, axes=1)))
     return turns
-
-
-def _gathered(
-    parts: Sequence[JointsAlong], axes: tuple[DesignAxis, ...], axis: int, glyphs: Sequence[tuple[str, int]]
-) -> AxisKinks:
-    """All batches along an axis, the largest turn first."""
-    rows = Measured.joined([part.rows for part in parts], len(axes))
-    jumps, jumps_at = (
-        np.concatenate([[], *each]) for each in zip(*((p.jumps, p.jumps_at) for p in parts), strict=True)
-    )
-    at_masters = [item for part in parts for item in part.at_masters]
-    return _sorted(axes, axis, glyphs, rows, at_masters, jumps, jumps_at, [part.largest for part in parts])
 
 
 def _sorted(
