@@ -296,9 +296,9 @@ def kinks_along(
         names = [(item.name, item.gid) for item in batch]
         for k, part in zip(chosen, parts, strict=True):
             part.append(_sorted(axes, k, names, *joints_along(joints, k, base)))
-    nothing = Measured.joined((), len(axes)), [], np.zeros(0), np.zeros(0), []
+    empty: FloatArray = np.zeros(0)
     return [
-        AxisKinks.joined(part) if part else _sorted(axes, k, [], *nothing)
+        AxisKinks.joined(part) if part else _sorted(axes, k, [], Measured.joined((), len(axes)), [], empty, empty, [])
         for k, part in zip(chosen, parts, strict=True)
     ]
 
