@@ -13,7 +13,7 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import FloatArray
-from .between_ticks import LEAST
+from .joints_along import LEAST
 from .kinks import AxisKinks, Kink, kinks_along
 
 

@@ -2,8 +2,7 @@
 
 A joint that is smooth in every master need not be so between them: the tangents on its two sides are mixed, not their
 directions. Every joint is a row of findings at its worst place; :func:`glyphspline.kinks` shows all rows, and
-:func:`.on_axes.on_axes` takes those that count. An axis is measured from tick to tick; :mod:`.between_ticks` has the
-formulas.
+:func:`.on_axes.on_axes` takes those that count. Joints are measured by :mod:`.joints_along`.
 """
 
 from __future__ import annotations
@@ -17,15 +16,11 @@ from typing import Protocol, overload
 import numpy as np
 
 from ..errors import GlyphsplineError, is_positive, require
-from ..outlines.masters import DesignAxis, MasterContour, Masters
+from ..outlines.masters import DesignAxis, Masters
 from ..outlines.sampling_limits import CORNER_ANGLE
-from ..types import BoolArray, FloatArray, IntArray, counted
-from .between_ticks import largest_jumps, largest_turns, turns_of
+from ..types import FloatArray, IntArray, counted
 from .finding import Measured
-from .kinds import KINK
-
-PROFILE = 96
-"""Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
+from .joints_along import Joints, grid_of, joint_controls, joints_along, turns_of
 
 AT_ONCE = 64
 """Glyphs that are measured in one pass."""
@@ -176,10 +171,11 @@ class AxisKinks(Sequence[Kink]):
         glyph, contour, joint, _, (_, turn, made, _), (x, y), location, (low, high) = (
             column[index].tolist() for column in self.rows
         )
+        name, gid = self.glyphs[glyph]
         at = dict(zip([axis.tag for axis in self.axes], location, strict=True))
         at_masters = [(self.axis.user(value), turn) for value, turn in self.at_masters[index].T.tolist()]
         return Kink(
-            *self.glyphs[glyph], contour, joint, (x, y), self.axis.tag, turn, at, (low, high), tuple(at_masters), made,
+            name, gid, contour, joint, (x, y), self.axis.tag, turn, at, (low, high), tuple(at_masters), made,
             float(self.jumps[index]), at | {self.axis.tag: float(self.jumps_at[index])},
         )  # fmt: skip
 
@@ -292,16 +288,19 @@ def kinks_along(
         glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
         location: user-space values of the other axes. at_once: number of glyphs that are measured in one pass.
     """
-    parts: list[list[_Batch]] = [[] for _ in chosen]
-    names: list[tuple[str, int]] = []
+    parts: list[list[AxisKinks]] = [[] for _ in chosen]
     each = iter(glyphs)
     while batch := list(islice(each, at_once)):
         axes, base = batch[0].axes, batch[0].normalised(location)
-        joints = [_Joints(item, corner_angle) for item in batch]
+        joints = [Joints(item, corner_angle) for item in batch]
+        names = [(item.name, item.gid) for item in batch]
         for k, part in zip(chosen, parts, strict=True):
-            part.append(_measured(joints, k, base, len(names)))
-        names += [(item.name, item.gid) for item in batch]
-    return [_gathered(part, axes, k, names) for k, part in zip(chosen, parts, strict=True)]
+            part.append(_sorted(axes, k, names, *joints_along(joints, k, base)))
+    empty: FloatArray = np.zeros(0)
+    return [
+        AxisKinks.joined(part) if part else _sorted(axes, k, [], Measured.joined((), len(axes)), [], empty, empty, [])
+        for k, part in zip(chosen, parts, strict=True)
+    ]
 
 
 def tags_of(source: Source, axis: str | None = None) -> list[str]:
@@ -327,145 +326,6 @@ def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
     controls = joint_controls(masters.contours[kink.contour])[:, kink.joint]
     turns: FloatArray = np.abs(turns_of(np.tensordot(masters.weights_at(at), controls, axes=1)))
     return turns
-
-
-def joint_controls(contour: MasterContour) -> FloatArray:
-    """(K, m, 2, 4, 2) the control points from each joint on: of the segment that arrives, reversed, and of the next."""
-    cubics = contour.cubics()
-    return np.stack([np.roll(cubics, 1, axis=1)[:, :, ::-1], cubics], axis=2)
-
-
-class _Joints:
-    """The smooth joints of a glyph.
-
-    Attributes:
-        masters: of the glyph. places: (J, 2) contour and segment of each joint.
-        controls: (K, J, 2, 4, 2) in each master; see :func:`joint_controls`.
-    """
-
-    def __init__(self, masters: Masters, corner_angle: float) -> None:
-        self.masters = masters
-        controls, places = [np.zeros((len(masters), 0, 2, 4, 2))], [np.zeros((0, 2), dtype=np.int64)]
-        for number, contour in enumerate(masters.contours):
-            controls.append(joint_controls(contour))
-            places.append(np.stack([np.full(len(contour), number), np.arange(len(contour))], axis=1))
-        every = np.concatenate(controls, axis=1)
-        kept = (np.abs(turns_of(every)) < corner_angle).all(axis=0)  # false where there is no direction
-        self.controls, self.places = every[:, kept], np.concatenate(places)[kept]
-
-    def along(self, axis: int, base: FloatArray, values: FloatArray) -> FloatArray:
-        """(T, J, 2, 4, 2) the control points at T values of an axis."""
-        at = np.tile(base, (len(values), 1))
-        at[:, axis] = values
-        return np.tensordot(self.masters.weights_at(at), self.controls, axes=1)
-
-
-def grid_of(axis: DesignAxis) -> FloatArray:
-    """Normalised values of an axis, even in user space, with those where its mapping bends."""
-    users = [*np.linspace(axis.minimum, axis.maximum, PROFILE + 1).tolist(), axis.default]
-    low, high = axis.normalised(axis.minimum), axis.normalised(axis.maximum)
-    bends = [after for _, after in axis.mapping if low <= after <= high]
-    return np.unique([*(axis.normalised(value) for value in users), *bends])
-
-
-def masters_on(masters: Masters, axis: int, base: FloatArray, ticks: FloatArray) -> BoolArray:
-    """Which ticks are at a master: at the default, or at the peak of a region that acts there."""
-    at = np.tile(base, (len(ticks), 1))
-    at[:, axis] = ticks
-    acts = masters.scalars(at)[:, 1:] > 0
-    peaks = masters.regions[:, axis, 1]
-    found: BoolArray = (acts & (peaks != 0) & (ticks[:, None] == peaks)).any(axis=1) | (ticks == 0)
-    return found
-
-
-@dataclass(frozen=True, eq=False)
-class _Batch:
-    """The joints of some glyphs along an axis; see :class:`AxisKinks`.
-
-    Attributes:
-        largest: at each value of :func:`grid_of` the axis, the largest turn of any joint.
-    """
-
-    rows: Measured
-    at_masters: list[FloatArray]
-    jumps: FloatArray
-    jumps_at: FloatArray
-    largest: FloatArray
-
-
-def _measured(glyphs: Sequence[_Joints], axis: int, base: FloatArray, first: int) -> _Batch:
-    """The joints of glyphs along an axis, all at once; ``first`` is the number of the first glyph."""
-    axes = glyphs[0].masters.axes
-    ticks = [glyph.masters.ticks(axis) for glyph in glyphs]
-    ends = [glyph.along(axis, base, values) for glyph, values in zip(glyphs, ticks, strict=True)]
-    # A row for each joint and each interval of its glyph; those of a joint are neighbours.
-    start = np.concatenate([np.swapaxes(item[:-1], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
-    end = np.concatenate([np.swapaxes(item[1:], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
-    joints = [len(glyph.places) for glyph in glyphs]
-    intervals = np.repeat([len(values) - 1 for values in ticks], joints)  # of each joint
-    low = np.concatenate([np.tile(values[:-1], count) for values, count in zip(ticks, joints, strict=True)])
-    high = np.concatenate([np.tile(values[1:], count) for values, count in zip(ticks, joints, strict=True)])
-    em = np.repeat(np.repeat([glyph.masters.metrics.units_per_em for glyph in glyphs], joints), intervals)
-    turns, turn_ways = largest_turns(start, end)
-    jumps, jump_ways = largest_jumps(start, end, em)
-    row, jump_row = _first_largest(turns, intervals), _first_largest(jumps, intervals)
-    at, jumps_at = (
-        low[row] + turn_ways[row] * (high - low)[row],
-        low[jump_row] + jump_ways[jump_row] * (high - low)[jump_row],
-    )
-    owners, user = np.repeat(np.arange(len(glyphs)), joints), axes[axis].user
-    at_masters: list[FloatArray] = []
-    between = np.empty((len(row), 2))
-    grid = grid_of(axes[axis])
-    largest = np.zeros(len(grid))
-    for g, (glyph, values, at_ticks) in enumerate(zip(glyphs, ticks, ends, strict=True)):
-        on = masters_on(glyph.masters, axis, base, values)
-        at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
-        between[owners == g] = _around(values[on], at[owners == g])
-        k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
-        way = ((grid - values[k]) / (values[k + 1] - values[k]))[:, None, None, None, None]
-        on_grid = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
-        largest = np.maximum(largest, np.nan_to_num(on_grid).max(axis=1, initial=0.0))
-    made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
-    locations = np.tile([of_font.user(x) for of_font, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
-    locations[:, axis] = [user(x) for x in at.tolist()]
-    contours, segments = np.concatenate([glyph.places for glyph in glyphs]).T
-    rows = Measured(
-        first + owners, contours, segments, np.full(len(row), KINK),
-        np.column_stack([np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0)]),
-        start[row, 0, 0] + turn_ways[row, None] * (end - start)[row, 0, 0], locations,
-        np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
-    )  # fmt: skip
-    return _Batch(rows, at_masters, jumps[jump_row], np.array([user(x) for x in jumps_at.tolist()]), largest)
-
-
-def _around(masters: FloatArray, at: FloatArray) -> FloatArray:
-    """(n, 2) the masters before and behind (n,) places; a place itself where there is none."""
-    bounds = np.concatenate([[-np.inf], masters, [np.inf]])
-    found = np.column_stack([bounds[np.searchsorted(bounds, at, "right") - 1], bounds[np.searchsorted(bounds, at)]])
-    return np.where(np.isfinite(found), found, at[:, None])
-
-
-def _first_largest(values: FloatArray, counts: IntArray) -> IntArray:
-    """Index of the first largest value of each group of neighbours."""
-    if not len(counts):
-        return counts
-    starts = np.cumsum(counts) - counts
-    owners = np.repeat(np.arange(len(counts)), counts)
-    hits = np.flatnonzero(values == np.maximum.reduceat(values, starts)[owners])
-    return hits[np.searchsorted(owners[hits], np.arange(len(counts)))]
-
-
-def _gathered(
-    parts: Sequence[_Batch], axes: tuple[DesignAxis, ...], axis: int, glyphs: Sequence[tuple[str, int]]
-) -> AxisKinks:
-    """All batches along an axis, the largest turn first."""
-    rows = Measured.joined([part.rows for part in parts], len(axes))
-    jumps, jumps_at = (
-        np.concatenate([[], *each]) for each in zip(*((p.jumps, p.jumps_at) for p in parts), strict=True)
-    )
-    at_masters = [item for part in parts for item in part.at_masters]
-    return _sorted(axes, axis, glyphs, rows, at_masters, jumps, jumps_at, [part.largest for part in parts])
 
 
 def _sorted(

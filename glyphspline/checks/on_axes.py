@@ -13,11 +13,11 @@ import numpy as np
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .between_ticks import turns_of
 from .finding import Measured
 from .joints import rounding_turn
+from .joints_along import joint_controls, turns_of
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
-from .kinks import AxisKinks, joint_controls, kinks_along
+from .kinks import AxisKinks, kinks_along
 from .measured import measured
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
