@@ -46,10 +46,10 @@ class Choice:
 
     preset: Preset | None = option(
         None,
-        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with margin 0. "
-        "Options given beside it win.",
-        panel=CORNERS,
-    )
+        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with "
+        "margin 0. Options given beside it win.",
+        CORNERS,
+    )  # fmt: skip
 
 
 def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
