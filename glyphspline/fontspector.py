@@ -77,7 +77,7 @@ def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     command: Any = get_command(commands.app)
     check: Any = commands.check
     given = check.values(command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]))
-    asked = replace(asked_of(given["sought"], given["reported"]), kept="INFO")
+    asked = replace(asked_of(given["options"], given["report"]), kept="INFO")
     faces = list(check_fonts([font], asked, given["subset"], given["instance"], given["run"], alone=False))
     for face in faces:
         if face.error is not None:

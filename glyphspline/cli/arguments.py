@@ -142,7 +142,7 @@ FIRST = Instance(0)
 
 
 @dataclass(frozen=True)
-class Run:
+class RunOptions:
     """How a command runs, and what it prints."""
 
     jobs: int | None = option(
@@ -178,7 +178,7 @@ class SingleFonts:
 
 
 @dataclass(frozen=True)
-class Lines:
+class TextOptions:
     """How a text is set on lines, and where it comes from."""
 
     text_file: Path | None = option(None, "Set the text of a UTF-8 file instead.", TEXT, "FILE")
@@ -199,7 +199,7 @@ class Lines:
 
 
 @dataclass(frozen=True)
-class OnPath:
+class PathOptions:
     """The path that a text follows."""
 
     path: str | None = option(
@@ -214,7 +214,7 @@ class OnPath:
 
 
 @dataclass(frozen=True)
-class Drawings:
+class DrawingOptions:
     """How drawings of a text are written."""
 
     format_name: str | None = option(
@@ -225,7 +225,7 @@ class Drawings:
 
 
 @dataclass(frozen=True)
-class Sought:
+class CheckOptions:
     """What ``check`` looks for."""
 
     kinds: str | None = option(None, f"Look only for {', '.join(kind.name for kind in KINDS)}.", FOUND, "KIND,…")
@@ -243,7 +243,7 @@ class Sought:
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportOptions:
     """What ``check`` makes of its findings."""
 
     loglevel: Level | None = option(

@@ -18,12 +18,12 @@ STDOUT = Path("-")
 
 
 def run(
-    given: Sequence[str],
-    sought: opt.Sought,
-    reported: opt.Reported,
+    inputs: Sequence[str],
+    options: opt.CheckOptions,
+    report: opt.ReportOptions,
     subset: opt.Subset,
     instance: opt.Instance,
-    run: opt.Run,
+    run: opt.RunOptions,
 ) -> list[Face]:
     """The command with its arguments: check write what is asked for, and say the rest.
 
@@ -32,40 +32,40 @@ def run(
     """
     from ..batch import find_fonts
 
-    piped = [path for path in (reported.csv, reported.ghmarkdown, reported.html) if path == STDOUT]
+    piped = [path for path in (report.csv, report.ghmarkdown, report.html) if path == STDOUT]
     if len(piped) + run.as_json > 1:
         stop("only one of --json, --csv - and the like goes to standard output")
-    require_figure(reported.plot)
-    for path in (reported.csv, reported.ghmarkdown, reported.html, reported.plot, reported.write_baseline):
+    require_figure(report.plot)
+    for path in (report.csv, report.ghmarkdown, report.html, report.plot, report.write_baseline):
         require_folder(path)
-    asked = asked_of(sought, reported, run.as_json)
-    fonts = find_fonts(given)
+    asked = asked_of(options, report, run.as_json)
+    fonts = find_fonts(inputs)
     if not fonts:
         stop("no fonts found")
-    alone = len(given) == 1 and fonts == [Path(given[0])]
-    if reported.plot is not None and not alone:
+    alone = len(inputs) == 1 and fonts == [Path(inputs[0])]
+    if report.plot is not None and not alone:
         stop("--plot takes one font")
     faces = list(check_fonts(fonts, asked, subset, instance, run, alone=alone))
-    if asked.written is not None and reported.write_baseline is not None:
-        asked.written.write(reported.write_baseline)
-    level: Level = reported.loglevel or "WARN"
+    if asked.written is not None and report.write_baseline is not None:
+        asked.written.write(report.write_baseline)
+    level: Level = report.loglevel or "WARN"
     found = worst_first(faces)
     shown = [pair for pair in found if level_number(pair[1].level) >= level_number(level)]
-    if reported.csv is not None:
-        put(reported.csv, as_csv(found))
-    if reported.ghmarkdown is not None:
-        put(reported.ghmarkdown, as_markdown(faces, shown, level))
-    if reported.html is not None:
+    if report.csv is not None:
+        put(report.csv, as_csv(found))
+    if report.ghmarkdown is not None:
+        put(report.ghmarkdown, as_markdown(faces, shown, level))
+    if report.html is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
         drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(reported.html, findings_page(drawn))
+        put(report.html, findings_page(drawn))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
-        put(STDOUT, table(shown, reported.rows, len(faces) > 1))
+        put(STDOUT, table(shown, report.rows, len(faces) > 1))
     if not run.quiet:
-        for line in sentences(faces, len(shown), reported.rows, level):
+        for line in sentences(faces, len(shown), report.rows, level):
             say(line)
     return faces
 

@@ -134,23 +134,23 @@ def require_figure(path: Path | None) -> None:
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
 
 
-def asked_of(sought: opt.Sought, reported: opt.Reported, as_json: bool = False) -> Asked:
+def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:
     """What is looked for, from the command's arguments.
 
     Raises:
         GlyphsplineError: an option or the baseline is of no use.
     """
-    every = as_json or reported.csv or reported.html
+    every = as_json or report.csv or report.html
     return Asked(
-        thresholds=thresholds_of(sought.thresholds, sought.corner_angle),
-        kinds=kinds_of(sought.kinds),
-        kept=reported.loglevel or ("INFO" if every else "WARN"),
-        axis=sought.axis,
-        steps=sought.steps,
-        baseline=None if reported.baseline is None else Baseline.read(reported.baseline),
-        written=None if reported.write_baseline is None else Baseline(),
-        plot=reported.plot,
-        drawn=reported.html is not None,
+        thresholds=thresholds_of(options.thresholds, options.corner_angle),
+        kinds=kinds_of(options.kinds),
+        kept=report.loglevel or ("INFO" if every else "WARN"),
+        axis=options.axis,
+        steps=options.steps,
+        baseline=None if report.baseline is None else Baseline.read(report.baseline),
+        written=None if report.write_baseline is None else Baseline(),
+        plot=report.plot,
+        drawn=report.html is not None,
     )
 
 
@@ -160,7 +160,7 @@ def reaches(face: Face, level: Level) -> bool:
 
 
 def check_fonts(
-    fonts: Sequence[Path], asked: Asked, subset: opt.Subset, instance: opt.Instance, run: opt.Run, *, alone: bool
+    fonts: Sequence[Path], asked: Asked, subset: opt.Subset, instance: opt.Instance, run: opt.RunOptions, *, alone: bool
 ) -> Iterator[Face]:
     """Check the faces of fonts, one after the other.
 
