@@ -47,15 +47,15 @@ class About:
     """What is known of an option besides its type and default.
 
     Attributes:
-        help: a sentence. flags: names on the command line; without any, the field's with hyphens.
-        panel: heading of its group. metavar: stands for the value. rule: what a value has to be.
+        help: a sentence. panel: heading of its group. metavar: stands for the value.
+        flags: names on the command line; without any, the field's with hyphens. rule: what a value has to be.
         words: values with a name on the command line. more: further arguments of ``typer.Option``.
     """
 
     help: str
-    flags: tuple[str, ...] = ()
     panel: str | None = None
     metavar: str | None = None
+    flags: tuple[str, ...] = ()
     rule: Rule | None = None
     words: Mapping[str, Any] = field(default_factory=dict)
     more: Mapping[str, Any] = field(default_factory=dict)
@@ -74,9 +74,11 @@ class Described(NamedTuple):
         return self.about.flags or (f"--{self.name.replace('_', '-')}",)
 
 
-def option(default: Any, help: str, *flags: str, **about: Any) -> Any:
-    """A dataclass field that is an option; ``about`` has further attributes of :class:`About`."""
-    return field(default=default, metadata={"about": About(help, flags, **about)})
+def option(
+    default: Any, help: str, panel: str | None = None, metavar: str | None = None, flags: str = "", **about: Any
+) -> Any:
+    """A dataclass field that is an option, with the attributes of :class:`About`; flags are between spaces."""
+    return field(default=default, metadata={"about": About(help, panel, metavar, tuple(flags.split()), **about)})
 
 
 def options_of(value: Any) -> tuple[Described, ...]:

@@ -78,7 +78,7 @@ def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     command: Any = get_command(commands.app)
     check: Any = commands.check
     given = check.values(command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]))
-    asked = replace(asked_of(given["sought"], given["reported"]), kept="INFO")
+    asked = replace(asked_of(given["options"], given["report"]), kept="INFO")
     chosen, face = given["subset"].of if given["subset"].is_given else None, given["instance"].face_index
     faces = list(check_fonts([font], asked, chosen=chosen, face_index=face, location=given["instance"].place, jobs=0))
     for face in faces:

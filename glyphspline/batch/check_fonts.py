@@ -188,8 +188,8 @@ def check_face(
             face.axes = [known + own for known, own in zip(face.axes, row.axes, strict=True)]
         face.keep(row.findings, asked)
     if alone and face.failed and not face.glyphs:
-        glyph, error = face.failed[0]
-        raise GlyphsplineError(f"{name}, glyph {glyph!r}: {error}")
+        glyph, why = face.failed[0]
+        raise GlyphsplineError(f"{name}, glyph {glyph!r}: {why}")
     face.findings.sort(key=severity)
     if kinks:
         found = tuple(AxisKinks.joined(parts) for parts in zip(*kinks, strict=True))

@@ -102,23 +102,20 @@ class RunSpec:
     formats: tuple[str, ...] = option(
         ("svg", "curvature", GALLERY),
         f"Write these formats: {', '.join(OURS)}, {GALLERY}, {', '.join(WHOLE)}, and those of plug-ins.",
-        "--format",
-        panel=WRITTEN,
-        metavar="NAME,…",
-    )
+        WRITTEN, "NAME,…", flags="--format",
+    )  # fmt: skip
     settings: Settings = field(default_factory=Settings)
     names: Names = option(
-        "glyph",
-        "Name files after the glyph's name, its code point (uni9F8D), its index, or its character.",
-        panel=WRITTEN,
+        "glyph", "Name files after the glyph's name, its code point (uni9F8D), its index, or its character.", WRITTEN
     )
     limits: Limits = field(default_factory=Limits)
     maps: Maps = field(default_factory=Maps)
     masters: bool = option(
         False,
-        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf) or designspace (ufo).",
-        panel=WRITTEN,
-    )
+        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf) or "
+        "designspace (ufo).",
+        WRITTEN,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):

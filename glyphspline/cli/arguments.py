@@ -25,6 +25,8 @@ FOUND = "What is found"
 REPORTED = "What is reported"
 """Headings of groups of options."""
 
+NATURAL, PLACE = {"parser": natural}, {"parser": place}
+
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
 FONTS_HELP = (
     "Fonts (TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs, SVG; - is standard input), folders, globs, URLs, or "
@@ -76,12 +78,12 @@ Out = Annotated[Path, file_option("--out", "-o", metavar="DIR", help="Write to t
 class Subset:
     """The glyphs that are asked for, as in the fontTools subsetter."""
 
-    text: str | None = option(None, "Take the glyphs of these characters.", panel=GLYPHS)
-    text_file: Path | None = option(None, "Take the glyphs of a UTF-8 file's characters.", panel=GLYPHS)
-    unicodes: str | None = option(None, "Take these code points: U+4E00-4E10,9F8D or *.", panel=GLYPHS)
-    glyphs: str | None = option(None, "Take the glyphs of these names, between commas, or *.", panel=GLYPHS)
-    gids: str | None = option(None, "Take these glyph indices: 5,10-20 or *.", panel=GLYPHS)
-    all_glyphs: bool = option(False, "Take every glyph of the font.", "--all", panel=GLYPHS)
+    text: str | None = option(None, "Take the glyphs of these characters.", GLYPHS)
+    text_file: Path | None = option(None, "Take the glyphs of a UTF-8 file's characters.", GLYPHS)
+    unicodes: str | None = option(None, "Take these code points: U+4E00-4E10,9F8D or *.", GLYPHS)
+    glyphs: str | None = option(None, "Take the glyphs of these names, between commas, or *.", GLYPHS)
+    gids: str | None = option(None, "Take these glyph indices: 5,10-20 or *.", GLYPHS)
+    all_glyphs: bool = option(False, "Take every glyph of the font.", GLYPHS, flags="--all")
 
     @property
     def is_given(self) -> bool:
@@ -111,14 +113,9 @@ class Subset:
 class Instance:
     """A font of a file, and where in its design space."""
 
-    face_index: int | None = option(
-        None, "Read only this font of a collection.", panel=GLYPHS, metavar="N", more={"parser": natural}
-    )
+    face_index: int | None = option(None, "Read only this font of a collection.", GLYPHS, "N", more=NATURAL)
     location: str | None = option(
-        None,
-        "Set the place of a variable font: wght=700,wdth=80, or a name: Bold.",
-        panel=GLYPHS,
-        metavar="TAG=VALUE,…",
+        None, "Set the place of a variable font: wght=700,wdth=80, or a name: Bold.", GLYPHS, "TAG=VALUE,…"
     )
 
     @property
@@ -145,27 +142,25 @@ FIRST = Instance(0)
 
 
 @dataclass(frozen=True)
-class Run:
+class RunOptions:
     """How a command runs, and what it prints."""
 
     jobs: int | None = option(
-        None, "Start this number of worker processes. Without it, one a core.", "--jobs", "-j",
-        panel=RUN, metavar="N", more={"parser": natural},
+        None, "Start this number of worker processes. Without it, one a core.",
+        RUN, "N", flags="--jobs -j", more=NATURAL,
     )  # fmt: skip
-    scheduler: str | None = option(None, "Work on this dask.distributed cluster instead.", panel=RUN, metavar="TCP://…")
-    resume: bool = option(True, "Go on with what is in --out, or do it all anew.", "--resume/--restart", panel=RUN)
+    scheduler: str | None = option(None, "Work on this dask.distributed cluster instead.", RUN, "TCP://…")
+    resume: bool = option(True, "Go on with what is in --out, or do it all anew.", RUN, flags="--resume/--restart")
     config: Path | None = option(
         None,
-        "Read options by name from a TOML file: tolerance = 2. The table tool.glyphspline of ./pyproject.toml is read "
-        "before.",
-        panel=RUN,
-        metavar="FILE",
-        more={"callback": configured, "is_eager": True},
-    )
-    quiet: bool = option(False, "Print nothing but errors.", "--quiet", "-q", panel=RUN)
-    as_json: bool = option(False, "Print the result as JSON on standard output.", "--json", panel=RUN)
+        "Read options by name from a TOML file: tolerance = 2. The table tool.glyphspline of ./pyproject.toml "
+        "is read before.",
+        RUN, "FILE", more={"callback": configured, "is_eager": True},
+    )  # fmt: skip
+    quiet: bool = option(False, "Print nothing but errors.", RUN, flags="--quiet -q")
+    as_json: bool = option(False, "Print the result as JSON on standard output.", RUN, flags="--json")
     json_log: bool = option(
-        False, "Print progress and summary as JSON lines on standard error.", "--json-log", panel=RUN
+        False, "Print progress and summary as JSON lines on standard error.", RUN, flags="--json-log"
     )
 
 
@@ -174,128 +169,101 @@ class SingleFonts:
     """Single fonts that become masters beside the first one, and their axis."""
 
     others: list[Path] | None = option(
-        None,
-        "Add the glyphs of this single font as masters beside FONT's, on --axis. Repeatable.",
-        "--from",
-        panel=WRITTEN,
-        metavar="FONT",
-    )
-    axis: str | None = option(
-        None, "Set the axis of such fonts, as wght=300:700, a value for each in turn.", panel=WRITTEN,
-        metavar="TAG=A:B",
+        None, "Add the glyphs of this single font as masters beside FONT's, on --axis. Repeatable.",
+        WRITTEN, "FONT", flags="--from",
     )  # fmt: skip
+    axis: str | None = option(
+        None, "Set the axis of such fonts, as wght=300:700, a value for each in turn.", WRITTEN, "TAG=A:B"
+    )
 
 
 @dataclass(frozen=True)
-class Lines:
+class TextOptions:
     """How a text is set on lines, and where it comes from."""
 
-    text_file: Path | None = option(None, "Set the text of a UTF-8 file instead.", panel=TEXT, metavar="FILE")
+    text_file: Path | None = option(None, "Set the text of a UTF-8 file instead.", TEXT, "FILE")
     fallbacks: list[Path] | None = option(
-        None, "Use this font for characters that FONT lacks. Repeatable.", "--fallback-font", panel=TEXT,
-        metavar="FONT",
-    )  # fmt: skip
-    features: str = option("", "Switch OpenType features: liga,-kern,ss01=2.", panel=TEXT, metavar="TAG,…")
-    script: str | None = option(None, "Set the script of all text, by ISO 15924: Arab.", panel=TEXT, metavar="CODE")
-    language: str | None = option(None, "Set the language, by BCP 47: de, zh-Hant.", panel=TEXT, metavar="TAG")
+        None, "Use this font for characters that FONT lacks. Repeatable.", TEXT, "FONT", flags="--fallback-font"
+    )
+    features: str = option("", "Switch OpenType features: liga,-kern,ss01=2.", TEXT, "TAG,…")
+    script: str | None = option(None, "Set the script of all text, by ISO 15924: Arab.", TEXT, "CODE")
+    language: str | None = option(None, "Set the language, by BCP 47: de, zh-Hant.", TEXT, "TAG")
     direction: Direction | None = option(
-        None, "Set the direction; ttb and btt are columns. Without it, that of the first letter.", panel=TEXT
+        None, "Set the direction; ttb and btt are columns. Without it, that of the first letter.", TEXT
     )
     width: str | None = option(
-        None, "Break lines at this width: font units, 12em, or 80mm if --size is given.", panel=TEXT, metavar="LENGTH"
+        None, "Break lines at this width: font units, 12em, or 80mm if --size is given.", TEXT, "LENGTH"
     )
-    align: Align = option("start", "Align lines, or the text on its path.", panel=TEXT)
-    line_height: str | None = option(
-        None, "Set the distance of baselines. Without it, the font's.", panel=TEXT, metavar="LENGTH"
-    )
+    align: Align = option("start", "Align lines, or the text on its path.", TEXT)
+    line_height: str | None = option(None, "Set the distance of baselines. Without it, the font's.", TEXT, "LENGTH")
 
 
 @dataclass(frozen=True)
-class OnPath:
+class PathOptions:
     """The path that a text follows."""
 
     path: str | None = option(
         None,
-        "Set the text along this path of a drawing, whose user unit is a pixel if --size is given, or else a font "
-        "unit.",
-        panel=TEXT,
-        metavar="SVG#ID",
-    )
-    bend: bool = option(False, "Deform letters along the path too, within the tolerance.", panel=TEXT)
-    offset: str | None = option(None, "Begin the text this far along the path.", panel=TEXT, metavar="LENGTH")
-    side: Side = option("left", "Choose the side of the path; on the right, the text runs from its end.", panel=TEXT)
+        "Set the text along this path of a drawing, whose user unit is a pixel if --size is given, or else a "
+        "font unit.",
+        TEXT, "SVG#ID",
+    )  # fmt: skip
+    bend: bool = option(False, "Deform letters along the path too, within the tolerance.", TEXT)
+    offset: str | None = option(None, "Begin the text this far along the path.", TEXT, "LENGTH")
+    side: Side = option("left", "Choose the side of the path; on the right, the text runs from its end.", TEXT)
 
 
 @dataclass(frozen=True)
-class Drawings:
+class DrawingOptions:
     """How drawings of a text are written."""
 
     format_name: str | None = option(
-        None, "Write this format (curvature, source, …) instead of that of --out's suffix.", "--format",
-        panel=WRITTEN, metavar="NAME",
+        None, "Write this format (curvature, source, …) instead of that of --out's suffix.",
+        WRITTEN, "NAME", flags="--format",
     )  # fmt: skip
-    each_glyph: bool = option(
-        False, "Write each glyph in SVG as an element with an id, not all as one path.", panel=WRITTEN
-    )
+    each_glyph: bool = option(False, "Write each glyph in SVG as an element with an id, not all as one path.", WRITTEN)
 
 
 @dataclass(frozen=True)
-class Sought:
+class CheckOptions:
     """What ``check`` looks for."""
 
-    kinds: str | None = option(
-        None, f"Look only for {', '.join(kind.name for kind in KINDS)}.", panel=FOUND, metavar="KIND,…"
-    )
+    kinds: str | None = option(None, f"Look only for {', '.join(kind.name for kind in KINDS)}.", FOUND, "KIND,…")
     thresholds: str | None = option(
-        None,
-        "Set from which value on each kind counts, as kink=1,short=2: degrees, thousandths of an em, shares.",
-        panel=FOUND,
-        metavar="NAME=VALUE,…",
-        more={"callback": more_thresholds},
-    )
-    corner_angle: float | None = option(
-        None, "Count a joint as a corner from this turn on. Without it, 12.", panel=FOUND, metavar="DEGREES"
-    )
-    axis: str | None = option(None, "Look along this axis of a variable font only.", panel=FOUND, metavar="TAG")
-    steps: int | None = option(
-        None, "Look at this number of steps of each axis besides the masters.", panel=FOUND, metavar="N",
-        more={"parser": natural},
+        None, "Set from which value on each kind counts, as kink=1,short=2: degrees, thousandths of an em, shares.",
+        FOUND, "NAME=VALUE,…", more={"callback": more_thresholds},
     )  # fmt: skip
+    corner_angle: float | None = option(
+        None, "Count a joint as a corner from this turn on. Without it, 12.", FOUND, "DEGREES"
+    )
+    axis: str | None = option(None, "Look along this axis of a variable font only.", FOUND, "TAG")
+    steps: int | None = option(
+        None, "Look at this number of steps of each axis besides the masters.", FOUND, "N", more=NATURAL
+    )
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportOptions:
     """What ``check`` makes of its findings."""
 
     loglevel: Level | None = option(
         None, "Show findings from this level on. Without it, WARN in tables, INFO in JSON, CSV and HTML.",
-        "--loglevel", "-l", panel=REPORTED, more={"case_sensitive": False},
+        REPORTED, flags="--loglevel -l", more={"case_sensitive": False},
     )  # fmt: skip
     error_level: Level | None = option(
-        None, "Exit with status 1 if there are findings of this level or above.", "--error-level", "-e",
-        panel=REPORTED, more={"case_sensitive": False},
+        None, "Exit with status 1 if there are findings of this level or above.",
+        REPORTED, flags="--error-level -e", more={"case_sensitive": False},
     )  # fmt: skip
-    baseline: Path | None = option(
-        None, "Leave out the findings of this file that are no worse now.", panel=REPORTED, metavar="FILE"
-    )
+    baseline: Path | None = option(None, "Leave out the findings of this file that are no worse now.", REPORTED, "FILE")
     write_baseline: Path | None = option(
-        None, "Write all findings to this file, as known ones.", panel=REPORTED, metavar="FILE",
-        more={"parser": place},
-    )  # fmt: skip
-    rows: int = option(
-        20, "Print this number of lines of the table.", panel=REPORTED, metavar="N", more={"parser": natural}
+        None, "Write all findings to this file, as known ones.", REPORTED, "FILE", more=PLACE
     )
-    csv: Path | None = option(
-        None, "Write findings as CSV; - is standard output.", panel=REPORTED, metavar="FILE", more={"parser": place}
-    )
+    rows: int = option(20, "Print this number of lines of the table.", REPORTED, "N", more=NATURAL)
+    csv: Path | None = option(None, "Write findings as CSV; - is standard output.", REPORTED, "FILE", more=PLACE)
     ghmarkdown: Path | None = option(
-        None, "Write findings as Markdown for GitHub; - is standard output.", panel=REPORTED, metavar="FILE",
-        more={"parser": place},
-    )  # fmt: skip
-    html: Path | None = option(
-        None, "Write a page with a drawing of each finding.", panel=REPORTED, metavar="FILE", more={"parser": place}
+        None, "Write findings as Markdown for GitHub; - is standard output.", REPORTED, "FILE", more=PLACE
     )
+    html: Path | None = option(None, "Write a page with a drawing of each finding.", REPORTED, "FILE", more=PLACE)
     plot: Path | None = option(
-        None, "Draw the largest turn against the axis: SVG, PNG, PDF.", panel=REPORTED, metavar="FILE",
-        more={"parser": place},
-    )  # fmt: skip
+        None, "Draw the largest turn against the axis: SVG, PNG, PDF.", REPORTED, "FILE", more=PLACE
+    )

@@ -28,12 +28,12 @@ NAMES = [kind.name for kind in KINDS]
 
 
 def run(
-    given: Sequence[str],
-    sought: opt.Sought,
-    reported: opt.Reported,
+    inputs: Sequence[str],
+    options: opt.CheckOptions,
+    report: opt.ReportOptions,
     subset: opt.Subset,
     instance: opt.Instance,
-    run: opt.Run,
+    run: opt.RunOptions,
 ) -> list[Face]:
     """The command with its arguments: check write what is asked for, and say the rest.
 
@@ -42,18 +42,18 @@ def run(
     """
     from ..batch import find_fonts
 
-    piped = [path for path in (reported.csv, reported.ghmarkdown, reported.html) if path == STDOUT]
+    piped = [path for path in (report.csv, report.ghmarkdown, report.html) if path == STDOUT]
     if len(piped) + run.as_json > 1:
         stop("only one of --json, --csv - and the like goes to standard output")
-    require_figure(reported.plot)
-    for path in (reported.csv, reported.ghmarkdown, reported.html, reported.plot, reported.write_baseline):
+    require_figure(report.plot)
+    for path in (report.csv, report.ghmarkdown, report.html, report.plot, report.write_baseline):
         require_folder(path)
-    asked = asked_of(sought, reported, run.as_json)
-    fonts = find_fonts(given)
+    asked = asked_of(options, report, run.as_json)
+    fonts = find_fonts(inputs)
     if not fonts:
         stop("no fonts found")
-    alone = len(given) == 1 and fonts == [Path(given[0])]
-    if reported.plot is not None and not alone:
+    alone = len(inputs) == 1 and fonts == [Path(inputs[0])]
+    if report.plot is not None and not alone:
         stop("--plot takes one font")
     faces: list[Face] = []
     for face in check_fonts(
@@ -63,33 +63,33 @@ def run(
         faces.append(face)
         if face.remark is not None:
             say(face.remark)
-    if asked.written is not None and reported.write_baseline is not None:
-        asked.written.write(reported.write_baseline)
-    level: Level = reported.loglevel or "WARN"
+    if asked.written is not None and report.write_baseline is not None:
+        asked.written.write(report.write_baseline)
+    level: Level = report.loglevel or "WARN"
     found = worst_first(faces)
     shown = [pair for pair in found if LEVELS.index(pair[1].level) >= LEVELS.index(level)]
-    if reported.csv is not None:
-        put(reported.csv, as_csv(found))
-    if reported.ghmarkdown is not None:
-        put(reported.ghmarkdown, as_markdown(faces, shown, level))
-    if reported.html is not None:
+    if report.csv is not None:
+        put(report.csv, as_csv(found))
+    if report.ghmarkdown is not None:
+        put(report.ghmarkdown, as_markdown(faces, shown, level))
+    if report.html is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
         drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(reported.html, findings_page(drawn))
-    if reported.plot is not None and faces[0].kinks is not None:
+        put(report.html, findings_page(drawn))
+    if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source
         from ..writers.figures.turns import turns_figure
 
-        kind: Any = reported.plot.suffix[1:].lower()
+        kind: Any = report.plot.suffix[1:].lower()
         source = open_source(fonts[0], instance.face_index or 0, instance.place)
-        put(reported.plot, turns_figure(source, faces[0].kinks, kind))
+        put(report.plot, turns_figure(source, faces[0].kinks, kind))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
-        put(STDOUT, table(shown, reported.rows, len(faces) > 1))
+        put(STDOUT, table(shown, report.rows, len(faces) > 1))
     if not run.quiet:
-        for line in sentences(faces, len(shown), reported.rows, level):
+        for line in sentences(faces, len(shown), report.rows, level):
             say(line)
     return faces
 
@@ -134,23 +134,23 @@ def require_figure(path: Path | None) -> None:
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
 
 
-def asked_of(sought: opt.Sought, reported: opt.Reported, as_json: bool = False) -> Asked:
+def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:
     """What is looked for, from the command's arguments.
 
     Raises:
         GlyphsplineError: an option or the baseline is of no use.
     """
-    every = as_json or reported.csv or reported.html
+    every = as_json or report.csv or report.html
     return Asked(
-        thresholds=thresholds_of(sought.thresholds, sought.corner_angle),
-        kinds=kinds_of(sought.kinds),
-        kept=reported.loglevel or ("INFO" if every else "WARN"),
-        axis=sought.axis,
-        steps=STEPS if sought.steps is None else sought.steps,
-        baseline=None if reported.baseline is None else Baseline.read(reported.baseline),
-        written=None if reported.write_baseline is None else Baseline(),
-        drawn=reported.html is not None,
-        joints=reported.plot is not None,
+        thresholds=thresholds_of(options.thresholds, options.corner_angle),
+        kinds=kinds_of(options.kinds),
+        kept=report.loglevel or ("INFO" if every else "WARN"),
+        axis=options.axis,
+        steps=STEPS if options.steps is None else options.steps,
+        baseline=None if report.baseline is None else Baseline.read(report.baseline),
+        written=None if report.write_baseline is None else Baseline(),
+        drawn=report.html is not None,
+        joints=report.plot is not None,
     )
 
 

@@ -51,7 +51,7 @@ def convert(
     subset: opt.Subset,
     instance: opt.Instance,
     single: opt.SingleFonts,
-    run: opt.Run,
+    run: opt.RunOptions,
     each: Annotated[
         bool, typer.Option("--each", help="Write a folder in DIR for one font too.", rich_help_panel=WRITTEN)
     ] = False,
@@ -104,12 +104,12 @@ def text(
             help="Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
         ),
     ],
-    lines: opt.Lines,
-    along: opt.OnPath,
+    lines: opt.TextOptions,
+    along: opt.PathOptions,
     options: Annotated[Options, without("measure")],
     settings: Annotated[Settings, without("size")],
-    drawings: opt.Drawings,
-    run: Annotated[opt.Run, only("config", "quiet")],
+    drawings: opt.DrawingOptions,
+    run: Annotated[opt.RunOptions, only("config", "quiet")],
     words: Annotated[
         str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
     ] = None,
@@ -130,7 +130,7 @@ def text(
 def info(
     font: opt.FontFile,
     instance: opt.Instance,
-    run: Annotated[opt.Run, only("as_json")],
+    run: Annotated[opt.RunOptions, only("as_json")],
     deep: Annotated[
         bool,
         typer.Option(
@@ -190,7 +190,7 @@ def atlas(
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     maps: Maps,
-    run: Annotated[opt.Run, only("quiet")],
+    run: Annotated[opt.RunOptions, only("quiet")],
     out: Annotated[Path, opt.file_option("--out", "-o", help="Write this PDF.", show_default=True)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
@@ -239,11 +239,11 @@ def atlas(
 @grouped
 def check(
     fonts: opt.FontFiles,
-    sought: opt.Sought,
-    reported: opt.Reported,
+    options: opt.CheckOptions,
+    report: opt.ReportOptions,
     subset: opt.Subset,
     instance: opt.Instance,
-    run: Annotated[opt.Run, only("as_json", "jobs", "config", "quiet")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "config", "quiet")],
 ) -> int:
     """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
 
@@ -253,10 +253,10 @@ def check(
     """
     from .check_outputs import run as run_check
 
-    faces = run_check(fonts, sought, reported, subset, instance, run)
+    faces = run_check(fonts, options, report, subset, instance, run)
     if any(face.error is not None for face in faces):
         return 2
-    level = reported.error_level
+    level = report.error_level
     return level is not None and any(face.reaches(level) for face in faces)
 
 
@@ -268,8 +268,8 @@ def diff(
         Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
     ],
     subset: opt.Subset,
-    reported: Annotated[opt.Reported, only("rows")],
-    run: Annotated[opt.Run, only("as_json", "jobs", "quiet")],
+    report: Annotated[opt.ReportOptions, only("rows")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     tolerance: Annotated[
         float | None,
         typer.Option(
@@ -297,7 +297,7 @@ def diff(
         found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
     if html is not None:
         comparing.write_page(html, *sources, found)
-    worst, rows = found.worst_first(), reported.rows
+    worst, rows = found.worst_first(), report.rows
     if run.as_json:
         typer.echo(json.dumps(found.facts(), indent=1, ensure_ascii=False))
     elif worst and rows:
@@ -332,7 +332,7 @@ def view(
 @grouped
 def demo(
     subset: Annotated[opt.Subset, only("text")],
-    run: Annotated[opt.Run, only("jobs", "quiet")],
+    run: Annotated[opt.RunOptions, only("jobs", "quiet")],
     font: Annotated[
         Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)
     ] = None,
@@ -365,7 +365,7 @@ def demo(
 
 @app.command()
 @grouped
-def warm(run: Annotated[opt.Run, only("jobs", "quiet")]) -> None:
+def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""
     from ..batch.warm import warm as compile_all
 

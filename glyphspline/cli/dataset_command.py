@@ -33,7 +33,7 @@ def dataset(
         ),
     ],
     spec: DatasetSpec,
-    run: Annotated[opt.Run, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
+    run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
     fit: Annotated[
         bool, typer.Option("--fit/--no-fit", help="Fit splines and measure them.", rich_help_panel=ROWS)
     ] = True,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
-from inspect import Parameter, signature
+from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
@@ -46,10 +46,10 @@ class Choice:
 
     preset: Preset | None = option(
         None,
-        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with margin 0. "
-        "Options given beside it win.",
-        panel=CORNERS,
-    )
+        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with "
+        "margin 0. Options given beside it win.",
+        CORNERS,
+    )  # fmt: skip
 
 
 def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
@@ -62,18 +62,10 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
     hints = get_type_hints(function, include_extras=True)
     hints.pop("return")
     defaults = {name: parameter.default for name, parameter in signature(function).parameters.items()}
-    groups: dict[str, tuple[Any, Shown]] = {}
-    flat: dict[str, Parameter] = {"context": _parameter("context", typer.Context)}
+    groups = {name: group for name, hint in hints.items() if (group := _group(hint, defaults[name]))}
+    flat = [_parameter("context", typer.Context)]
     for name, hint in hints.items():
-        kind: Any
-        kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
-        if isinstance(kind, type) and is_dataclass(kind):
-            shown = next((extra for extra in extras if isinstance(extra, Shown)), Shown())
-            base: Any = kind() if defaults[name] is Parameter.empty else defaults[name]
-            groups[name] = base, shown
-            flat |= {one.name: one for one in _expanded(*groups[name])}
-        else:
-            flat[name] = _parameter(name, hint, defaults[name])
+        flat += _expanded(*groups[name]) if name in groups else [_parameter(name, hint, defaults[name])]
 
     def values(context: Any) -> dict[str, Any]:
         given, source = context.params, context.get_parameter_source
@@ -90,11 +82,18 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
 
     command.values = values  # type: ignore[attr-defined]
     command.__name__, command.__doc__ = function.__name__, function.__doc__
-    command.__annotations__ = {name: parameter.annotation for name, parameter in flat.items()}
-    command.__signature__ = signature(function).replace(  # type: ignore[attr-defined]
-        parameters=list(flat.values()), return_annotation=None
-    )
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in flat}
+    command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
     return command
+
+
+def _group(hint: Any, default: Any) -> tuple[Any, Shown] | None:
+    """The value that a parameter has without options, and its fields that are options; None: it is no dataclass."""
+    kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
+    if not (isinstance(kind, type) and is_dataclass(kind)):
+        return None
+    shown = next((extra for extra in extras if isinstance(extra, Shown)), Shown())
+    return kind() if default is Parameter.empty else default, shown
 
 
 def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:

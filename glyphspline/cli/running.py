@@ -39,7 +39,7 @@ class Conversion:
     spec: RunSpec
     subset: opt.Subset
     instance: opt.Instance
-    run: opt.Run
+    run: opt.RunOptions
 
 
 @contextmanager

@@ -40,11 +40,11 @@ class TextCall:
     font: Path
     instance: opt.Instance
     words: str | None
-    lines: opt.Lines
-    along: opt.OnPath
+    lines: opt.TextOptions
+    along: opt.PathOptions
     options: Options
     settings: Settings
-    drawings: opt.Drawings
+    drawings: opt.DrawingOptions
 
 
 def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
@@ -140,7 +140,7 @@ def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
     curve = None
     if along.path is None:
         for name in ("bend", "offset", "side"):
-            if getattr(along, name) != getattr(opt.OnPath, name):
+            if getattr(along, name) != getattr(opt.PathOptions, name):
                 raise GlyphsplineError(f"--{name} is for text on a --path")
     else:
         if lines.width is not None:

@@ -44,36 +44,28 @@ class DatasetSpec:
         seed: of the split. validation, test: shares of the families in these splits; the rest is for training.
     """
 
-    rows: Rows = option("glyph", "Write a row a glyph, or a row a contour.", panel=ROWS)
+    rows: Rows = option("glyph", "Write a row a glyph, or a row a contour.", ROWS)
     points: int | None = option(
         64, "Place this number of points at equal arc lengths of a contour, or give its polygon.",
-        panel=ROWS, metavar="N|polygon", rule=whole(3, MOST_POINTS), words={"polygon": None},
+        ROWS, "N|polygon", rule=whole(3, MOST_POINTS), words={"polygon": None},
     )  # fmt: skip
-    normalise: Normalise = option("em", "Write coordinates in em, or in font units.", panel=ROWS)
+    normalise: Normalise = option("em", "Write coordinates in em, or in font units.", ROWS)
     options: Options | None = FIT
-    raster: int | None = option(
-        None, "Add a grey picture of N by N pixels.", panel=ROWS, metavar="N", rule=whole(8, MOST_POINTS)
-    )
-    characters: str = option("", "Take only glyphs of these characters.", panel=TAKEN)
+    raster: int | None = option(None, "Add a grey picture of N by N pixels.", ROWS, "N", rule=whole(8, MOST_POINTS))
+    characters: str = option("", "Take only glyphs of these characters.", TAKEN)
     scripts: tuple[str, ...] = option(
-        (), "Take only glyphs of these scripts, by ISO 15924: Latn,Grek.", "--script", panel=TAKEN, metavar="CODE,…"
+        (), "Take only glyphs of these scripts, by ISO 15924: Latn,Grek.", TAKEN, "CODE,…", flags="--script"
     )
     licences: tuple[str, ...] = option(
-        (), "Take only fonts of these licences, by SPDX, or unknown.", "--licence", panel=TAKEN, metavar="ID,…"
+        (), "Take only fonts of these licences, by SPDX, or unknown.", TAKEN, "ID,…", flags="--licence"
     )
-    instances: Instances = option(
-        "default", "Take variable fonts at their default, or at each named instance.", panel=TAKEN
-    )
-    coverage: float = option(
-        0.0, "Take only fonts that have this share of the characters.", panel=TAKEN, metavar="SHARE", rule=SHARE
-    )
-    seed: int = option(0, "Seed the hash that assigns families to splits.", panel=SPLIT, metavar="N")
+    instances: Instances = option("default", "Take variable fonts at their default, or at each named instance.", TAKEN)
+    coverage: float = option(0.0, "Take only fonts that have this share of the characters.", TAKEN, "SHARE", rule=SHARE)
+    seed: int = option(0, "Seed the hash that assigns families to splits.", SPLIT, "N")
     validation: float = option(
-        0.1, "Put this share of the families into the split validation.", panel=SPLIT, metavar="SHARE", rule=SHARE
+        0.1, "Put this share of the families into the split validation.", SPLIT, "SHARE", rule=SHARE
     )
-    test: float = option(
-        0.1, "Put this share of the families into the split test.", panel=SPLIT, metavar="SHARE", rule=SHARE
-    )
+    test: float = option(0.1, "Put this share of the families into the split test.", SPLIT, "SHARE", rule=SHARE)
 
     @property
     def glyph_bytes(self) -> int:

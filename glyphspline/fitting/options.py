@@ -58,52 +58,45 @@ class Options:
         glyphspline.errors.OptionError: give one of tolerance, step and count, not step and count
     """
 
-    variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", panel=METHOD, metavar="0…4")
+    variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", METHOD, "0…4")
     tolerance: float | None = option(
         None, "Keep the curve within this distance of its source, in font units. Without it, 1/1000 em.",
-        panel=CLOSENESS, metavar="UNITS", rule=positive("distance"),
+        CLOSENESS, "UNITS", rule=positive("distance"),
     )  # fmt: skip
     step: float | None = option(
-        None, "Place a point every UNITS font units of the outline, instead of by tolerance.",
-        panel=CLOSENESS, metavar="UNITS",
-    )  # fmt: skip
+        None, "Place a point every UNITS font units of the outline, instead of by tolerance.", CLOSENESS, "UNITS"
+    )
     count: int | None = option(
-        None, "Place this number of points on each contour, instead of by tolerance.", panel=CLOSENESS, metavar="N"
+        None, "Place this number of points on each contour, instead of by tolerance.", CLOSENESS, "N"
     )
     corners: Corners = option(
         "smooth",
         "Draw one curve a contour (smooth), for brush and traced outlines, or keep corners (sharp), for type.",
-        panel=CORNERS,
-    )
-    corner_angle: float = option(
-        CORNER_ANGLE, "Set how sharp a turn counts as a corner.", panel=CORNERS, metavar="DEGREES"
-    )
+        CORNERS,
+    )  # fmt: skip
+    corner_angle: float = option(CORNER_ANGLE, "Set how sharp a turn counts as a corner.", CORNERS, "DEGREES")
     continuity: Continuity = option(
         "c2",
-        "Fit between corners one spline whose curvature has no jumps (c2), or cubics that only meet without a kink "
-        "(g1).",
-        panel=CORNERS,
-    )
-    effort: Effort = option(
-        "fast", "Find the fewest points, which takes longer (best), or few (fast).", panel=CLOSENESS
-    )
+        "Fit between corners one spline whose curvature has no jumps (c2), or cubics that only meet without a "
+        "kink (g1).",
+        CORNERS,
+    )  # fmt: skip
+    effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
     margin: float = option(
         0.02,
-        "Shrink search intervals by this margin, 0 to 0.5 (c of Lemma 2): a better guaranteed rate of convergence.",
-        panel=METHOD,
-        metavar="C",
-    )
+        "Shrink search intervals by this margin, 0 to 0.5 (c of Lemma 2): a better guaranteed rate of "
+        "convergence.",
+        METHOD, "C",
+    )  # fmt: skip
     fallback: Fallback = option(
-        "peak", "Choose what footpoints do where chords are too uneven for Lemma 2 to have an interval.", panel=METHOD
+        "peak", "Choose what footpoints do where chords are too uneven for Lemma 2 to have an interval.", METHOD
     )
     max_ratio: float = MAX_RATIO
-    precision: int = option(2, "Write this number of decimals, 0 to 9.", panel=WRITTEN, metavar="N", rule=whole(0, 9))
+    precision: int = option(2, "Write this number of decimals, 0 to 9.", WRITTEN, "N", rule=whole(0, 9))
     residual_tolerance: float | None = None
     max_iterations: int = Method.max_iterations
-    measure: bool = option(
-        False, "Measure distance, length and curvature with --step and --count too.", panel=CLOSENESS
-    )
-    remove_overlaps: bool = option(False, "Unite overlapping contours first.", panel=WRITTEN)
+    measure: bool = option(False, "Measure distance, length and curvature with --step and --count too.", CLOSENESS)
+    remove_overlaps: bool = option(False, "Unite overlapping contours first.", WRITTEN)
 
     def __post_init__(self) -> None:
         Method(

@@ -56,11 +56,12 @@ def read_state(given: Any, units_per_em: float) -> State:
     else:
         amount = float(f"{max(amount, FINEST[sampling] * units_per_em):.6g}")  # as the command has it
     names = ("variant", "corners", "continuity", "effort", "fallback")
+    chosen: dict[str, Any] = {name: given[name] for name in names if name in given}
+    chosen[sampling] = int(amount) if sampling == "count" else amount
     options = Options(
-        **{name: given[name] for name in names if name in given},
+        **chosen,
         margin=min(max(_number(given, "margin", Options.margin), 0.0), 0.25),
         measure=given.get("measure") is True,
-        **{sampling: int(amount) if sampling == "count" else amount},
     )
     return State(given["glyph"], _location(given), options, sampling, amount, _moved(given), _text(given))
 

@@ -36,15 +36,10 @@ class Settings:
     scale: float = 1.0
     unit: str | None = None
     flatness: float | None = option(
-        None,
-        "Keep polylines within this distance of their curves, in font units. Without it, 1/2000 em.",
-        panel=WRITTEN,
-        metavar="UNITS",
-        rule=positive("distance in font units"),
-    )
-    dxf: DxfKind = option(
-        "spline", "Write contours in a DXF as splines, which are exact, or as polylines.", panel=WRITTEN
-    )
+        None, "Keep polylines within this distance of their curves, in font units. Without it, 1/2000 em.",
+        WRITTEN, "UNITS", rule=positive("distance in font units"),
+    )  # fmt: skip
+    dxf: DxfKind = option("spline", "Write contours in a DXF as splines, which are exact, or as polylines.", WRITTEN)
 
     def __post_init__(self) -> None:
         require(is_positive(self.scale), "scale is a positive number", self.scale)
@@ -73,10 +68,8 @@ class Maps:
         OptionError: ``comb`` is neither "result" nor "source", or ``corner_teeth`` is no bool.
     """
 
-    comb: Whose = option(
-        "result", "Show the curvature of the result, or of the source outline, which is exact.", panel=LOOK
-    )
-    corner_teeth: bool = option(False, "Draw teeth of a smooth result's comb also in the turn of a corner.", panel=LOOK)
+    comb: Whose = option("result", "Show the curvature of the result, or of the source outline, which is exact.", LOOK)
+    corner_teeth: bool = option(False, "Draw teeth of a smooth result's comb also in the turn of a corner.", LOOK)
 
     def __post_init__(self) -> None:
         check(self)

@@ -44,11 +44,11 @@ class Appearance:
         OptionError: one of these is none of what it can be, or both sizes are given.
     """
 
-    view_box: ViewBox = option("em", "Show this region.", panel=LOOK)
-    size: str | None = option(None, "Set the height with its unit, as 20mm; the width is in proportion.", panel=LOOK)
-    fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", panel=LOOK)
-    stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", panel=LOOK)
-    em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", "--size", panel=LOOK, metavar="LENGTH")
+    view_box: ViewBox = option("em", "Show this region.", LOOK)
+    size: str | None = option(None, "Set the height with its unit, as 20mm; the width is in proportion.", LOOK)
+    fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", LOOK)
+    stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", LOOK)
+    em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", LOOK, "LENGTH", flags="--size")
 
     def __post_init__(self) -> None:
         check(self)
