@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 from ._version import __version__
 
 if TYPE_CHECKING:
-    from .checks.axis_kinks import AxisKinks as AxisKinks
-    from .checks.axis_kinks import Kink as Kink
-    from .checks.axis_kinks import KinkReport as KinkReport
-    from .checks.axis_kinks import kinks as kinks
     from .checks.check import check as check
     from .checks.finding import Finding as Finding
     from .checks.kinds import Thresholds as Thresholds
+    from .checks.kinks import AxisKinks as AxisKinks
+    from .checks.kinks import Kink as Kink
+    from .checks.kinks import KinkReport as KinkReport
+    from .checks.kinks import kinks as kinks
     from .comparing.compare import compare as compare
     from .comparing.difference import Apart as Apart
     from .comparing.difference import Difference as Difference
@@ -74,7 +74,7 @@ for _room in ("dataset", "layout"):  # packages of those names, to which Python 
 
 _ON_DEMAND = {
     "Apart": ".comparing.difference",
-    "AxisKinks": ".checks.axis_kinks",
+    "AxisKinks": ".checks.kinks",
     "Contour": ".outlines.outline",
     "ContourResult": ".fitting.results",
     "DatasetSpec": ".dataset.dataset_spec",
@@ -87,8 +87,8 @@ _ON_DEMAND = {
     "GlyphResult": ".fitting.results",
     "GlyphsplineError": ".errors",
     "Interpolation": ".interpolation.api",
-    "Kink": ".checks.axis_kinks",
-    "KinkReport": ".checks.axis_kinks",
+    "Kink": ".checks.kinks",
+    "KinkReport": ".checks.kinks",
     "Layout": ".layout.placed",
     "Loaded": ".dataset.loading",
     "MasterContour": ".outlines.masters",
@@ -116,7 +116,7 @@ _ON_DEMAND = {
     "interpolate": ".interpolation.api",
     "interpolate_many": ".interpolation.api",
     "interpolate_vertex": ".interpolation.api",
-    "kinks": ".checks.axis_kinks",
+    "kinks": ".checks.kinks",
     "layout": ".layout.lay_out",
     "load": ".dataset.loading",
     "open_font": ".readers",

@@ -71,12 +71,16 @@ def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
     from typer.main import get_command
 
-    from .cli.checking import asked_of, check_fonts
-    from .cli.commands import app
+    from .batch.check_fonts import check_fonts
+    from .cli import commands
+    from .cli.check_outputs import asked_of
 
-    command: Any = get_command(app)
-    given = command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]).params
-    faces = list(check_fonts([font], replace(asked_of(given), kept="INFO"), given, alone=False))
+    command: Any = get_command(commands.app)
+    check: Any = commands.check
+    given = check.values(command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]))
+    asked = replace(asked_of(given["options"], given["report"]), kept="INFO")
+    chosen, face = given["subset"].of if given["subset"].is_given else None, given["instance"].face_index
+    faces = list(check_fonts([font], asked, chosen=chosen, face_index=face, location=given["instance"].place, jobs=0))
     for face in faces:
         if face.error is not None:
             raise GlyphsplineError(face.error)

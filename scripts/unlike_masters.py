@@ -41,9 +41,9 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic, evaluate, split
+from glyphspline.matching.match import match_masters
 from glyphspline.outlines.joins import joins
 from glyphspline.outlines.masters import DesignAxis, Masters
-from glyphspline.outlines.matching import match_masters
 from glyphspline.outlines.sampling_limits import CORNER_ANGLE
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.unmatched import to_unmatched_svg

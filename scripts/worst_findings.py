@@ -19,8 +19,8 @@ import matplotlib
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.checks.check import check_many, with_unit
-from glyphspline.checks.finding import Finding, badness
+from glyphspline.checks.check import check_many
+from glyphspline.checks.finding import Finding, badness, with_unit
 from glyphspline.checks.kinds import KINDS
 from glyphspline.curves.bezier import evaluate
 from glyphspline.outlines.outline import Outline

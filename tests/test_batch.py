@@ -30,15 +30,15 @@ from glyphspline.batch import (
 )
 from glyphspline.batch.entry import contour_entries
 from glyphspline.batch.file_names import LONGEST_NAME, file_names
-from glyphspline.batch.files import write_whole
-from glyphspline.batch.job import Task
 from glyphspline.batch.manifest import JOURNAL
 from glyphspline.batch.summary import Facts, facts_of
 from glyphspline.errors import GlyphsplineError
+from glyphspline.files import write_whole
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
-from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font
+from glyphspline.writers.settings import Settings
+from glyphspline.writers.svg.appearance import Appearance
 
 FONTS = Path(__file__).parents[1] / "fonts_test"
 SPEC = RunSpec(Options(step=80))
@@ -161,7 +161,9 @@ def test_other_options_are_refused_with_the_difference(finished: Path, font: Fon
 def test_restart_does_it_anew(font: Font, tmp_path: Path) -> None:
     out = tmp_path / "out"
     convert_font(font, font.select(text="O "), out, SPEC, jobs=0)
-    convert_font(font, font.select(text=" "), out, replace(SPEC, view_box="ink"), jobs=0, restart=True)
+    convert_font(
+        font, font.select(text=" "), out, replace(SPEC, settings=Settings(Appearance("ink"))), jobs=0, restart=True
+    )
     assert [entry["glyph"] for entry in entries_of(out)] == ["space"]
 
 
@@ -187,7 +189,7 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
 def opened_as(font: Font) -> Any:
     """Workers of this process find this font where they would open it."""
     patch = pytest.MonkeyPatch()
-    patch.setattr("glyphspline.batch.worker.source_of", lambda *key: font)
+    patch.setattr("glyphspline.readers.open_source", lambda *key: font)
 
     class Undo:
         def __enter__(self) -> None: ...
@@ -205,7 +207,7 @@ def test_a_fault_of_ours_costs_only_its_glyph(font: Font, tmp_path: Path, monkey
         return convert_many(outlines, options, errors="return")
 
     monkeypatch.setattr(worker, "convert_many", faulty)
-    monkeypatch.setattr("glyphspline.batch.schedule.slices", lambda tasks, size: [tasks])
+    monkeypatch.setattr("glyphspline.batch.engine.slices", lambda tasks, size: [tasks])
     summary = convert_font(font, font.select(text="OB8 "), tmp_path / "out", SPEC, jobs=0)
     assert summary.failures == [("B", "ZeroDivisionError: a fault")]
     assert summary.statuses == {"ok": 2, "empty": 1, "failed": 1}
@@ -239,15 +241,6 @@ def test_drawings_alone_are_written_without_a_gallery(font: Font, tmp_path: Path
     assert content(tmp_path).keys() == alone
 
 
-def test_batches_are_bounded_and_of_one_em(font: Font) -> None:
-    def read(cost: float, em: float = 1000.0) -> worker.Read:
-        return worker.Read(Task(1, "a", "a", ()), Outline("a", metrics=FontMetrics(em)), cost)
-
-    glyphs = [read(worker.BATCH / 2), read(worker.BATCH / 2), read(1.0), read(1.0, 2048.0), read(9 * worker.BATCH)]
-    assert [len(batch) for batch in worker.batches(glyphs)] == [2, 1, 1, 1]
-    assert list(worker.batches([])) == []
-
-
 @pytest.mark.parametrize("step", [20.0, 90.0])
 def test_the_estimate_of_vertices_is_near(font: Font, step: float) -> None:
     outlines = font.outlines(font.select(text="O8 B龍"))
@@ -273,10 +266,10 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"view_box": "bbox"}, {"options": None}],
+    [{"formats": "svg"}, {"formats": ()}, {"formats": ("bmp",)}, {"names": "n"}, {"options": None}, {"settings": None}],
 )
 def test_a_run_that_makes_no_sense_is_refused(wrong: dict[str, Any]) -> None:
-    with pytest.raises(GlyphsplineError, match=r"formats|no format|view_box|Options"):
+    with pytest.raises(GlyphsplineError, match=r"formats|no format|names|Options|Settings"):
         RunSpec(**wrong)
 
 

@@ -13,12 +13,14 @@ import pytest
 from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 
 import glyphspline as gs
-from glyphspline.batch import check_run, schedule
+from glyphspline.batch import check_run
+from glyphspline.batch.check_fonts import Asked, check_fonts
 from glyphspline.batch.check_run import GlyphFindings, check_font
+from glyphspline.batch.jobs.check import AxesJob, CheckJob
 from glyphspline.batch.schedule import workers
-from glyphspline.checks.axis_kinks import kinks
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import Thresholds
+from glyphspline.checks.kinks import kinks
 from glyphspline.errors import FontError
 from glyphspline.outlines.masters import MasterContour, Masters
 
@@ -92,7 +94,7 @@ def test_workers_find_what_one_process_finds(name: str, variable: Path, pool: Ex
 def test_chunks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = found(KOUZAN)
     for size in (1, 5):
-        monkeypatch.setattr(check_run, "BATCH", size)
+        monkeypatch.setattr(CheckJob, "chunk", size)
         assert found(KOUZAN) == alone
 
 
@@ -132,16 +134,16 @@ def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) ->
     assert [glyph for glyph in glyphs if not glyph.error] == [glyph for glyph in whole if glyph.gid != most.gid]
 
 
-def slow(job: Any, tasks: Any) -> Any:
-    if any(task.gid == 3 for task in tasks):
-        time.sleep(60)
-    return check_run.__dict__["check_tasks"](job, tasks)
+class Slow(CheckJob):
+    def together(self, tasks: Any, contents: Any) -> Any:
+        if any(task.gid == 3 for task in tasks):
+            time.sleep(60)
+        return super().together(tasks, contents)
 
 
 def test_a_glyph_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = found(KOUZAN)
-    real = schedule.spread
-    monkeypatch.setattr(check_run, "spread", lambda pool, _, job, chunks: real(pool, slow, job, chunks))
+    monkeypatch.setattr(check_run, "CheckJob", Slow)
     with workers(2, 8.0, expected=2, also=("checks",)) as pool:
         glyphs = found(KOUZAN, executor=pool)
     assert [glyph.gid for glyph in glyphs if glyph.error] == [3]
@@ -241,3 +243,14 @@ def test_glyphs_and_axes_that_are_not_there_are_refused(variable: Path) -> None:
         check_font(font, ["k"], axes=["wdth"])
     with pytest.raises(FontError, match="no such glyph"):
         check_font(font, ["z"])
+
+
+def test_joints_of_chunks_are_those_of_the_whole_font(variable: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AxesJob, "chunk", 1)
+    for path in (variable, FONTS / "variable.ttf"):
+        (face,) = check_fonts([path], Asked(joints=True), jobs=0, alone=True)
+        assert face.kinks is not None
+        for own, whole in zip(face.kinks, kinks(gs.open_source(path)), strict=True):
+            assert list(own) == list(whole)
+            assert (own.profile == whole.profile).all()
+            assert own.positions == whole.positions

@@ -27,13 +27,14 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
+from glyphspline.batch.engine import Part, run
 from glyphspline.batch.pool import WorkerLostError
 from glyphspline.batch.spec import Limits
 from glyphspline.cli import app
-from glyphspline.dataset import dataset_run, plan, shards
+from glyphspline.dataset import plan, shards
 from glyphspline.dataset.card import command
 from glyphspline.dataset.chunk_rows import Made, RowsJob
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
 from glyphspline.dataset.licences import licence_of
 from glyphspline.dataset.plan import Plan, Task, plan_of
 from glyphspline.dataset.scan import SPLITS, FontFacts, split_of
@@ -98,7 +99,7 @@ MAKE = """
 import sys, time
 import glyphspline as gs
 from glyphspline.dataset import plan, shards
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)
@@ -183,7 +184,7 @@ class Scrambled(Executor):
         if any(task.number == self.lost for task in tasks):
             future.set_exception(WorkerLostError("the worker process died"))
         else:
-            future.set_result(Made(b"", len(tasks), []))
+            future.set_result([Part(tasks, Made(b"", len(tasks), []))])
 
 
 def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -196,15 +197,15 @@ def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyP
             pool.finish(*pool.open.pop())
         return waited(*args, **kwargs)
 
-    from glyphspline.batch import schedule
+    from glyphspline.batch import engine
 
-    waited = vars(schedule)["wait"]
-    monkeypatch.setattr(schedule, "wait", ending)
+    waited = vars(engine)["wait"]
+    monkeypatch.setattr(engine, "wait", ending)
     chunks = (chunk for shard in whole.shards for chunk in whole.chunks(shard))
-    found = list(dataset_run.in_order(pool, RowsJob(PLAIN, Limits()), chunks))
-    numbers = [task.number for tasks, _ in found for task in tasks]
+    found = list(run(RowsJob(PLAIN, Limits()), (), pool, ordered=True, chunks=chunks))
+    numbers = [task.number for part in found for task in part.tasks]
     assert numbers == list(range(SMALL * 40))
-    assert [made.failed for tasks, made in found if made.failed] == [[("#437", "the worker process died")]]
+    assert [part.result.failed for part in found if part.result.failed] == [[("#437", "the worker process died")]]
 
 
 class Lossy(Executor):
@@ -222,8 +223,8 @@ def test_glyphs_that_cost_a_worker_are_named() -> None:
     facts = FontFacts(FONTS / "kouzan-kaisho.ttf", "kouzan-kaisho.ttf", sha256="a", split="train", taken=5)
     spec = replace(PLAIN, characters="あいうのを")
     whole = Plan(spec, (facts,))
-    found = dataset_run.in_order(Lossy(), RowsJob(spec, Limits()), whole.chunks(whole.shards[0]))
-    assert [name for _, made in found for name, _ in made.failed] == [f"uni{ord(c):04X}" for c in "あいうのを"]
+    found = run(RowsJob(spec, Limits()), (), Lossy(), ordered=True, chunks=whole.chunks(whole.shards[0]))
+    assert [name for part in found for name, _ in part.result.failed] == [f"uni{ord(c):04X}" for c in "あいうのを"]
 
 
 # What is taken
@@ -616,6 +617,13 @@ def test_the_status_says_that_something_failed(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, call)
     assert found.exit_code == 1
     assert "1 glyph failed" in found.output
+
+
+def test_a_command_names_only_options_that_there_are() -> None:
+    assert command(DatasetSpec(options=replace(FIT, max_iterations=7))) == "glyphspline dataset FONTS… --out DIR"
+    assert command(DatasetSpec(options=None, characters="`")) == (
+        "glyphspline dataset FONTS… --out DIR --text-file CHARACTERS.txt --no-fit"
+    )
 
 
 def test_a_command_names_what_is_not_default() -> None:

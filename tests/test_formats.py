@@ -36,7 +36,7 @@ from glyphspline.writers import formats as registry
 from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
 from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
-from glyphspline.writers.settings import Settings, settings_for
+from glyphspline.writers.settings import Settings
 from glyphspline.writers.svg.appearance import Appearance
 
 ROOT = Path(__file__).parents[1]
@@ -80,10 +80,10 @@ def test_every_format_writes_a_result_by_itself(font: gs.Font) -> None:
 def test_the_run_writes_what_the_format_does(font: gs.Font, tmp_path: Path) -> None:
     shared = ("source", "svg", "png", *POLYLINES, "json")
     look = Appearance("ink", "20mm", "red", "blue")
-    spec = RunSpec(gs.Options(step=60), shared, view_box="ink", size="20mm", fill="red", stroke="blue", flatness=2.0)
+    spec = RunSpec(gs.Options(step=60), shared, Settings(look, flatness=2.0))
     convert_font(font, ["O"], tmp_path, spec, jobs=0)
     glyph = gs.convert(font.outline("O"), gs.Options(step=60))
-    settings = settings_for(look, font.metrics, 2.0)
+    settings = Settings(look, flatness=2.0).scaled(font.metrics)
     (entry,) = entries_of(tmp_path)
     assert tuple(entry["files"]) == tuple(name for name in OURS if name in shared)
     for name, path in entry["files"].items():
@@ -113,19 +113,14 @@ def test_a_format_has_a_name_and_a_suffix_that_are_safe(name: str, suffix: str, 
 def test_settings_are_checked(wrong: dict[str, Any]) -> None:
     with pytest.raises(OptionError):
         Settings(**wrong)
-    if "scale" not in wrong:
-        with pytest.raises(OptionError):
-            RunSpec(formats=("polyline",), **wrong)
 
 
 def test_a_size_is_the_height_from_descender_to_ascender() -> None:
-    settings = settings_for(Appearance(size="20mm"), FontMetrics(1000, 750, -250))
+    settings = Settings(Appearance(size="20mm")).scaled(FontMetrics(1000, 750, -250))
     assert (settings.scale, settings.unit) == (0.02, "mm")
-    assert settings_for(Appearance(size="1in"), FontMetrics(1000, 0, 0)).scale == 1 / 1000
-    assert (settings_for(Appearance(), FontMetrics()).scale, settings_for(Appearance(), FontMetrics()).unit) == (
-        1,
-        None,
-    )
+    assert Settings(Appearance(size="1in")).scaled(FontMetrics(1000, 0, 0)).scale == 1 / 1000
+    plain = Settings().scaled(FontMetrics())
+    assert (plain.scale, plain.unit) == (1, None)
 
 
 def test_a_missing_extra_is_said_before_the_run_starts(font: gs.Font, tmp_path: Path, monkeypatch: Any) -> None:
@@ -445,7 +440,7 @@ def test_a_flatness_that_cannot_be_is_refused(font: gs.Font, flatness: Any) -> N
 
 
 def test_files_of_polygons_agree_and_say_their_bound(glyph: gs.GlyphResult) -> None:
-    settings = settings_for(Appearance(size="20mm"), glyph.outline.metrics, 2.0)
+    settings = Settings(Appearance(size="20mm"), flatness=2.0).scaled(glyph.outline.metrics)
     data = strict(polyline_json(glyph, settings))
     schema("polyline").validate(data)
     assert 0 < data["bound"] <= data["flatness"] == 2.0 * settings.scale
@@ -594,7 +589,9 @@ def test_flatness_is_in_the_command_and_another_one_is_another_run(font: gs.Font
     assert (run["flatness"], run["dxf"]) == (3.0, "polyline")
     assert "--flatness 3.0 --dxf polyline" in run["command"]
     with pytest.raises(OutputError, match=r"flatness: 3\.0 in the folder, null now"):
-        convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=60), ("polyline",), dxf="polyline"), jobs=0)
+        convert_font(
+            font, ["O"], tmp_path, RunSpec(gs.Options(step=60), ("polyline",), Settings(dxf="polyline")), jobs=0
+        )
     result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "0", "--restart"])
     assert result.exit_code == 2
     assert "flatness is a positive distance" in result.stderr

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from fontTools.ttLib import TTFont
 
-from glyphspline.batch.deep_facts import add_glyph_facts
+from glyphspline.batch.jobs.deep_facts import add_glyph_facts
 from glyphspline.batch.schedule import workers
 from glyphspline.errors import FontError
 from glyphspline.readers import open_source

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.bezier import split
-from glyphspline.outlines.common_cuts import NODES, common_cuts, cut
-from glyphspline.outlines.elastic import elastic_nodes
-from glyphspline.outlines.landmarks import Landmarks
+from glyphspline.matching.alignment import elastic_nodes
+from glyphspline.matching.cuts import NODES, common_cuts, cut
+from glyphspline.matching.landmarks import Landmarks
+from glyphspline.matching.match import match_masters
 from glyphspline.outlines.masters import DesignAxis, Masters
-from glyphspline.outlines.matching import match_masters
 from glyphspline.readers.single_fonts import Unmatched, axis_of, masters_of_fonts
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.unmatched import to_unmatched_svg

@@ -1,4 +1,4 @@
-"""Bulk reading gives what the careful reader gives, glyph by glyph: points, degrees, advances, notes and errors."""
+"""Bulk reading gives what the pen gives, glyph by glyph: points, degrees, advances, notes and errors."""
 
 from __future__ import annotations
 
@@ -21,13 +21,12 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 from fontTools.ttLib.tables.ttProgram import Program
 
 from glyphspline.errors import FontError, GlyphsplineError
-from glyphspline.outlines.outline import Outline
+from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
-from glyphspline.readers.opentype.careful import CarefulReader
 from glyphspline.readers.opentype.fonttools import FontTools
-from glyphspline.readers.source import Head, attempt
+from glyphspline.readers.source import Head
 
 from .test_broken_fonts import with_components
 
@@ -60,7 +59,9 @@ def heads_of(font: Font) -> list[Head]:
 
 
 def read_carefully(font: Font, head: Head) -> Outline | GlyphsplineError:
-    return attempt(font.path, head.name, lambda: font._careful.outline(head, font.metrics))
+    """A glyph drawn with the pen, through HarfBuzz or fontTools."""
+    _, (expected,) = font._bulk._draw([head.gid])
+    return font._bulk.draw_again(head, font.metrics, expected)
 
 
 def assert_same(found: Outline | GlyphsplineError, expected: Outline | GlyphsplineError) -> None:
@@ -89,27 +90,25 @@ def assert_all_same(font: Font, glyphs: int | None = None) -> int:
 
 
 @pytest.mark.parametrize(("file", "face_index", "location"), FACES)
-def test_every_glyph_is_as_the_careful_reader_has_it(
-    file: str | Path, face_index: int, location: dict[str, float]
-) -> None:
+def test_every_glyph_is_as_the_pen_has_it(file: str | Path, face_index: int, location: dict[str, float]) -> None:
     assert assert_all_same(open_font(FONTS / file, face_index, location)) == 0
 
 
 def counting(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The names of glyphs that the careful reader reads from now on."""
+    """The names of glyphs that are drawn again from now on."""
     read: list[str] = []
-    careful = CarefulReader.outline
+    draw_again = BulkReader.draw_again
 
-    def outline(self: CarefulReader, head: Head, metrics: object) -> Outline:
+    def counted(self: BulkReader, head: Head, metrics: FontMetrics, expected: int) -> Outline | GlyphsplineError:
         read.append(head.name)
-        return careful(self, head, metrics)  # type: ignore[arg-type]
+        return draw_again(self, head, metrics, expected)
 
-    monkeypatch.setattr(CarefulReader, "outline", outline)
+    monkeypatch.setattr(BulkReader, "draw_again", counted)
     return read
 
 
 @pytest.mark.parametrize(("file", "face_index", "location"), FACES)
-def test_usual_glyphs_and_spaces_need_no_careful_reader(
+def test_usual_glyphs_and_spaces_are_drawn_once(
     file: str | Path, face_index: int, location: dict[str, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read = counting(monkeypatch)
@@ -191,7 +190,7 @@ def test_flat_contours_are_left_out_and_noted_in_bulk(tmp_path: Path, monkeypatc
     assert [len(found[name].contours) for name in ("first", "only", "composed", "nested")] == [2, 0, 5, 7]
 
 
-def test_a_contour_that_is_nearly_flat_is_read_carefully(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_contour_that_is_nearly_flat_is_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     heights = {"flat": 4, "below": 15, "above": 18, "wide": 80}  # times 1/16384 of a unit
     glyphs = {f"high {name}": simple([(0, 0, 1), (200, 0, 1), (100, y, 1)]) for name, y in heights.items()}
     glyphs |= {name: composite((f"high {name}", (1, 0, 0, 2**-14, 0, 0))) for name in heights}
@@ -327,7 +326,7 @@ def test_a_broken_glyph_costs_itself_alone(damage: Callable[[Path], None], broke
     assert assert_all_same(open_font(tmp_path / "broken.font")) == broken
 
 
-def test_a_glyph_too_large_for_the_buffer_is_read_carefully(tmp_path: Path) -> None:
+def test_a_glyph_too_large_for_the_buffer_is_drawn_again(tmp_path: Path) -> None:
     pen, plain = T2CharStringPen(600, None), T2CharStringPen(600, None)
     pen.moveTo((0, 0))
     for k in range(90_000):

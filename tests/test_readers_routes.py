@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
-import uharfbuzz as hb
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
@@ -19,8 +17,6 @@ from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
 from glyphspline.readers.opentype.containers import unpacked
 from glyphspline.readers.opentype.fonttools import FontTools
-from glyphspline.readers.opentype.glyf import GlyphRecords
-from glyphspline.readers.opentype.harfbuzz import HarfBuzz
 from glyphspline.types import FloatArray
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
@@ -40,18 +36,6 @@ CASES: list[tuple[str | Path, int, dict[str, float]]] = [
 ]
 
 
-def routes(
-    path: Path, face_index: int, location: dict[str, float]
-) -> tuple[TTFont, HarfBuzz, GlyphRecords | None, FontTools]:
-    data = unpacked(path.read_bytes())
-    tables = TTFont(BytesIO(data), fontNumber=face_index)
-    records = None
-    if "glyf" in tables:
-        records = GlyphRecords(tables.reader["glyf"], tables["loca"].locations, tables.getGlyphOrder())
-    harfbuzz = HarfBuzz(hb.Blob(data), face_index, location)
-    return tables, harfbuzz, records, FontTools(data, face_index, harfbuzz.normalized)
-
-
 def from_leftmost(contour: Contour) -> FloatArray:
     """All segments as cubics, begun at the lowest of the leftmost ends: the routes may begin a contour elsewhere."""
     cubics = contour.cubics()
@@ -62,24 +46,21 @@ def from_leftmost(contour: Contour) -> FloatArray:
 
 @pytest.mark.parametrize(("file", "face_index", "location"), CASES)
 def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, location: dict[str, float]) -> None:
-    tables, harfbuzz, records, fonttools = routes(FONTS / file, face_index, location)
-    for gid, name in enumerate(tables.getGlyphOrder()):
-        pen = harfbuzz.draw(gid, records)
-        other, advance = fonttools.draw(name)
-        if pen is None:
-            assert other.notes, name
-            continue
-        assert harfbuzz.advance(gid) == advance
-        assert pen.notes == other.notes
-        assert len(pen.contours) == len(other.contours)
-        for a, b in zip(pen.contours, other.contours, strict=True):
+    font = open_font(FONTS / file, face_index, location)
+    fonttools = FontTools(unpacked((FONTS / file).read_bytes()), face_index, font._hb.normalized)
+    for outline in font.outlines(font.glyph_names):
+        other, advance = fonttools.draw(outline.name)
+        assert outline.advance == advance
+        assert outline.notes == other.notes
+        assert len(outline.contours) == len(other.contours)
+        for a, b in zip(outline.contours, other.contours, strict=True):
             assert sorted(a.degrees) == sorted(b.degrees)
             np.testing.assert_allclose(from_leftmost(a), from_leftmost(b), atol=2e-3 if location else 0)
 
 
 def test_normalised_coordinates_are_rounded_as_the_format_has_them() -> None:
-    _, harfbuzz, _, _ = routes(FONTS / "variable.ttf", 0, {"wght": 777})
-    assert harfbuzz.normalized == {"wght": round(0.754 * 16384) / 16384}
+    font = open_font(FONTS / "variable.ttf", location={"wght": 777})
+    assert font._hb.normalized == {"wght": round(0.754 * 16384) / 16384}
 
 
 def test_a_component_attached_by_point_matching_is_in_its_place(tmp_path: Path) -> None:

@@ -19,6 +19,8 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font, open_source
 from glyphspline.types import Names
+from glyphspline.writers.settings import Maps, Settings
+from glyphspline.writers.svg.appearance import Appearance
 
 ROOT = Path(__file__).parents[1]
 FONTS = ROOT / "fonts_test"
@@ -95,9 +97,12 @@ def test_run_json_has_the_options_in_effect_the_selection_and_the_command(font: 
 
 
 def test_the_command_of_a_run_has_how_its_drawings_look(font: Font, tmp_path: Path) -> None:
-    look = {"view_box": "ink", "size": "20mm", "fill": "none", "stroke": "red", "comb": "source", "corner_teeth": True}
-    given: dict[str, Any] = look | {"names": "gid"}
-    convert_font(font, font.select(text="O"), tmp_path, RunSpec(Options(step=90), ("svg",), **given), jobs=0)
+    look: dict[str, Any] = {"view_box": "ink", "size": "20mm", "fill": "none", "stroke": "red"}
+    maps: dict[str, Any] = {"comb": "source", "corner_teeth": True}
+    given = look | maps | {"names": "gid"}
+    settings = Settings(Appearance(**look))
+    spec = RunSpec(Options(step=90), ("svg",), settings, names="gid", maps=Maps(**maps))
+    convert_font(font, font.select(text="O"), tmp_path, spec, jobs=0)
     told = shlex.split(json.loads((tmp_path / "run.json").read_text())["command"])
     for name, value in given.items():
         option = f"--{name.replace('_', '-')}"

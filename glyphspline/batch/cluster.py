@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 from ..errors import GlyphsplineError
 from ..extras import need
-from .files import write_whole
+from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
 from .preload import code_for
 from .spec import Limits

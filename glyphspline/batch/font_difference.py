@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field
@@ -10,10 +10,11 @@ from typing import Any
 
 from ..comparing.difference import PER_EM, Difference
 from ..errors import is_positive, require
-from ..readers import Font, Source
-from .calls import tell_apart
-from .compare_job import Comparison, Head, Pair, Side, Unread
-from .schedule import chunks_of, spread, workers
+from ..readers import Source
+from .engine import Observer, run
+from .jobs.compare import CompareJob, Pair, Unread
+from .places import Head, side_of
+from .schedule import workers
 from .spec import Limits
 
 FORMAT = 1
@@ -147,7 +148,7 @@ def compare_fonts(
     tolerance: float | None = None,
     jobs: int | None = None,
     executor: Executor | None = None,
-    observer: Callable[[int, int, int], None] | None = None,
+    observer: Observer | None = None,
 ) -> FontDifference:
     """Compare two sources glyph by glyph; see :func:`glyphspline.compare`.
 
@@ -171,31 +172,18 @@ def compare_fonts(
         em * PER_EM if tolerance is None else tolerance, em / new.metrics.units_per_em, glyphs,
         fonts={"old": about(old), "new": about(new)},
     )  # fmt: skip
-    comparison = Comparison(side_of(old), side_of(new), found.tolerance)
-    done, total = 0, len(glyphs.pairs)
+    job, total = CompareJob(side_of(old), side_of(new), found.tolerance), len(glyphs.pairs)
     opened = executor or workers(jobs if total else 0, Limits().seconds, expected=total, also=("comparing",))
     with nullcontext(opened) if executor else opened as pool:
-        for chunk, result in spread(pool, tell_apart, comparison, chunks_of(glyphs.pairs, pool)):
-            if isinstance(result, tuple):
-                identical, differences, unread = result
-                found.identical += identical
-                found.differences += differences
-                found.unread += unread
-            else:
-                found.unread += [Unread(*pair.old[:2], result.message) for pair in chunk]
-            done += len(chunk)
-            if observer:
-                observer(done, total, len(found.unread))
-    found.differences.sort(key=lambda own: own.gid)
-    found.unread.sort(key=lambda own: own.gid)
+        for part in run(job, glyphs.pairs, pool, ordered=True, observer=observer):
+            for each in part.result:
+                if isinstance(each, Unread):
+                    found.unread.append(each)
+                elif each.is_none:
+                    found.identical += 1
+                else:
+                    found.differences.append(each)
     return found
-
-
-def side_of(source: Source) -> Side:
-    """A source as workers open it."""
-    return Side(
-        source.path.absolute(), source.face_index, tuple(source.location.items()), source.metrics, type(source) is Font
-    )
 
 
 def about(source: Source) -> dict[str, Any]:

@@ -4,40 +4,36 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
-from operator import itemgetter
 from pathlib import Path
 
 from ..curves.curvature import robust_scale
 from ..errors import OutputError
-from ..readers import Font, Source
+from ..files import make_folder, remove_partials
+from ..readers import Source
 from ..readers.svg_drawings import SvgDrawings
 from ..report.data import row_of
 from ..report.gallery import Gallery, is_whole, remove_gallery
 from ..report.gallery_files import FOLDER as GALLERY
 from ..types import Names
-from .calls import survey, work
+from .engine import Job, Observer, Part, run
 from .file_names import file_names
-from .files import make_folder, remove_partials
-from .job import Job, Task, failed
+from .jobs.convert import ConvertJob
+from .jobs.glyphs import Done, Task
+from .jobs.survey import SurveyJob
 from .lock import locked
 from .manifest import JOURNAL, MANIFEST, SIZES, Journal, Note, Record, finish, read_record, remove_written
-from .schedule import chunks_of, slices, spread, workers
+from .places import side_of
+from .schedule import workers
 from .spec import MAPS, REQUEST, RUN_FILE, RunSpec, describe, differences, read_run, write_run
 from .summary import Summary, facts_of_entry
 from .whole import check_possible, missing, write_fonts
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
-
-SCALE_CHUNK = 4
-"""Glyphs of the sample in a chunk: few, so that a run over few glyphs uses all workers."""
-
-Observer = Callable[[int, int, int], None]
-"""Called with the number of glyphs done in the folder, of all glyphs, and of those that failed."""
 
 
 def convert_font(
@@ -93,19 +89,16 @@ def _convert(
 ) -> Summary:
     """:func:`convert_font` in a folder that is there and locked."""
     record = prepare(source, glyphs, out, spec, restart)
-    job = job_of(source, out, spec)
+    job = ConvertJob(side_of(source), out.absolute(), spec)
     finished = record.finished()
     summary = Summary()
     with nullcontext(executor) if executor else workers_for(source, glyphs, finished, spec, jobs) as pool:
         tasks = tasks_of(source, glyphs, spec.names)
         left = [task for task in tasks if task.gid not in finished]
         job = with_scale(job, source, glyphs, tasks, pool)
-        if left:
-            journal = Journal(out, record)
-            try:
-                convert_tasks(job, left, pool, journal, summary, observer)
-            finally:
-                journal.close()
+        for part in recorded(job, left, pool, record, out, observer):
+            for glyph in part.result:
+                summary.time(part.seconds / len(part.tasks), glyph.name)
         for name in spec.folders if left else ():
             remove_partials(out / name)
     gallery = GALLERY in spec.formats
@@ -117,14 +110,6 @@ def _convert(
     if left or missing(source, out, spec):
         summary.remarks += write_fonts(source, out, spec)
     return summary
-
-
-def job_of(source: Source, out: Path, spec: RunSpec) -> Job:
-    """A run over glyphs of a source as a worker needs it."""
-    return Job(
-        source.path.absolute(), source.face_index, tuple(source.location.items()), out.absolute(), spec,
-        source.metrics, type(source) is Font,
-    )  # fmt: skip
 
 
 def aim(source: Source, spec: RunSpec) -> str:
@@ -184,7 +169,7 @@ def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> l
     return [Task(gid, name, stems[gid], tuple(sorted(unicodes[name]))) for gid, name in chosen]
 
 
-def with_scale(job: Job, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> Job:
+def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:
     """The job with the run's curvature scale: from the folder's run.json, or computed now. Writes run.json."""
     old = read_run(job.out)
     if old is not None:
@@ -194,30 +179,31 @@ def with_scale(job: Job, source: Source, glyphs: Sequence[str], tasks: list[Task
         return replace(job, curvature_scale=old["curvature_scale"])
     if MAPS & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
-        found = [(chunk[0].gid, combs) for chunk, combs in spread(pool, survey, job, slices(chosen, SCALE_CHUNK))
-                 if isinstance(combs, list)]  # fmt: skip
-        combs = [item for _, items in sorted(found, key=itemgetter(0)) for item in items]
-        em = source.metrics.units_per_em
-        scale = robust_scale(combs) or 1 / em
+        found = run(SurveyJob(job.side, job.spec), chosen, pool, ordered=True)
+        scale = robust_scale([comb for part in found for comb in part.result]) or 1 / source.metrics.units_per_em
         job = replace(job, curvature_scale=float(f"{scale:.6g}"))
     write_run(job.out, describe(source, job.spec, glyphs, job.curvature_scale))
     return job
 
 
-def convert_tasks(
-    job: Job, tasks: list[Task], pool: Executor, journal: Journal, summary: Summary, observer: Observer | None
-) -> None:
-    """Run all tasks in the pool, and record each in the journal once its files are written."""
-    before = len(journal.record.finished())
-    failures = 0
-    for chunk, result in spread(pool, work, job, chunks_of(tasks, pool)):
-        done = result if isinstance(result, list) else [failed(task, result.message) for task in chunk]
-        journal.add(done)
-        for glyph in done:
-            summary.time(glyph.seconds, glyph.name)
-            failures += glyph.status == "failed"
-        if observer:
-            observer(before + summary.done, before + len(tasks), failures)
+def recorded(
+    job: Job[Task, list[Done]],
+    tasks: Sequence[Task],
+    pool: Executor,
+    record: Record,
+    out: Path,
+    observer: Observer | None,
+) -> Iterator[Part[Task, list[Done]]]:
+    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on."""
+    if not tasks:
+        return
+    journal = Journal(out, record)
+    try:
+        for part in run(job, tasks, pool, observer=observer, before=len(record.finished())):
+            journal.add(part.result)
+            yield part
+    finally:
+        journal.close()
 
 
 def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:

@@ -12,12 +12,12 @@ from defusedxml.common import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
 from ..errors import GlyphsplineError, OutputError
+from ..files import make_folder, write_whole
 from ..readers import Source, open_source
 from ..report.data import glyph_text, inside
 from ..report.gallery import write_index, write_report
 from ..report.gallery_files import FOLDER, SUFFIX
 from ..writers.svg.path_data import path_data
-from .files import make_folder, write_whole
 from .manifest import MANIFEST, entries_of
 from .spec import read_run
 

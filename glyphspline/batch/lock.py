@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import OutputError
-from .files import O_BINARY, make_folder, writing
+from ..files import O_BINARY, make_folder, writing
 
 LOCK = ".lock"
 

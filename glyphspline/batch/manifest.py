@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import OutputError
-from .files import O_BINARY, PARTIAL, sizes, writing
-from .job import Done
+from ..files import O_BINARY, replacing, sizes, writing
+from .jobs.glyphs import Done
 from .spec import is_folder
 from .summary import Facts, Summary
 
@@ -211,20 +211,9 @@ def finish(
     The manifest gets its name, and the journal is removed, when the block ends without an error. All other files of
     the end of a run have to be written inside the block; otherwise an interruption would leave them missing.
     """
-    partial, partial_sizes = (out / f".{name.strip('.')}-{os.getpid()}{PARTIAL}" for name in (MANIFEST, SIZES))
-    try:
-        with writing(out / MANIFEST):
-            with open(partial, "xb") as manifest, open(partial_sizes, "xb") as lengths:
-                yield _written_to(manifest, lengths, out, record, changed)
-                for file in (manifest, lengths):
-                    file.flush()
-                    os.fsync(file.fileno())
-            os.replace(partial_sizes, out / SIZES)
-            os.replace(partial, out / MANIFEST)
-            (out / JOURNAL).unlink(missing_ok=True)
-    finally:
-        for path in (partial, partial_sizes):
-            path.unlink(missing_ok=True)
+    with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
+        yield _written_to(manifest, lengths, out, record, changed)
+    (out / JOURNAL).unlink(missing_ok=True)
 
 
 def _written_to(

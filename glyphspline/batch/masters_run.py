@@ -11,53 +11,37 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field, replace
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..errors import GlyphsplineError, OutputError
-from ..fitting.convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
-from ..fitting.options import Options
-from ..outlines.masters import Masters
-from ..readers import Font, Source, open_source
-from ..readers.single_fonts import Unmatched, axis_of, masters_of_fonts
+from ..files import remove_partials, write_whole, writing
+from ..fitting.convert_masters import MastersResult, check_options
+from ..readers import Font, Source
+from ..readers.single_fonts import axis_of
 from ..types import MadeOnDemand, counted, rounded_up
 from ..writers.font.font_glyphs import Flavour
 from ..writers.font.master_deltas import Redrawn
-from .entry import journal_line
-from .files import make_folder, remove_partials, write_whole, writing
-from .font_run import Observer, prepare, tasks_of
-from .job import Done, Place, Task
+from .engine import Observer
+from .font_run import prepare, recorded, tasks_of
+from .jobs.masters import MastersJob
 from .lock import locked
-from .manifest import Journal, Record, finish, recorded_lines
-from .pool import sign_of_life
-from .result_text import from_text, to_text
-from .schedule import chunks_of, spread
+from .manifest import Record, finish, recorded_lines
+from .places import place_of
+from .result_text import from_text
 from .spec import RESULTS, RunSpec, describe, write_run
-from .summary import CHANGED, NO_FACTS, listed
+from .summary import CHANGED, listed
 from .whole import file_stem
-from .worker import reason
 
 FORMATS = ("ufo", "otf", "ttf")
 """Formats of a run over masters: a designspace with its UFOs, and variable fonts."""
-
-UNMATCHED = "unmatched"
-"""The folder of pictures of glyphs whose outlines in single fonts cannot be matched."""
 
 SHARE = 0.5
 """Share of the tolerance that the curves may use where quadratics are fitted to them, which take the rest."""
 
 NAMED = 5
 """Glyphs that the summary names of those that are left as they were."""
-
-
-class MastersJob(NamedTuple):
-    """What a worker needs: the font, or the single fonts and their axis; the folder of the run; the options."""
-
-    places: tuple[Place, ...]
-    axis: str | None
-    out: Path
-    options: Options
 
 
 @dataclass
@@ -170,123 +154,19 @@ def convert_font_masters(
         options = spec.options
         if "ttf" in spec.formats:
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
-        places = tuple((s.path.absolute(), s.face_index, tuple(s.location.items())) for s in sources)
-        job = MastersJob(places, axis, out.absolute(), options)
+        job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options)
         tasks = tasks_of(first, glyphs if axis else _with_components(first, glyphs, spec), spec.names)
-        _convert(job, tasks, executor, record, observer)
+        finished = record.finished()
+        left = [task for task in tasks if task.gid not in finished]
+        for _ in recorded(job, left, executor, record, out, observer):
+            pass
+        remove_partials(out / RESULTS)
         kept = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
         with finish(out, record, partial(_with_kept, kept)) as lines:
             for _, line in lines:
                 summary.add(json.loads(line))
     summary.seconds = time.perf_counter() - began
     return summary
-
-
-def _convert(
-    job: MastersJob, tasks: Sequence[Task], executor: Executor, record: Record, observer: Observer | None
-) -> None:
-    """Convert the glyphs that the folder does not have, and record each in the journal once its file is written."""
-    finished = record.finished()
-    left = [task for task in tasks if task.gid not in finished]
-    if not left:
-        return
-    done, failures = len(tasks) - len(left), 0
-    journal = Journal(job.out, record)
-    try:
-        for chunk, found in spread(executor, convert_tasks, job, chunks_of(left, executor)):
-            glyphs = found if isinstance(found, list) else [_done(task, error=found.message) for task in chunk]
-            journal.add(glyphs)
-            done += len(chunk)
-            failures += sum(glyph.status == "failed" for glyph in glyphs)
-            if observer:
-                observer(done, len(tasks), failures)
-    finally:
-        journal.close()
-    remove_partials(job.out / RESULTS)
-
-
-def convert_tasks(job: MastersJob, tasks: Sequence[Task]) -> list[Done]:
-    """Convert glyphs in all masters and store their results, in a worker. A glyph that fails costs only itself."""
-    done = []
-    for task in tasks:
-        sign_of_life()
-        try:
-            result = convert_masters(_masters(job, task), job.options)
-            size = write_whole(f"{job.out}/{_file(task)}", to_text(result))
-            done.append(_done(task, result, size))
-        except OutputError:
-            raise
-        except Exception as error:  # a broken font raises anything
-            done.append(_done(task, error=_reason(job, error)))
-    return done
-
-
-def _masters(job: MastersJob, task: Task) -> Masters:
-    sources = _sources(job.places)
-    if job.axis is None:
-        return sources[0].masters(task.name)
-    found = next(iter(masters_of_fonts(sources, job.axis, [task.name])))
-    if isinstance(found, Unmatched):
-        from ..writers.svg.unmatched import to_unmatched_svg
-
-        if found.outlines:
-            folder = job.out / UNMATCHED
-            make_folder(folder)
-            write_whole(f"{folder}/{task.stem}.svg", to_unmatched_svg(found.outlines, found.error.message))
-        raise found.error
-    return found
-
-
-@lru_cache(maxsize=1)
-def _sources(places: tuple[Place, ...]) -> list[Source]:
-    """The fonts, opened once a process."""
-    return [open_source(path, face_index, dict(location)) for path, face_index, location in places]
-
-
-def _reason(job: MastersJob, error: Exception) -> str:
-    """The message of an error, with the name of the file if it is another font than the first."""
-    others = {str(path): path.name for path, _, _ in job.places[1:]}
-    where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
-    return f"{where}: {reason(error)}" if where else reason(error)
-
-
-def _file(task: Task) -> str:
-    return f"{RESULTS}/{task.stem}.json"
-
-
-def _done(task: Task, result: MastersResult | None = None, size: int = 0, error: str | None = None) -> Done:
-    """A glyph's line of the manifest: with its result, or why it has none."""
-    status = "failed" if result is None else ("ok" if result.contours else "empty")
-    line = {
-        "glyph": task.name,
-        "gid": task.gid,
-        "unicodes": [f"U+{code:04X}" for code in task.unicodes],
-        "status": status,
-        "files": {} if result is None else {RESULTS: _file(task)},
-        "masters": None if result is None else len(result.masters),
-        "contours": [] if result is None else [_measures(contour) for contour in result.contours],
-        "notes": [] if result is None else list(result.notes),
-        "kept": None,
-        "error": error,
-    }
-    text = json.dumps(line, ensure_ascii=False)
-    return Done(task.gid, task.name, status, journal_line([] if result is None else [size], text), 0.0, NO_FACTS, "")
-
-
-def _measures(contour: MastersContourResult) -> dict[str, Any]:
-    rate = contour.rate_bound
-    return {
-        "segments": len(contour.curve),
-        "source_segments": len(contour.source),
-        "iterations": contour.iterations,
-        "rate_bound": None if rate is None else rounded_up(rate, 6),
-        "deviation_bound": rounded_up(contour.deviation_bound, 6),
-        "within_tolerance": contour.within_tolerance,
-        "source_segments_kept": contour.kept,
-        "regular": contour.regular,
-        "new_crossings": contour.new_crossings,
-        "collapsed": contour.collapsed,
-    }
 
 
 def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:

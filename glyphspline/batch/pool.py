@@ -50,6 +50,11 @@ class WorkerStartError(GlyphsplineError):
     """A process died before its first call; others would too."""
 
 
+def pool_size(pool: Executor) -> int:
+    """Number of calls that a pool runs at a time."""
+    return int(getattr(pool, "_max_workers", 1))
+
+
 ORPHANED = 2.0
 """Times the time limit after which a process ends itself: the one that would have ended it has been killed."""
 

@@ -6,24 +6,24 @@ import json
 import math
 import shlex
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require, require_choice
+from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require
+from ..fields import WRITTEN, arguments, check, instance_arguments, option
+from ..files import write_whole
 from ..fitting.options import Options
 from ..report.gallery_files import FOLDER as GALLERY
 from ..report.gallery_files import SUFFIX
 from ..types import Names
 from ..writers.formats import OURS, format_named, format_names, is_format
-from ..writers.settings import DxfKind, Settings, settings_for
-from ..writers.svg.appearance import WHOSE, Appearance, ViewBox, Whose
-from .files import write_whole
+from ..writers.settings import Maps, Settings
 
 if TYPE_CHECKING:
-    from ..outlines.outline import FontMetrics
     from ..readers import Source
     from ..writers.font.font_glyphs import Flavour
 
@@ -90,10 +90,8 @@ class RunSpec:
     Attributes:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
-        view_box, size, fill, stroke: of the drawings; see :class:`..writers.svg.appearance.Appearance`.
+        settings: of drawings. maps: what curvature maps show.
         masters: all masters of a variable font at once; see :mod:`.masters_run`.
-        comb: whose curvature the maps show. corner_teeth: also where a smooth result turns about a corner.
-        flatness: of polylines, in font units; None: 1/2000 em. dxf: contours as splines, or as polylines.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -101,18 +99,23 @@ class RunSpec:
     """
 
     options: Options = field(default_factory=Options)
-    formats: tuple[str, ...] = ("svg", "curvature", GALLERY)
-    view_box: ViewBox = Appearance.view_box
-    names: Names = "glyph"
+    formats: tuple[str, ...] = option(
+        ("svg", "curvature", GALLERY),
+        f"Write these formats: {', '.join(OURS)}, {GALLERY}, {', '.join(WHOLE)}, and those of plug-ins.",
+        WRITTEN, "NAME,…", flags="--format",
+    )  # fmt: skip
+    settings: Settings = field(default_factory=Settings)
+    names: Names = option(
+        "glyph", "Name files after the glyph's name, its code point (uni9F8D), its index, or its character.", WRITTEN
+    )
     limits: Limits = field(default_factory=Limits)
-    size: str | None = Appearance.size
-    fill: str = Appearance.fill
-    stroke: str = Appearance.stroke
-    comb: Whose = "result"
-    corner_teeth: bool = False
-    masters: bool = False
-    flatness: float | None = Settings.flatness
-    dxf: DxfKind = Settings.dxf
+    maps: Maps = field(default_factory=Maps)
+    masters: bool = option(
+        False,
+        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf) or "
+        "designspace (ufo).",
+        WRITTEN,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
@@ -122,27 +125,16 @@ class RunSpec:
         for name in self.formats:
             if name not in (GALLERY, *WHOLE) and not (isinstance(name, str) and is_format(name)):
                 raise OptionError(f"no format {name}: there are {', '.join(available())}")
-        require_choice("names", self.names, get_args(Names))
-        require_choice("comb", self.comb, WHOSE)
-        require_choice("corner_teeth", self.corner_teeth)
-        Settings(self.look, flatness=self.flatness, dxf=self.dxf)  # raises where it is none
-        if not isinstance(self.options, Options) or not isinstance(self.limits, Limits):
-            raise GlyphsplineError("options are Options, limits are Limits")
+        check(self)
+        for name, kind in (("options", Options), ("settings", Settings), ("limits", Limits), ("maps", Maps)):
+            if not isinstance(getattr(self, name), kind):
+                raise GlyphsplineError(f"{name} are {kind.__name__}")
         own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]
         for name in own:
             format_named(name)  # raises where a plug-in is broken
         order = OURS if set(own) <= OURS.keys() else format_names()
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))
-
-    @cached_property
-    def look(self) -> Appearance:
-        """How drawings look."""
-        return Appearance(self.view_box, self.size, self.fill, self.stroke)
-
-    def settings(self, metrics: FontMetrics) -> Settings:
-        """What writers of glyphs of a font with these metrics are told."""
-        return settings_for(self.look, metrics, self.flatness, self.dxf)
 
     @cached_property
     def is_fitted(self) -> bool:
@@ -204,11 +196,10 @@ def describe(
         "missing": {"count": len(missing), "first": list(missing[:FIRST_MISSING])},
         "options": asdict(spec.options) | effective,
         "formats": list(spec.formats),
-        **asdict(spec.look),
-        "comb": spec.comb,
-        "corner_teeth": spec.corner_teeth,
-        "flatness": spec.flatness,
-        "dxf": spec.dxf,
+        **asdict(spec.settings.look),
+        **asdict(spec.maps),
+        "flatness": spec.settings.flatness,
+        "dxf": spec.settings.dxf,
         "names": spec.names,
         "curvature_scale": curvature_scale,
         **({"masters": True} if spec.masters else {}),
@@ -252,24 +243,10 @@ def command(
         yield f"--{name}"
         if name != "all":
             yield value if isinstance(value, str) else ",".join(map(str, value))
-    if source.face_index:
-        yield from ("--face-index", str(source.face_index))
-    if source.location:
-        yield from ("--location", ",".join(f"{tag}={value:g}" for tag, value in source.location.items()))
-    for name, (value, default) in _choices(spec).items():
-        if value != default and name not in ("max_ratio", "residual_tolerance", "max_iterations"):
-            yield f"--{name.replace('_', '-')}"
-            if value is not True:
-                yield str(value)
-
-
-def _choices(spec: RunSpec) -> dict[str, tuple[Any, Any]]:
-    """The choices of a run that decide what is in its files, each with its default."""
-    plain = RunSpec()
-    given = {f.name: (getattr(spec.options, f.name), getattr(plain.options, f.name)) for f in fields(Options)}
-    own = [f.name for f in fields(RunSpec) if f.name not in ("options", "formats", "limits")]
-    given |= {name: (getattr(spec, name), getattr(plain, name)) for name in own}
-    return given | {"format": (",".join(spec.formats), ",".join(plain.formats))}
+    yield from instance_arguments(source.face_index, source.location)
+    words = arguments(spec, RunSpec())
+    formats = words.pop("formats", [])
+    yield from (*chain(*words.values()), *formats)
 
 
 def write_run(out: Path, run: dict[str, Any]) -> None:

@@ -10,13 +10,11 @@ from ..errors import GlyphsplineError
 from ..fitting.options import Options
 from ..layout.placed import Layout
 from ..layout.setting import Side
-from ..writers.settings import DxfKind
-from ..writers.svg.appearance import Appearance
+from ..writers.settings import Settings
 
 if TYPE_CHECKING:
     from ..fitting.results import GlyphResult
     from ..layout.path import Path
-    from ..writers.settings import Settings
 
 
 @dataclass(frozen=True)
@@ -25,16 +23,14 @@ class TextJob:
 
     Attributes:
         layout: the text on its lines. options: of the fit. formats: names, one for each drawing.
-        look, flatness, dxf: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
+        settings: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
         path: in font units, that the text is to follow, or None. bend: its letters too. align, side, offset: on it.
     """
 
     layout: Layout
     options: Options
     formats: tuple[str, ...]
-    look: Appearance
-    flatness: float | None = None
-    dxf: DxfKind = "spline"
+    settings: Settings
     each_glyph: bool = False
     path: Path | None = None
     bend: bool = False
@@ -100,10 +96,8 @@ class _Drawn:
 
     @cached_property
     def settings(self) -> Settings:
-        """What writers are told."""
-        from ..writers.settings import settings_for
-
-        return settings_for(self.job.look, self.layout.fonts[0].metrics, self.job.flatness, self.job.dxf)
+        """Settings of the writers, with the scale of the first font."""
+        return self.job.settings.scaled(self.layout.fonts[0].metrics)
 
     def content(self, name: str) -> bytes:
         """A drawing as bytes."""
@@ -123,4 +117,4 @@ class _Drawn:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
         results = self.layout.results(self.options) if fitted else self.layout.unfitted(self.options)
         self.notes |= dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)])
-        return text_document(self.layout, results, self.job.look)
+        return text_document(self.layout, results, self.job.settings.look)

@@ -164,7 +164,6 @@ def checks() -> None:
 def comparisons() -> None:
     """Outlines compared: one moved, one that lacks a contour."""
     from ..comparing.compare import compare
-    from . import compare_glyphs  # noqa: F401
 
     read()
     compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))
@@ -196,9 +195,9 @@ def points() -> None:
 def rest() -> None:
     """What single options or measures need: united contours, joins, the variation of curvature, unlike masters."""
     from ..curves.fairness import curvature_variation
-    from ..outlines.common_cuts import common_cuts
+    from ..matching.cuts import common_cuts
+    from ..matching.landmarks import Landmarks
     from ..outlines.joins import joins
-    from ..outlines.landmarks import Landmarks
     from ..outlines.overlaps import inked_area
 
     inked_area([DISC, LEAF])

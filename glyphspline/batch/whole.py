@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ..errors import OutputError
 from ..extras import need
+from ..files import replacing, write_whole, writing
 from ..fitting.options import Options
 from ..fitting.results import GlyphResult
 from ..readers import Source
 from ..types import rounded_up
 from ..writers.formats import format_named
-from .files import PARTIAL, write_whole, writing
 from .manifest import entries_of
 from .result_text import from_text
 from .spec import OF_RUNS, RESULTS, RunSpec
@@ -85,13 +84,8 @@ def _font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSp
 def _parquet(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> list[str]:
     from ..writers.parquet import write_table
 
-    partial = path.with_name(f".{path.name}-{os.getpid()}{PARTIAL}")
-    try:
-        with open(partial, "xb") as file:
-            count = write_table(source, glyphs, file)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as file:
+        count = write_table(source, glyphs, file)
     return [f"{path.name}: {count} contours"]
 
 

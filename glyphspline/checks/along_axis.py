@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curves.integrals import integrals
+from ..errors import GlyphsplineError
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import FloatArray
-from .axis_kinks import AxisKinks, Glyphs, Kink, kinks
-from .between_ticks import LEAST
+from .joints_along import LEAST
+from .kinks import AxisKinks, Kink, kinks_along
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,7 @@ class AlongAxis:
 
     Attributes:
         masters: the glyph. location: user-space values of the other axes.
-        found: its smooth joints; see :func:`.axis_kinks.kinks`.
+        found: its smooth joints; see :func:`.kinks.kinks`.
         energies: (v,) bending energy of the arcs, in 1/em, at the values of the axis; infinite at a cusp.
     """
 
@@ -70,9 +71,12 @@ def along_axis(
     Raises:
         GlyphsplineError: there is no such axis.
     """
-    source = Glyphs([masters], location or {})
-    (found,) = kinks(source, axis=tag, corner_angle=corner_angle)
-    at = np.array([masters.normalised({**source.location, tag: float(value)}) for value in found.profile[:, 0]])
+    location = location or {}
+    chosen = [k for k, axis in enumerate(masters.axes) if axis.tag == tag]
+    if not chosen:
+        raise GlyphsplineError(f"no axis {tag!r}", glyph=masters.name)
+    (found,) = kinks_along([masters], masters.axes, location, chosen, corner_angle)
+    at = np.array([masters.normalised({**location, tag: float(value)}) for value in found.profile[:, 0]])
     weights = masters.weights_at(at)
     energies = np.zeros(len(at))
     for contour in masters.contours:
@@ -80,7 +84,7 @@ def along_axis(
         for k, cubics in enumerate(np.tensordot(weights, arcs, axes=1)):
             lasts = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) > LEAST  # it may have a length elsewhere only
             energies[k] += integrals(cubics[lasts])[1]
-    return AlongAxis(masters, source.location, found, energies * masters.metrics.units_per_em)
+    return AlongAxis(masters, location, found, energies * masters.metrics.units_per_em)
 
 
 def places_along(along: AlongAxis, count: int) -> list[float]:

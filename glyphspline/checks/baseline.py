@@ -9,7 +9,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from ..errors import GlyphsplineError, OutputError
+from ..errors import GlyphsplineError
+from ..files import writing
 from .finding import SMALLER_IS_WORSE, Finding, badness
 
 FORMAT = "glyphspline baseline 1"
@@ -59,10 +60,8 @@ class Baseline:
             lines = [json.dumps([*key, values], ensure_ascii=False) for key, values in sorted(known.items())]
             fonts.append(f"{json.dumps(font, ensure_ascii=False)}: [\n" + ",\n".join(lines) + "\n]")
         text = f'{{"format": "{FORMAT}", "fonts": {{\n' + ",\n".join(fonts) + "\n}}\n"
-        try:
+        with writing(path):
             path.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
 
     @classmethod
     def read(cls, path: Path) -> Baseline:

@@ -10,9 +10,8 @@ from ..curves.cubics import jet, length
 from ..curves.fairness import TURN, curvatures, first_of, swings
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray, IntArray
-from .joints import NO_HANDLE
+from .joints import COLUMNS, NO_HANDLE, add
 from .kinds import LUMP, Limits
-from .table import COLUMNS, add
 
 QUARTER = np.pi / 2
 """A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""
@@ -32,7 +31,7 @@ STEPS = 8
 
 @compiled
 def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
-    """(n, 6) lumps of contours; see :mod:`.table`. The second number is how far a lump moves the curve, in units.
+    """(n, 6) lumps of contours; see :mod:`.joints`. The second number is how far a lump moves the curve, in units.
 
     A bend goes from an inflection, a corner or a line to the next. The maxima of its absolute curvature are those of
     :func:`..curves.fairness.swings`, with the limit's share. Contours with quadratics are passed over: each quadratic

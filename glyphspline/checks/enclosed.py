@@ -24,9 +24,8 @@ from ..curves.cubics import directions, jet, length, split
 from ..curves.integrals import area, integrals
 from ..outlines.contour_arrays import ContourArrays
 from ..types import BoolArray, FloatArray, IntArray
-from .joints import NO_HANDLE, ROUNDING
+from .joints import COLUMNS, NO_HANDLE, ROUNDING, add
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, Limits
-from .table import COLUMNS, add
 
 NEARLY_ALL = 0.9
 """Share of a contour that lies on another one in the same direction, from which it is a copy."""
@@ -45,7 +44,7 @@ MOST_HALVINGS = 128
 
 
 def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, limits: Limits) -> FloatArray:
-    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.table`.
+    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.joints`.
 
     Two contours that cross are told once, of the first, where it first crosses; the value is the number of places. The
     value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which

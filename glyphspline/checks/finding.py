@@ -1,10 +1,14 @@
-"""A finding: what may be wrong at one place of a glyph, and how much."""
+"""A finding: what may be wrong at one place of a glyph, and how much; as a value, and as a row of columns."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
+import numpy as np
+
+from ..types import FloatArray, IntArray
 from .kinds import KINDS, LEVELS, Level
 
 SMALLER_IS_WORSE = frozenset({"short", "straight"})
@@ -44,6 +48,67 @@ class Finding:
     sentence: str
     location: dict[str, float] = field(default_factory=dict)
     between: tuple[float, float] | None = None
+
+
+class Measured(NamedTuple):
+    """Findings of many glyphs in columns, the form in which passes and processes exchange them.
+
+    Attributes:
+        glyphs: (n,) which of the glyphs. contours: (n,) number of the contour in it. segments: (n,) of the contour.
+        kinds: (n,) number of the kind.
+        numbers: (n, 4) local parameter, value, second number or NaN, another contour of the glyph or -1.
+        points: (n, 2) where it is.
+        locations: (n, A) user-space values of the axes where it is worst; A is 0 without axes.
+        between: (n, 2) user-space values of the masters on both sides, or NaN.
+    """
+
+    glyphs: IntArray
+    contours: IntArray
+    segments: IntArray
+    kinds: IntArray
+    numbers: FloatArray
+    points: FloatArray
+    locations: FloatArray
+    between: FloatArray
+
+    def chosen(self, rows: IntArray) -> Measured:
+        """Some of the rows."""
+        return Measured._make([column[rows] for column in self])
+
+    @classmethod
+    def joined(cls, parts: Iterable[Measured], axes: int = 0) -> Measured:
+        """The rows of all parts, whose locations have so many ``axes``."""
+        none = np.zeros(0, dtype=np.int64)
+        empty = cls(none, none, none, none, np.zeros((0, 4)), np.zeros((0, 2)), np.zeros((0, axes)), np.zeros((0, 2)))
+        return cls._make([np.concatenate(columns) for columns in zip(*(list(parts) or [empty]), strict=True)])
+
+
+def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> list[list[Finding]]:
+    """What was measured of glyphs, names and glyph indices, as values; ``tags`` of the axes, if there are any."""
+    found: list[list[Finding]] = [[] for _ in glyphs]
+    columns = (rows.glyphs, rows.contours, rows.segments, rows.kinds, rows.numbers, rows.points)
+    where = (rows.locations.tolist(), rows.between.tolist())
+    for g, contour, segment, what, (parameter, value, detail, other), (x, y), at, (low, high) in zip(
+        *(column.tolist() for column in columns), *where, strict=True
+    ):
+        kind, (name, gid) = KINDS[what], glyphs[g]
+        second, another = None if detail != detail else detail, None if other < 0 else int(other)
+        whom = "itself" if another is None else f"contour {another}"
+        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom)
+        place = contour, segment, parameter, (x, y)
+        own = Finding(
+            kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence,
+            dict(zip(tags, at, strict=True)) if at else {}, None if low != low else (low, high),
+        )  # fmt: skip
+        found[g].append(own)
+    return found
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A value for people: "3.1°", "12 %", "4.2 /em"."""
+    if unit == "%":
+        return f"{100 * value:.3g} %"
+    return f"{value:.3g}{unit}" if unit == "°" else f"{value:.3g} {unit}".strip()
 
 
 def badness(finding: Finding) -> float:

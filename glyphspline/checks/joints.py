@@ -10,7 +10,6 @@ from ..curves.cubics import directions, length
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray, IntArray
 from .kinds import JUMP, KINK, Limits
-from .table import COLUMNS, add
 
 NO_HANDLE = 1e-6
 """Length in font units up to which a handle gives no tangent; the next control point then gives one."""
@@ -22,9 +21,32 @@ CHANCE = 3 * np.sqrt(1 / 12)
 """Three standard deviations of a coordinate's rounding error: a smooth joint in 300 turns by more than this makes."""
 
 
+COLUMNS = 6
+WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER = range(COLUMNS)
+"""Columns of the table (n, 6) that compiled passes return: number of the kind; contour; place on it, segment and local
+parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1."""
+
+
+@compiled
+def add(
+    table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float, other: int
+) -> FloatArray:
+    """The table with one more row after ``count``; in a larger array if need be."""
+    if count == len(table):
+        longer = np.empty((2 * count + 16, COLUMNS))
+        for i in range(count):
+            for k in range(COLUMNS):
+                longer[i, k] = table[i, k]
+        table = longer
+    row = table[count]
+    row[WHAT], row[CONTOUR], row[PLACE] = what, contour, place
+    row[VALUE], row[DETAIL], row[OTHER] = value, detail, other
+    return table
+
+
 @compiled
 def joint_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
-    """(n, 6) kinks and jumps of curvature of contours; see :mod:`.table`.
+    """(n, 6) kinks and jumps of curvature of contours; see ``COLUMNS``.
 
     A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
     turns by more than the limit, and, where both handles are in whole units, by more than rounding may make. Curvature

@@ -6,10 +6,11 @@ they mean is said here.
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from math import radians
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import is_positive, require
 
@@ -53,33 +54,6 @@ KINDS = (
     Kind("doubled", "INFO", "units", "lies on {other} for {value}"),
     Kind("crossing", "INFO", "places", "crosses {other}"),
 )
-
-
-class Limits(NamedTuple):
-    """The limits in font units and radians, as compiled code takes them; fields as of :class:`Thresholds`.
-
-    ``unit`` is a thousandth of an em. ``outer`` is the direction of outer contours, as in :attr:`.Source.outer`.
-    """
-
-    kink: float
-    corner_angle: float
-    line_angle: float
-    jump: float
-    relative_jump: float
-    lump: float
-    lump_height: float
-    inflection: float
-    straight: float
-    straight_length: float
-    slanted: float
-    slanted_offset: float
-    slanted_length: float
-    extremum: float
-    short: float
-    handles: float
-    doubled: float
-    unit: float
-    outer: int
 
 
 DEGREES, SHARE, PER_EM, THOUSANDTHS = "degrees", "share", "1/em", "em/1000"
@@ -146,3 +120,19 @@ class Thresholds:
         }
         own = {each.name: of_unit[each.metadata["unit"]](getattr(self, each.name)) for each in fields(self)}
         return Limits(**own, unit=unit, outer=outer)
+
+
+if TYPE_CHECKING:
+
+    @dataclass(frozen=True)
+    class Limits(Thresholds):
+        """Thresholds in font units and radians, as compiled code takes them: a named tuple.
+
+        Attributes:
+            unit: a thousandth of an em. outer: direction of outer contours, as in :attr:`.Source.outer`.
+        """
+
+        unit: float = 1.0
+        outer: int = 0
+else:
+    Limits = namedtuple("Limits", [*(each.name for each in fields(Thresholds)), "unit", "outer"])

@@ -10,12 +10,11 @@ from ..curves.bezier import evaluate
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.segments import all_cubics
 from .bends import bend_findings
-from .columns import Measured
 from .enclosed import enclosed_findings
-from .joints import joint_findings
+from .finding import Measured
+from .joints import CONTOUR, OTHER, PLACE, VALUE, WHAT, joint_findings
 from .kinds import KINDS, Thresholds
 from .single_segments import segment_findings
-from .table import CONTOUR, OTHER, PLACE, VALUE, WHAT
 
 PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
 """Kinds whose values compiled code has in 1/unit."""

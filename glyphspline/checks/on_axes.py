@@ -1,25 +1,23 @@
 """Glyphs of a variable font checked at their masters and along each axis; each finding once, where it is worst.
 
-Kinks are exact along an axis, :mod:`.axis_kinks`; everything else is measured at even steps of it. A joint that is a
+Kinks are exact along an axis, :mod:`.kinks`; everything else is measured at even steps of it. A joint that is a
 corner in one master is meant as one: elsewhere it has no kinks, nor jumps of curvature.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Container, Mapping, Sequence
 
 import numpy as np
 
 from ..outlines.contour_arrays import ContourArrays, offsets_of
-from ..outlines.masters import Masters
+from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .axis_kinks import AxisKinks, Glyphs, joint_controls, kinks_along
-from .axis_numbers import AxisNumbers
-from .between_ticks import turns_of
-from .columns import Measured
+from .finding import Measured
 from .joints import rounding_turn
+from .joints_along import joint_controls, turns_of
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
+from .kinks import AxisKinks, kinks_along
 from .measured import measured
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
@@ -29,23 +27,11 @@ ALIKE = 9
 """Decimals of values up to which two places are equally bad; the first is told then."""
 
 
-class _Turn(NamedTuple):
-    """A joint's turn at a place of the design space; see :class:`.axis_kinks.Kink`."""
-
-    glyph: int
-    contour: int
-    joint: int
-    turn: float
-    made: float
-    at: FloatArray
-    between: tuple[float, float]
-
-
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
     outer: int = 0,
-) -> tuple[Measured, list[tuple[AxisNumbers, ...]]]:  # fmt: skip
-    """Measure glyphs of a variable font: each finding at its worst place, and each glyph's kinks in numbers.
+) -> tuple[Measured, list[AxisKinks]]:  # fmt: skip
+    """Measure glyphs of a variable font: each finding at its worst place, and all smooth joints along each axis.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
@@ -62,15 +48,14 @@ def on_axes(
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
-    along_axes = kinks_along(Glyphs(glyphs, location), None, chosen, thresholds.corner_angle)
-    turns, smooth = _turns(glyphs, location, chosen, along_axes, thresholds)
-    of_joints = np.column_stack([rows.glyphs, rows.contours, rows.segments])
-    known = np.array([tuple(row) in smooth for row in of_joints.tolist()], dtype=np.bool_)
+    along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle)
+    smooth = {tuple(joint) for along in along_axes for joint in along.joints.tolist()}
+    kinks = _kinks(glyphs, location, chosen, along_axes, smooth, thresholds)
+    known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
-    worst = _worst(_with_turns(rows, glyphs, turns))
+    worst = _worst(Measured.joined([kinks, rows]))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
-    numbers = [tuple(along.numbers_of(g) for along in along_axes) for g in range(len(glyphs))]
-    return worst._replace(locations=np.array(users).reshape(-1, len(axes))), numbers
+    return worst._replace(locations=np.array(users).reshape(-1, len(axes))), along_axes
 
 
 def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[int], steps: int) -> FloatArray:
@@ -103,81 +88,69 @@ def instances_of(masters: Masters, at: FloatArray) -> list[ContourArrays]:
     return [ContourArrays(points, degrees, offsets, starts) for points in np.tensordot(weights, every, axes=1)]
 
 
-def _turns(
+def joints_of(rows: Measured) -> list[tuple[int, int, int]]:
+    """Glyph, contour and segment of each row."""
+    return [*zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)]
+
+
+def _kinks(
     glyphs: Sequence[Masters], location: Mapping[str, float], axes: Sequence[int], along_axes: Sequence[AxisKinks],
-    thresholds: Thresholds,
-) -> tuple[list[_Turn], set[tuple[int, int, int]]]:  # fmt: skip
-    """Turns of smooth joints that count, along axes and in masters off them; and which joints are smooth."""
-    found, smooth = list[_Turn](), set[tuple[int, int, int]]()
-    controls = [[joint_controls(contour) for contour in masters.contours] for masters in glyphs]
+    smooth: Container[tuple[int, int, int]], thresholds: Thresholds,
+) -> Measured:  # fmt: skip
+    """Kinks along axes and in masters off them, at normalised locations; none that rounding or a chamfer explains."""
+    parts = []
     for along in along_axes:
-        smooth.update(map(tuple, along.joints.tolist()))
-        count = int((along.turns >= thresholds.kink).sum())
-        for kink, (g, contour, joint) in zip(along[:count], along.joints[:count].tolist(), strict=True):
-            at = glyphs[g].normalised(kink.location)
-            found.append(_Turn(g, contour, joint, kink.turn, kink.made, at, kink.between))
-    for g, masters in enumerate(glyphs):
-        base, peaks = masters.normalised(location), masters.peaks
-        others = np.delete(np.arange(len(base)), axes)
-        off = np.flatnonzero(((peaks != base).sum(axis=1) > 1) & (peaks[:, others] == base[others]).all(axis=1))
-        if not len(off):
-            continue
-        for contour, of_contour in enumerate(controls[g]):
-            turns = np.abs(turns_of(of_contour[off]))
-            for k, joint in np.argwhere(turns >= thresholds.kink).tolist():
-                if (g, contour, joint) in smooth:
-                    found.append(_Turn(g, contour, joint, turns[k, joint], 0.0, peaks[off[k]], (np.nan, np.nan)))
-    counted = [
-        turn
-        for turn in found
-        if turn.turn >= by_rounding(glyphs[turn.glyph], turn, controls[turn.glyph][turn.contour][:, turn.joint])
-        and not (turn.turn - turn.made >= thresholds.line_angle and is_of_lines(glyphs[turn.glyph], turn))
-    ]
-    return counted, smooth
+        rows = along.rows.chosen(np.flatnonzero(along.turns >= thresholds.kink))
+        users = [dict(zip([axis.tag for axis in along.axes], at, strict=True)) for at in rows.locations.tolist()]
+        at = [glyphs[g].normalised(user) for g, user in zip(rows.glyphs.tolist(), users, strict=True)]
+        parts.append(rows._replace(locations=np.array(at).reshape(rows.locations.shape)))
+    parts += [_off_axes(g, masters, location, axes, thresholds.kink) for g, masters in enumerate(glyphs)]
+    rows = Measured.joined(parts)
+    kept = []
+    for k, (g, contour, joint) in enumerate(joints_of(rows)):
+        turn, made = rows.numbers[k, 1:3]
+        of_contour = glyphs[g].contours[contour]
+        lines = of_contour.degrees[joint - 1] == of_contour.degrees[joint] == 1
+        meant = lines and turn - made >= thresholds.line_angle
+        rounded = by_rounding(of_contour, joint, glyphs[g].weights_at(rows.locations[k]))
+        if (g, contour, joint) in smooth and turn >= rounded and not meant:
+            kept.append(k)
+    return rows.chosen(np.array(kept, dtype=np.int64))
 
 
-def is_of_lines(masters: Masters, turn: _Turn) -> bool:
-    """Whether two lines meet at the joint."""
-    degrees = masters.contours[turn.contour].degrees
-    return bool(degrees[turn.joint - 1] == degrees[turn.joint] == 1)
+def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Sequence[int], least: float) -> Measured:
+    """Joints of a glyph that turn by ``least`` degrees in a master that leaves the location along several axes."""
+    base, peaks = masters.normalised(location), masters.peaks
+    others = np.delete(np.arange(len(base)), axes)
+    off = np.flatnonzero(((peaks != base).sum(axis=1) > 1) & (peaks[:, others] == base[others]).all(axis=1))
+    parts = []
+    for number, contour in enumerate(masters.contours if len(off) else ()):
+        turns = np.abs(turns_of(joint_controls(contour)[off]))
+        k, joints = np.nonzero(turns >= least)
+        n, starts = len(k), np.cumsum(contour.degrees) - contour.degrees
+        numbers = np.column_stack([np.zeros(n), turns[k, joints], np.zeros(n), np.full(n, -1.0)])
+        parts.append(Measured(
+            np.full(n, g), np.full(n, number), joints, np.full(n, KINK), numbers,
+            contour.points[off[k], starts[joints]], peaks[off[k]], np.full((n, 2), np.nan),
+        ))  # fmt: skip
+    return Measured.joined(parts, len(base))
 
 
-def by_rounding(masters: Masters, turn: _Turn, controls: FloatArray) -> float:
-    """Degrees by which rounding may turn a joint: see :func:`.joints.rounding_turn`.
+def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> float:
+    """Degrees by which rounding may turn a joint at (K,) weights of the masters: see :func:`.joints.rounding_turn`.
 
     It is 0 where the default master is not in whole units.
 
     Deltas are whole too. Those of points between others are not, but no farther off.
-
-    Args:
-        controls: (K, 2, 4, 2) of the joint; see :func:`.axis_kinks.joint_controls`.
     """
-    degrees = masters.contours[turn.contour].degrees[[turn.joint - 1, turn.joint]]
+    controls = joint_controls(contour)[:, joint]
+    degrees = contour.degrees[[joint - 1, joint]]
     handles = 3 / degrees[:, None] * (controls[0, :, 1] - controls[0, :, 0])  # segments are raised to cubics
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
-    here = np.tensordot(masters.weights_at(turn.at), controls, axes=1)
+    here = np.tensordot(weights, controls, axes=1)
     before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
     return float(np.degrees(rounding_turn(before, behind)))
-
-
-def _with_turns(rows: Measured, glyphs: Sequence[Masters], turns: Sequence[_Turn]) -> Measured:
-    """Kinks before all other rows, whose locations are normalised."""
-    if not turns:
-        return rows
-    points = []
-    for turn in turns:
-        masters = glyphs[turn.glyph]
-        contour = masters.contours[turn.contour]
-        start = int(contour.degrees[: turn.joint].sum())
-        points.append(masters.weights_at(turn.at) @ contour.points[:, start])
-    places = np.array([turn[:3] for turn in turns], dtype=np.int64)
-    own = Measured(
-        places[:, 0], places[:, 1], places[:, 2], np.full(len(turns), KINK),
-        np.array([(0.0, turn.turn, turn.made, -1.0) for turn in turns]),
-        np.array(points), np.array([turn.at for turn in turns]), np.array([turn.between for turn in turns]),
-    )  # fmt: skip
-    return Measured._make([np.concatenate(pair) for pair in zip(own, rows, strict=True)])
 
 
 def _worst(rows: Measured) -> Measured:

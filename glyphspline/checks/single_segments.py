@@ -8,9 +8,8 @@ from ..compiled import compiled
 from ..curves.cubics import length
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray, IntArray
-from .joints import ROUNDING, end_curvature, handle, is_whole, least_kink, neighbour, turn_of
+from .joints import COLUMNS, ROUNDING, add, end_curvature, handle, is_whole, least_kink, neighbour, turn_of
 from .kinds import EXTREMUM, HANDLES, INFLECTION, SHORT, SLANTED, STRAIGHT, Limits
-from .table import COLUMNS, add
 
 BACK = 0.25
 """Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
@@ -24,7 +23,7 @@ AT_END = 1e-9
 
 @compiled
 def segment_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
-    """(n, 6) what may be wrong with single segments of contours; see :mod:`.table`.
+    """(n, 6) what may be wrong with single segments of contours; see :mod:`.joints`.
 
     A very short segment has no other finding, and a segment whose handles reach too far is not said to bend back: that
     is what such handles do.

@@ -6,23 +6,23 @@ import gc
 import json
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
+from ..batch.spec import RunSpec
+from ..fields import WRITTEN
 from ..fitting.options import Options
-from ..writers.settings import Settings
-from ..writers.svg.appearance import Appearance
+from ..writers.settings import Maps, Settings
 from . import arguments as opt
 from . import interruption
 from .dataset_command import dataset
-from .messages import errors, listen, printable, say, stop
+from .groups import grouped, number, only, without
+from .messages import listen, printable, say, stop
 from .progress import progress
-from .running import check_masters, convert_fonts, convert_masters, run, workplace
-
-PATIENCE = 60.0
-"""Time limit in seconds of ``info --deep`` for some hundred glyphs."""
+from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, workplace
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
@@ -43,410 +43,335 @@ def common(version: opt.Version = False) -> None:
 
 
 @app.command()
+@grouped
 def convert(
     fonts: opt.FontFiles,
     out: opt.Out,
-    text: opt.Text = None,
-    text_file: opt.TextFile = None,
-    unicodes: opt.Unicodes = None,
-    glyphs: opt.Glyphs = None,
-    gids: opt.Gids = None,
-    every: opt.Every = False,
-    face_index: opt.OneFace = None,
-    location: opt.Location = None,
-    variant: opt.Variant = Options.variant,
-    margin: opt.Margin = Options.margin,
-    fallback: opt.WhereNone = Options.fallback,
-    preset: opt.Choice = None,
-    corners: opt.CornerMode = Options.corners,
-    corner_angle: opt.CornerAngle = Options.corner_angle,
-    continuity: opt.Between = Options.continuity,
-    tolerance: opt.Tolerance = Options.tolerance,
-    step: opt.Step = Options.step,
-    count: opt.Count = Options.count,
-    effort: opt.HowHard = Options.effort,
-    names: opt.FileNames = "glyph",
-    each: opt.Each = False,
-    view_box: opt.Region = Appearance.view_box,
-    size: opt.Height = Appearance.size,
-    fill: opt.Fill = Appearance.fill,
-    stroke: opt.Stroke = Appearance.stroke,
-    comb: opt.Comb = "result",
-    corner_teeth: opt.CornerTeeth = False,
-    precision: opt.Precision = Options.precision,
-    remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
-    measure: opt.Measure = Options.measure,
-    formats: opt.Formats = "svg,curvature,gallery",
-    flatness: opt.Flatness = Settings.flatness,
-    dxf: opt.Dxf = Settings.dxf,
-    masters: opt.OfMasters = False,
-    others: opt.MoreFonts = None,
-    axis: opt.NewAxis = None,
-    jobs: opt.Jobs = None,
-    scheduler: opt.Scheduler = None,
-    resume: opt.Resume = True,
-    config: opt.Config = None,
-    quiet: opt.Quiet = False,
-    as_json: opt.JsonSummary = False,
-    json_log: opt.JsonLog = False,
-) -> None:
+    spec: Annotated[RunSpec, without("em")],
+    subset: opt.Subset,
+    instance: opt.Instance,
+    single: opt.SingleFonts,
+    run: opt.RunOptions,
+    each: Annotated[
+        bool, typer.Option("--each", help="Write a folder in DIR for one font too.", rich_help_panel=WRITTEN)
+    ] = False,
+) -> int:
     """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
 
     One font goes to the folder itself, several to a folder each in it, each face of a collection to one in that.
 
     Of several fonts, or a folder, glob or list of them, every glyph is converted unless some are asked for.
     """
-    given = dict(locals())
-    with errors(quiet, json_log):
-        listen(quiet)
-        in_masters = given["masters"] = masters or others is not None or axis is not None
-        if in_masters:
-            check_masters(given)
-        spec = opt.spec_of(given)
-        with workplace(jobs, scheduler, spec) as executor:  # first: workers get ready while fonts are found and opened
-            from ..batch import find_fonts
+    call = Conversion(out, spec, subset, instance, run)
+    if spec.masters or single != opt.SingleFonts():
+        call = replace(call, spec=replace(spec, masters=True))
+        check_masters(call, single, each)
+    with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
+        from ..batch import find_fonts
 
-            found = find_fonts(fonts)
-            if not found:
-                stop("no fonts found")
-            if in_masters:
-                raise typer.Exit(1 if convert_masters(found, spec, executor, given) else 0)
-            alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
-            runs = convert_fonts(found, spec, executor, given, alone)
-        from . import closing
+        found = find_fonts(fonts)
+        if not found:
+            stop("no fonts found")
+        if call.spec.masters:
+            return convert_masters(found, call, single, executor)
+        alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
+        runs = convert_fonts(found, call, executor, alone)
+    from . import closing
 
-        if not (quiet or json_log or alone):
-            say(f"written to {out}")
-            say(closing.table(runs))
-        if as_json:
-            typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
-    raise typer.Exit(1 if any(run.failed for run in runs) else 0)
+    if not (run.quiet or run.json_log or alone):
+        say(f"written to {out}")
+        say(closing.table(runs))
+    if run.as_json:
+        typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
+    return any(one.failed for one in runs)
 
 
 app.command()(dataset)
 
 
 @app.command()
+@grouped
 def text(
     font: opt.FontFile,
-    out: opt.Drawings,
-    words: opt.Words = None,
-    text_file: opt.WordsFile = None,
-    fallbacks: opt.Fallbacks = None,
-    features: opt.Features = "",
-    script: opt.Script = None,
-    language: opt.Language = None,
-    direction: opt.Flow = None,
-    width: opt.LineWidth = None,
-    align: opt.Alignment = "start",
-    line_height: opt.LineHeight = None,
-    path: opt.OnPath = None,
-    bend: opt.Bend = False,
-    offset: opt.Offset = None,
-    side: opt.WhichSide = "left",
-    face_index: opt.FaceIndex = 0,
-    location: opt.Location = None,
-    variant: opt.Variant = Options.variant,
-    margin: opt.Margin = Options.margin,
-    fallback: opt.WhereNone = Options.fallback,
-    preset: opt.Choice = None,
-    corners: opt.CornerMode = Options.corners,
-    corner_angle: opt.CornerAngle = Options.corner_angle,
-    continuity: opt.Between = Options.continuity,
-    tolerance: opt.Tolerance = Options.tolerance,
-    step: opt.Step = Options.step,
-    count: opt.Count = Options.count,
-    effort: opt.HowHard = Options.effort,
-    remove_overlaps: opt.RemoveOverlaps = Options.remove_overlaps,
-    format_name: opt.FormatName = None,
-    each_glyph: opt.EachGlyph = False,
-    flatness: opt.Flatness = None,
-    dxf: opt.Dxf = "spline",
-    precision: opt.Precision = Options.precision,
-    view_box: opt.Region = Appearance.view_box,
-    size: opt.TypeSize = None,
-    fill: opt.Fill = Appearance.fill,
-    stroke: opt.Stroke = Appearance.stroke,
-    config: opt.Config = None,
-    quiet: opt.Quiet = False,
-) -> None:
+    out: Annotated[
+        list[Path],
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FILE",
+            show_default=False,
+            rich_help_panel=WRITTEN,
+            help="Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+        ),
+    ],
+    lines: opt.TextOptions,
+    along: opt.PathOptions,
+    options: Annotated[Options, without("measure")],
+    settings: Annotated[Settings, without("size")],
+    drawings: opt.DrawingOptions,
+    run: Annotated[opt.RunOptions, only("config", "quiet")],
+    words: Annotated[
+        str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
+    ] = None,
+    instance: opt.Instance = opt.FIRST,
+) -> int:
     """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
     Each glyph is fitted once, however often it stands there. The exit status is 1 if the fonts lack characters of the
     text, or glyphs cannot be read.
-    """
-    given = dict(locals())
-    with errors(quiet):
-        listen(quiet)
-        from .text_command import set_text
+    """  # fmt: skip
+    from .text_command import TextCall, set_text
 
-        status = set_text(given)
-    raise typer.Exit(status)
+    return set_text(TextCall(font, instance, words, lines, along, options, settings, drawings), out, run.quiet)
 
 
 @app.command()
+@grouped
 def info(
     font: opt.FontFile,
-    face_index: opt.OneFace = None,
-    location: opt.Location = None,
-    deep: opt.Deep = False,
-    as_json: opt.Json = False,
+    instance: opt.Instance,
+    run: Annotated[opt.RunOptions, only("as_json")],
+    deep: Annotated[
+        bool,
+        typer.Option(
+            "--deep", help="Read every glyph: count contours, find overlaps and what is broken. Takes minutes."
+        ),
+    ] = False,
 ) -> None:
     """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
-    with errors():
-        from ..readers.facts import file_facts
-        from .describe import lines_of
+    from ..readers.facts import file_facts
+    from .describe import lines_of
 
-        facts = file_facts(font, face_index, opt.location_of(location))
-        if deep:
-            look_deep(font, facts)
-    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False) if as_json else printable("\n".join(lines_of(facts))))
+    facts = file_facts(font, instance.face_index, instance.place)
+    if deep:
+        look_deep(font, facts)
+    if run.as_json:
+        typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
+    else:
+        typer.echo(printable("\n".join(lines_of(facts))))
 
 
 def look_deep(font: Path, facts: dict[str, Any]) -> None:
     """Add what needs all outlines, with progress on a terminal."""
-    from ..batch.deep_facts import add_glyph_facts
+    from ..batch.jobs.deep_facts import add_glyph_facts
     from ..batch.schedule import workers
     from ..readers.open import STDIN, standard_input
 
     path = standard_input() if str(font) == STDIN else font
     # In processes with a time limit: counting the contours of a hostile font can take years.
-    with workers(None, PATIENCE) as executor, progress(quiet=False) as observer:
+    with workers(None) as executor, progress(quiet=False) as observer:
         add_glyph_facts(path.absolute(), facts, executor, observer)
 
 
 @app.command()
-def report(folder: opt.Folder, font: opt.RunFont = None) -> None:
+@grouped
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)],
+    font: Annotated[
+        Path | None, typer.Option("--font", metavar="FONT", help="Read the outlines of this font of the run.")
+    ] = None,
+) -> None:
     """Write the gallery, index.html, of one run, or of a folder that holds several.
 
     Results of a run without --format gallery come from its drawings, source outlines from its font: --font, or the
     file of the same name and bytes in the current folder, in DIR or above it. There are no polygons in such a gallery,
     and without the font no sources.
     """
-    with errors():
-        from ..batch import write_gallery
+    from ..batch import write_gallery
 
-        write_gallery(folder, font)
+    write_gallery(folder, font)
     typer.echo(folder / "index.html")
 
 
 @app.command()
+@grouped
 def atlas(
     font: opt.FontFile,
-    out: opt.AtlasFile = Path("atlas.pdf"),
-    text: opt.Text = None,
-    text_file: opt.TextFile = None,
-    unicodes: opt.Unicodes = None,
-    glyphs: opt.Glyphs = None,
-    gids: opt.Gids = None,
-    every: opt.Every = False,
-    axis: opt.AlongAxis = None,
-    profiles: opt.Profiles = None,
-    face_index: opt.FaceIndex = 0,
-    location: opt.Location = None,
-    variant: opt.Variant = Options.variant,
-    margin: opt.Margin = Options.margin,
-    fallback: opt.WhereNone = Options.fallback,
-    preset: opt.Choice = None,
-    corners: opt.CornerMode = Options.corners,
-    corner_angle: opt.CornerAngle = Options.corner_angle,
-    continuity: opt.Between = Options.continuity,
-    tolerance: opt.Tolerance = Options.tolerance,
-    step: opt.Step = Options.step,
-    count: opt.Count = Options.count,
-    effort: opt.HowHard = Options.effort,
-    comb: opt.Comb = "result",
-    corner_teeth: opt.CornerTeeth = False,
-    quiet: opt.Quiet = False,
-) -> None:
+    subset: opt.Subset,
+    options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
+    maps: Maps,
+    run: Annotated[opt.RunOptions, only("quiet")],
+    out: Annotated[Path, opt.file_option("--out", "-o", help="Write this PDF.", show_default=True)] = Path("atlas.pdf"),
+    axis: Annotated[
+        str | None,
+        typer.Option(
+            "--axis",
+            metavar="TAG",
+            help="Draw each glyph along this axis of a variable font instead, its source and the curve for all "
+            "masters. Corners are sharp.",
+        ),
+    ] = None,
+    profiles: Annotated[
+        str | None,
+        typer.Option("--profiles", help="Add a page with κ(s) for these characters; for up to 12 glyphs, for all."),
+    ] = None,
+    instance: opt.Instance = opt.FIRST,
+) -> int:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
 
     With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
-    given = dict(locals())
-    with errors(quiet):
-        from ..batch import make_atlas, make_axis_atlas
-        from ..readers import open_source
+    from ..batch import make_atlas, make_axis_atlas
+    from ..readers import open_source
 
-        if axis is not None and (profiles is not None or corner_teeth):
-            stop("--profiles and --corner-teeth are of an atlas without --axis")
-        source = open_source(font, face_index, opt.location_of(location))
-        names = opt.selection_of(source, given)
-        if not names:
-            stop("none of the glyphs asked for is in the font")
-        chosen = None if profiles is None else source.select(text=profiles)
-        with progress(quiet) as observer:
-            options = opt.options_of(given)
-            if axis is not None:
-                pages, failed = make_axis_atlas(source, names, out, options, axis, observer=observer)
-            else:
-                pages, failed = make_atlas(
-                    source, names, out, options, profiles=chosen, comb=comb, in_corners=corner_teeth, observer=observer
-                )
-        if not quiet:
-            say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
-    raise typer.Exit(1 if failed else 0)
+    if axis is not None and (profiles is not None or maps.corner_teeth):
+        stop("--profiles and --corner-teeth are of an atlas without --axis")
+    source = open_source(font, instance.face_index or 0, instance.place)
+    names = subset.of(source)
+    if not names:
+        stop("none of the glyphs asked for is in the font")
+    chosen = None if profiles is None else source.select(text=profiles)
+    with progress(run.quiet) as observer:
+        if axis is not None:
+            pages, failed = make_axis_atlas(source, names, out, options, axis, observer=observer)
+        else:
+            pages, failed = make_atlas(
+                source, names, out, options, profiles=chosen, comb=maps.comb, in_corners=maps.corner_teeth,
+                observer=observer,
+            )  # fmt: skip
+    if not run.quiet:
+        say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
+    return bool(failed)
 
 
 @app.command()
+@grouped
 def check(
     fonts: opt.FontFiles,
-    kinds: opt.KindNames = None,
-    thresholds: opt.Limits = None,
-    corner_angle: opt.CheckAngle = None,
-    axis: opt.AxisTag = None,
-    steps: opt.AxisSteps = None,
-    text: opt.Text = None,
-    text_file: opt.TextFile = None,
-    unicodes: opt.Unicodes = None,
-    glyphs: opt.Glyphs = None,
-    gids: opt.Gids = None,
-    every: opt.Every = False,
-    face_index: opt.OneFace = None,
-    location: opt.Location = None,
-    loglevel: opt.ShownLevel = None,
-    error_level: opt.ErrorLevel = None,
-    baseline: opt.Known = None,
-    write_baseline: opt.NewKnown = None,
-    rows: opt.Rows = 20,
-    csv: opt.CsvFile = None,
-    ghmarkdown: opt.MarkdownFile = None,
-    html: opt.HtmlFile = None,
-    plot: opt.Plot = None,
-    as_json: opt.Json = False,
-    jobs: opt.Jobs = None,
-    config: opt.Config = None,
-    quiet: opt.Quiet = False,
-) -> None:
+    options: opt.CheckOptions,
+    report: opt.ReportOptions,
+    subset: opt.Subset,
+    instance: opt.Instance,
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "config", "quiet")],
+) -> int:
     """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
 
     The worst findings come first; kinks are WARN, the rest INFO. All glyphs are checked unless some are asked for,
     those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
     for it, and 2 if a font cannot be read.
     """
-    given = dict(locals())
-    with errors(quiet):
-        listen(quiet)
-        from .check_outputs import run as run_check
-        from .checking import reaches
+    from .check_outputs import run as run_check
 
-        faces = run_check(given)
-    unread = any(face.error is not None for face in faces)
-    bad = error_level is not None and any(reaches(face, error_level) for face in faces)
-    raise typer.Exit(2 if unread else 1 if bad else 0)
+    faces = run_check(fonts, options, report, subset, instance, run)
+    if any(face.error is not None for face in faces):
+        return 2
+    level = report.error_level
+    return level is not None and any(face.reaches(level) for face in faces)
 
 
 @app.command()
+@grouped
 def diff(
-    old: opt.OldFont,
-    new: opt.NewFont,
-    tolerance: opt.Apart = None,
-    text: opt.Text = None,
-    text_file: opt.TextFile = None,
-    unicodes: opt.Unicodes = None,
-    glyphs: opt.Glyphs = None,
-    gids: opt.Gids = None,
-    every: opt.Every = False,
-    face_index: opt.FaceIndex = 0,
-    location: opt.Location = None,
-    rows: opt.Rows = 20,
-    html: opt.Page = None,
-    as_json: opt.Json = False,
-    jobs: opt.Jobs = None,
-    quiet: opt.Quiet = False,
-) -> None:
+    old: Annotated[Path, typer.Argument(metavar="OLD", help=opt.FONT_HELP, show_default=False)],
+    new: Annotated[
+        Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
+    ],
+    subset: opt.Subset,
+    report: Annotated[opt.ReportOptions, only("rows")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            "--tolerance",
+            parser=number,
+            metavar="UNITS",
+            help="Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.",
+        ),
+    ] = None,
+    instance: opt.Instance = opt.FIRST,
+    html: Annotated[Path | None, opt.file_option("--html", help="Draw both over each other, on a page.")] = None,
+) -> int:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
 
     Exit status 1 if anything differs by more than the tolerance: an outline or an advance, contours or glyphs that only
     one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
     for.
     """
-    given = dict(locals())
-    with errors(quiet):
-        from ..batch import compare_fonts
-        from . import comparing_fonts as comparing
+    from ..batch import compare_fonts
+    from . import comparing_fonts as comparing
 
-        listen(quiet)
-        sources = comparing.open_both(old, new, face_index, location)
-        pairs = comparing.chosen_pairs(*sources, given)
-        with progress(quiet) as observer:
-            found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=jobs, observer=observer)
-        if html is not None:
-            comparing.write_page(html, *sources, found)
-    worst = found.worst_first()
-    if as_json:
+    sources = comparing.open_both(old, new, instance)
+    pairs = comparing.chosen_pairs(*sources, subset)
+    with progress(run.quiet) as observer:
+        found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
+    if html is not None:
+        comparing.write_page(html, *sources, found)
+    worst, rows = found.worst_first(), report.rows
+    if run.as_json:
         typer.echo(json.dumps(found.facts(), indent=1, ensure_ascii=False))
     elif worst and rows:
         typer.echo(comparing.table(worst, rows, found.tolerance))
-    if not quiet:
-        for line in comparing.sentences(found, 0 if as_json else rows):
+    if not run.quiet:
+        for line in comparing.sentences(found, 0 if run.as_json else rows):
             say(line)
-    raise typer.Exit(1 if found.is_beyond else 0)
+    return found.is_beyond
 
 
 @app.command()
+@grouped
 def view(
     font: opt.FontFile,
-    face_index: opt.FaceIndex = 0,
-    port: opt.Port = 0,
-    browser: opt.Browser = True,
+    instance: Annotated[opt.Instance, only("face_index")] = opt.FIRST,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Listen on this port; 0 takes any that is free.")
+    ] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
-    with errors():
-        from ..extras import need
+    from ..extras import need
 
-        need("view")
-        from ..viewer import serve
+    need("view")
+    from ..viewer import serve
 
-        serve(font, face_index, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
+    face = instance.face_index or 0
+    serve(font, face, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
 @app.command()
+@grouped
 def demo(
-    font: opt.OwnFont = None,
-    text: opt.Text = None,
+    subset: Annotated[opt.Subset, only("text")],
+    run: Annotated[opt.RunOptions, only("jobs", "quiet")],
+    font: Annotated[
+        Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)
+    ] = None,
     out: opt.Out = Path("outputs/demo"),
-    jobs: opt.Jobs = None,
-    quiet: opt.Quiet = False,
-) -> None:
+) -> int:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
-    failed = 0
-    with errors(quiet):
-        from ..batch import RunSpec
-        from ..batch.preload import kinds_for
-        from ..batch.warm import warm as warm_up
-        from ..readers import open_source
+    from ..batch.preload import kinds_for
+    from ..batch.warm import warm as warm_up
+    from ..readers import open_source
 
-        listen(quiet)
-        shown, spec = [], RunSpec()
-        warm_up(jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
-        with workplace(jobs, None, spec) as executor:
-            for path, characters in [(font, "龍好")] if font else demo_fonts():
-                source = open_source(path)
-                names = source.select(text=text or characters)
-                if not names:
-                    stop(f"{path} has none of {text or characters}: give --text")
-                folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
-                failed += run(source, names, folder, spec, executor, restart=True, quiet=quiet).failed
-                shown.append(folder)
-    if not quiet:
+    failed, shown, spec = 0, [], RunSpec()
+    warm_up(run.jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
+    with workplace(run.jobs, None, spec) as executor:
+        for path, characters in [(font, "龍好")] if font else demo_fonts():
+            source = open_source(path)
+            names = source.select(text=subset.text or characters)
+            if not names:
+                stop(f"{path} has none of {subset.text or characters}: give --text")
+            folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
+            call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
+            failed += run_face(source, names, call, executor).failed
+            shown.append(folder)
+    if not run.quiet:
         typer.echo("Open in a browser:")
         for folder in shown:
             typer.echo(f"  {folder / 'index.html'}")
         typer.echo("Drawings are in svg/ beside it, curvature maps in curvature/.")
-    raise typer.Exit(1 if failed else 0)
+    return bool(failed)
 
 
 @app.command()
-def warm(jobs: opt.Jobs = None, quiet: opt.Quiet = False) -> None:
+@grouped
+def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""
-    with errors(quiet):
-        from ..batch.warm import warm as compile_all
+    from ..batch.warm import warm as compile_all
 
-        with progress(quiet, compiling=True) as observer:
-            compile_all(jobs, observer)
-    if not quiet:
+    with progress(run.quiet, compiling=True) as observer:
+        compile_all(run.jobs, observer)
+    if not run.quiet:
         say("everything is compiled")
 
 

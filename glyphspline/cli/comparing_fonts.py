@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from math import isinf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..comparing.difference import Difference
 from ..errors import GlyphsplineError
@@ -25,7 +25,7 @@ NAMED = 10
 """Names of glyphs in a sentence."""
 
 
-def open_both(old: Path, new: Path, face_index: int, location: str | None) -> tuple[Source, Source]:
+def open_both(old: Path, new: Path, instance: opt.Instance) -> tuple[Source, Source]:
     """Open two sources. Face and location are for those that have several faces, and axes.
 
     Raises:
@@ -33,7 +33,7 @@ def open_both(old: Path, new: Path, face_index: int, location: str | None) -> tu
     """
     from ..readers import open_source
 
-    place = opt.location_of(location)
+    face_index, place = instance.face_index or 0, instance.place
     sources = [open_source(path) for path in (old, new)]
     of_faces = [source.num_faces > 1 or not face_index for source in sources]
     of_axes = [bool(source.axes) or not place for source in sources]
@@ -48,7 +48,7 @@ def open_both(old: Path, new: Path, face_index: int, location: str | None) -> tu
     return sources[0], sources[1]
 
 
-def chosen_pairs(old: Source, new: Source, given: Mapping[str, Any]) -> Pairs:
+def chosen_pairs(old: Source, new: Source, subset: opt.Subset) -> Pairs:
     """Which glyphs are compared: all unless some are asked for, in either font; glyph indices are the old one's.
 
     Raises:
@@ -56,10 +56,10 @@ def chosen_pairs(old: Source, new: Source, given: Mapping[str, Any]) -> Pairs:
     """
     from ..batch import pairs_of
 
-    if not opt.is_selected(given) or given["every"]:
+    if not subset.is_given or subset.all_glyphs:
         return pairs_of(old, new)
-    chosen = opt.selection_of(old, given)
-    others = opt.selection_of(new, given) if given["gids"] is None else ()
+    chosen = subset.of(old)
+    others = subset.of(new) if subset.gids is None else ()
     found = pairs_of(old, new, chosen, others)
     if not (found.pairs or found.only_old or found.only_new):
         raise GlyphsplineError("none of the glyphs asked for is in either font")
@@ -128,7 +128,7 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
     Raises:
         OutputError: the file cannot be written.
     """
-    from ..errors import OutputError
+    from ..files import writing
     from ..outlines.outline import Outline
     from ..report.comparison import comparison_page
 
@@ -142,7 +142,5 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
         facts.append(f"the worst {DRAWN} of {len(found.differences)} are drawn")
     heading = f"{old.path.name} and {new.path.name}"
     page = comparison_page(heading, facts, list(zip(worst, *read, strict=True)), found.tolerance)
-    try:
+    with writing(path):
         path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error

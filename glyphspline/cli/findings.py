@@ -11,16 +11,16 @@ from dataclasses import asdict
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
-from ..checks.finding import place_on_axes, severity
+from ..checks.finding import place_on_axes
 from ..checks.kinds import KINDS, Level
 from ..types import counted
 from .messages import printable
 from .text_table import plain
 
 if TYPE_CHECKING:
+    from ..batch.check_fonts import Face
     from ..checks.finding import Finding
     from ..checks.kinds import Thresholds
-    from .checking import Face
 
 MARKDOWN_ROWS = 200
 """Findings in Markdown: GitHub takes 65,536 characters."""
@@ -35,12 +35,6 @@ COLUMNS = (
 """Of CSV."""
 
 LEVEL_OF: Mapping[str, Level] = {kind.name: kind.level for kind in KINDS}
-
-
-def worst_first(faces: Sequence[Face]) -> list[tuple[Face, Finding]]:
-    """The findings of all faces in one list."""
-    every = [(face, finding) for face in faces for finding in face.findings]
-    return sorted(every, key=lambda pair: severity(pair[1])) if len(faces) > 1 else every
 
 
 def table(found: Sequence[tuple[Face, Finding]], shown: int, several: bool) -> str:

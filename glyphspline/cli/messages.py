@@ -29,6 +29,8 @@ def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
         os.environ[QUIET] = "1"
     try:
         yield
+    except BrokenPipeError:
+        raise
     except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
         stop(str(error))
     except MemoryError:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from ..batch.text_drawings import TextJob
     from ..fitting.options import Options
     from ..layout.placed import Layout
+    from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -31,7 +33,21 @@ BY_SUFFIX = {
 LENGTH = re.compile(r"(-?\d{1,9}(?:\.\d{1,9})?)([a-z]*)")
 
 
-def set_text(given: Mapping[str, Any]) -> int:
+@dataclass(frozen=True)
+class TextCall:
+    """A text, how it is set, fitted and drawn: the arguments of the command ``text``."""
+
+    font: Path
+    instance: opt.Instance
+    words: str | None
+    lines: opt.TextOptions
+    along: opt.PathOptions
+    options: Options
+    settings: Settings
+    drawings: opt.DrawingOptions
+
+
+def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
     """Lay a text out and write its drawings; returns the exit status: 1 if something is left out of them, else 0.
 
     Raises:
@@ -40,14 +56,14 @@ def set_text(given: Mapping[str, Any]) -> int:
     """
     from ..batch.schedule import workers
 
-    files = list(formats_of(given["out"], given["format_name"]))
-    look, options, names = look_of(given), opt.options_of(given), tuple(name for _, name in files)
+    files = list(formats_of(out, call.drawings.format_name))
+    names = tuple(name for _, name in files)
     # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
-    with workers(1, inf, options, names, expected=1) as executor:
+    with workers(1, inf, call.options, names, expected=1) as executor:
         from ..batch.text_drawings import drawings
         from ..layout.placed import LEFT_OUT
 
-        job = job_of(given, look, options, names)
+        job = job_of(call, names)
         drawn = executor.submit(drawings, job).result()
     for (file, _), content in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":
@@ -56,7 +72,7 @@ def set_text(given: Mapping[str, Any]) -> int:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
     remarks = [*missing(job.layout), *drawn.notes]
-    if not given["quiet"]:
+    if not quiet:
         for line in remarks[:SHOWN]:
             say(line)
         if len(remarks) > SHOWN:
@@ -87,33 +103,24 @@ def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, 
         yield file, known
 
 
-def look_of(given: Mapping[str, Any]) -> Appearance:
-    """How the drawing looks; ``--size`` is that of an em."""
-    from ..writers.svg.appearance import Appearance
-
-    try:
-        return Appearance(given["view_box"], None, given["fill"], given["stroke"], given["size"])
-    except OptionError as error:
-        raise OptionError(re.sub("^em is", "--size is", error.message)) from None
-
-
-def words_of(given: Mapping[str, Any]) -> str:
+def words_of(words: str | None, file: Path | None) -> str:
     """The text: the argument, or that of a file; - is standard input.
 
     Raises:
         GlyphsplineError: none is given, or both.
     """
-    words, file = given["words"], given["text_file"]
-    if (words is None) == (file is None):
-        raise GlyphsplineError(
-            "give a text, or --text-file" if words is None else "give a text or --text-file, not both"
-        )
+    if words is not None and file is not None:
+        raise GlyphsplineError("give a text or --text-file, not both")
     if words == "-" or str(file) == "-":
         return sys.stdin.buffer.read().decode("utf-8-sig")
-    return words if file is None else file.read_text(encoding="utf-8-sig")
+    if file is not None:
+        return file.read_text(encoding="utf-8-sig")
+    if words is None:
+        raise GlyphsplineError("give a text, or --text-file")
+    return words
 
 
-def job_of(given: Mapping[str, Any], look: Appearance, options: Options, formats: tuple[str, ...]) -> TextJob:
+def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
     """The text on its lines, with the path that it is to follow, and how it is drawn.
 
     Raises:
@@ -123,31 +130,34 @@ def job_of(given: Mapping[str, Any], look: Appearance, options: Options, formats
     from ..layout.lay_out import layout
     from ..readers import open_source
 
-    text = words_of(given)
-    location = opt.location_of(given["location"])
-    font = open_source(given["font"], given["face_index"], location)
-    fallbacks = [open_source(file) for file in given["fallbacks"] or ()]
+    lines, along, look = call.lines, call.along, call.settings.look
+    text = words_of(call.words, lines.text_file)
+    font = open_source(call.font, call.instance.face_index or 0, call.instance.place)
+    fallbacks = [open_source(file) for file in lines.fallbacks or ()]
     em = font.metrics.units_per_em
-    setting: dict[str, Any] = {name: given[name] for name in ("features", "script", "language", "direction")}
-    lengths: dict[str, Any] = {name: length(name, given[name], em, look) for name in ("width", "line_height")}
+    width, line_height = length("width", lines.width, em, look), length("line_height", lines.line_height, em, look)
+    align: Any = lines.align  # "justify" is refused with the path
     curve = None
-    if given["path"] is None:
+    if along.path is None:
         for name in ("bend", "offset", "side"):
-            if given[name] not in (False, None, "left"):
+            if getattr(along, name) != getattr(opt.PathOptions, name):
                 raise GlyphsplineError(f"--{name} is for text on a --path")
     else:
-        if given["width"] is not None:
+        if lines.width is not None:
             raise GlyphsplineError("--width is for lines; text on a --path is one")
-        if given["direction"] in ("ttb", "btt"):
+        if lines.direction in ("ttb", "btt"):
             raise GlyphsplineError("columns cannot stand on a --path")
         from ..layout.path_file import open_path
 
-        curve = open_path(given["path"]).scaled(pixel(em, look))
-    setting["align"] = given["align"] if curve is None else "start"
+        curve = open_path(along.path).scaled(pixel(em, look))
+    laid_out = layout(
+        font, text, fallbacks=fallbacks, features=lines.features, script=lines.script, language=lines.language,
+        direction=lines.direction, width=width, line_height=line_height,
+        align=align if curve is None else "start",
+    )  # fmt: skip
     return TextJob(
-        layout(font, text, fallbacks=fallbacks, **setting, **lengths), options, formats, look, given["flatness"],
-        given["dxf"], given["each_glyph"], curve, given["bend"], given["align"], given["side"],
-        length("offset", given["offset"], em, look) or 0.0,
+        laid_out, call.options, formats, call.settings, call.drawings.each_glyph, curve, along.bend, align,
+        along.side, length("offset", along.offset, em, look) or 0.0,
     )  # fmt: skip
 
 

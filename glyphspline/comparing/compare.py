@@ -129,8 +129,7 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
 
 def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:
     """The kinks of outlines, as :func:`glyphspline.check` finds them; points are multiplied by the scales."""
-    from ..checks.joints import joint_findings
-    from ..checks.table import CONTOUR, PLACE, VALUE, WHAT
+    from ..checks.joints import CONTOUR, PLACE, VALUE, WHAT, joint_findings
     from ..outlines.segments import all_cubics
 
     contours = joined([outline.arrays for outline in outlines])

@@ -6,13 +6,14 @@ import io
 import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from itertools import chain
 from typing import Any
 
 from ..extras import need
-from ..fitting.options import Options
+from ..fields import arguments
 from ..types import counted
 from .dataset_columns import ABOUT
-from .dataset_spec import FIT, DatasetSpec
+from .dataset_spec import DatasetSpec
 from .dataset_summary import Summary
 from .licences import UNKNOWN
 from .plan import Plan
@@ -73,27 +74,11 @@ def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
 
 def command(spec: DatasetSpec) -> str:
     """The call of the command line that makes such a data set: what is not default."""
-    words = ["glyphspline", "dataset", "FONTS…", "--out", "DIR"]
-    plain = DatasetSpec()
-    for field in fields(DatasetSpec):
-        value = getattr(spec, field.name)
-        if field.name == "options" or value == getattr(plain, field.name):
-            continue
-        name = {"scripts": "script", "licences": "licence"}.get(field.name, field.name)
-        if field.name == "characters" and not (len(value) <= LISTED and value.isprintable() and "`" not in value):
-            name, value = "text-file", "CHARACTERS.txt"
-        if isinstance(value, tuple):
-            value = ",".join(value)
-        words += [f"--{name}", "polygon" if value is None else str(value)]
-    if spec.options is None:
-        words.append("--no-fit")
-    else:
-        for field in fields(Options):
-            value = getattr(spec.options, field.name)
-            if value != getattr(FIT, field.name) and field.name not in ("max_ratio", "residual_tolerance"):
-                words.append(f"--{field.name.replace('_', '-')}")
-                words += [] if value is True else [str(value)]
-    return " ".join(word if word == "FONTS…" else shlex.quote(word) for word in words)
+    found = arguments(spec, DatasetSpec())
+    fit = found.pop("options", []) if spec.options else ["--no-fit"]
+    if not (len(spec.characters) <= LISTED and spec.characters.isprintable() and "`" not in spec.characters):
+        found["characters"] = ["--text-file", "CHARACTERS.txt"]
+    return f"glyphspline dataset FONTS… --out DIR {shlex.join([*chain(*found.values()), *fit])}".rstrip()
 
 
 def card(plan: Plan, summary: Summary, schema: Any) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..batch.job import Place
-from ..batch.pool import sign_of_life
+from ..batch.engine import Item, Job, reason
+from ..batch.jobs.convert import ConvertJob
+from ..batch.places import Place, sources
 from ..batch.spec import Limits
 from ..errors import GlyphsplineError
 from ..extras import need
@@ -16,12 +18,8 @@ from .dataset_spec import DatasetSpec
 from .plan import Task
 from .scan import FontFacts, category_of, script_of, selected
 
-
-class RowsJob(NamedTuple):
-    """What a worker needs: what rows hold, and from which size on a glyph fails."""
-
-    spec: DatasetSpec
-    limits: Limits
+if TYPE_CHECKING:
+    from ..readers.source import OutlineOrError
 
 
 class Made(NamedTuple):
@@ -37,91 +35,73 @@ class Made(NamedTuple):
     failed: list[tuple[str, str]]
 
 
-def make_rows(job: RowsJob, tasks: Sequence[Task]) -> Made:
-    """The rows of glyphs of one font, in order. A glyph that fails costs only itself."""
-    from ..batch.worker import Read, batches, cost_of, reason, source_of, vertices_of
+@dataclass(frozen=True)
+class RowsJob(Job[Task, Made]):
+    """What rows hold, and from which size on a glyph fails. The tasks of a call are of one font."""
 
-    pa = need("parquet")
-    font = tasks[0].font
-    source = source_of(*font.place)
-    gids = _selected(font.place, job.spec)
-    tables: list[Any] = []
-    failed: dict[int, tuple[str, str]] = {}
-    read: list[Read] = []
-    for task, outline in zip(tasks, source.outlines([gids[t.at] for t in tasks], errors="return"), strict=True):
-        try:
-            if isinstance(outline, GlyphsplineError):
-                raise outline
-            check_points(outline, job)
-            vertices = 0.0 if job.spec.options is None else vertices_of([outline], job.spec.options)[0]
-            read.append(Read(task, outline, cost_of(outline, vertices, job.limits)))  # type: ignore[arg-type]
-        except GlyphsplineError as error:
-            failed[task.number] = source.glyph_names[gids[task.at]], reason(error)
-    for batch in batches(read):
-        tables += _tables(job.spec, font, [(glyph.task, glyph.outline) for glyph in batch], failed)  # type: ignore[misc]
-        sign_of_life()
-    table = pa.concat_tables(tables) if tables else empty_table(job.spec)
-    sink = pa.BufferOutputStream()
-    with pa.ipc.new_stream(sink, table.schema) as writer:
-        writer.write_table(table.combine_chunks())
-    return Made(sink.getvalue().to_pybytes(), len(tasks) - len(failed), [failed[number] for number in sorted(failed)])
+    spec: DatasetSpec
+    limits: Limits
 
+    budget = ConvertJob.budget
 
-def check_points(outline: Outline, job: RowsJob) -> None:
-    """Refuse a glyph of more contours than any real one has.
+    def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
+        """Outlines; one that is too large is an error."""
+        from ..batch.worker import items
 
-    Raises:
-        GlyphsplineError: its points are more than vertices may be, and it has more than a hundred contours.
-    """
-    contours, points = len(outline.contours), job.spec.points or 0
-    if contours > 100 and contours * points > job.limits.vertices:
-        raise GlyphsplineError(
-            f"{contours} contours of {points} points, more than the {job.limits.vertices} points allowed"
+        place = tasks[0].font.place
+        (source,), gids = sources(place), _selected(place, self.spec)
+        found = source.outlines([gids[task.at] for task in tasks], errors="return")
+        return items([self._checked(outline) for outline in found], self.spec.options, self.limits)
+
+    def _checked(self, outline: OutlineOrError) -> OutlineOrError:
+        """The outline, or an error if it has more contours than any real one has."""
+        if isinstance(outline, GlyphsplineError):
+            return outline
+        contours, points = len(outline.contours), self.spec.points or 0
+        if contours <= 100 or contours * points <= self.limits.vertices:
+            return outline
+        return GlyphsplineError(
+            f"{contours} contours of {points} points, more than the {self.limits.vertices} points allowed"
         )
 
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Made:
+        """The rows of outlines."""
+        from .rows import fits_of, table_of
 
-def names_of(tasks: Sequence[Task], spec: DatasetSpec) -> list[str]:
-    """The names of glyphs of one font, of which a worker was lost: by opening the font here, if it can be opened."""
-    from ..batch.worker import source_of
+        pa = need("parquet")
+        results: list[Any] = [None] * len(contents)
+        if self.spec.options is not None:
+            results = list(fits_of(contents, self.spec))
+        good = [k for k, result in enumerate(results) if not isinstance(result, GlyphsplineError)]
+        failed = [
+            (outline.name, reason(result))
+            for outline, result in zip(contents, results, strict=True)
+            if isinstance(result, GlyphsplineError)
+        ]
+        own = [contents[k] for k in good]
+        table = with_font(table_of(own, [results[k] for k in good], self.spec), own, tasks[0].font, self.spec)
+        sink = pa.BufferOutputStream()
+        with pa.ipc.new_stream(sink, table.schema) as writer:
+            writer.write_table(table.combine_chunks())
+        return Made(sink.getvalue().to_pybytes(), len(good), failed)
 
-    place = tasks[0].font.place
-    try:
-        names, gids = source_of(*place).glyph_names, _selected(place, spec)
-        return [names[gids[task.at]] for task in tasks]
-    except (GlyphsplineError, IndexError):  # the file has been changed or removed
-        return [f"#{task.at}" for task in tasks]
+    def failed(self, task: Task, error: Exception) -> Made:
+        """No rows. The name of the glyph is that of the font, if it can be opened here."""
+        place = task.font.place
+        try:
+            name = sources(place)[0].glyph_names[_selected(place, self.spec)[task.at]]
+        except (GlyphsplineError, IndexError):  # the file has been changed or removed
+            name = f"#{task.at}"
+        return Made(b"", 0, [(name, reason(error))])
+
+    def failures(self, result: Made) -> int:
+        """Number of glyphs that have no rows."""
+        return len(result.failed)
 
 
 @lru_cache(maxsize=1)
 def _selected(place: Place, spec: DatasetSpec) -> list[int]:
-    from ..batch.worker import source_of
-
-    return selected(source_of(*place), spec)
-
-
-def _tables(
-    spec: DatasetSpec, font: FontFacts, glyphs: Sequence[tuple[Task, Outline]], failed: dict[int, tuple[str, str]]
-) -> list[Any]:
-    """Tables of a batch's rows; after an unexpected error, glyph by glyph."""
-    from ..batch.worker import reason
-    from .rows import fits_of, table_of
-
-    outlines = [outline for _, outline in glyphs]
-    try:
-        results: list[Any] = [None] * len(outlines)
-        if spec.options is not None:
-            results = list(fits_of(outlines, spec))
-        good = [k for k, result in enumerate(results) if not isinstance(result, GlyphsplineError)]
-        own = [outlines[k] for k in good]
-        table = with_font(table_of(own, [results[k] for k in good], spec), own, font, spec)
-        bad = {k: results[k] for k in {*range(len(glyphs))}.difference(good)}
-        failed |= {glyphs[k][0].number: (outlines[k].name, reason(error)) for k, error in bad.items()}
-        return [table]
-    except Exception as error:
-        if len(glyphs) == 1:
-            failed[glyphs[0][0].number] = outlines[0].name, reason(error)
-            return []
-        return [table for glyph in glyphs for table in _tables(spec, font, [glyph], failed)]
+    return selected(sources(place)[0], spec)
 
 
 def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:

@@ -5,35 +5,32 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from ..batch.engine import Observer, run
 from ..batch.font_search import find_fonts
-from ..batch.schedule import AHEAD, pool_size, spread, workers
+from ..batch.schedule import workers
 from ..batch.spec import Limits, differences
 from ..errors import OptionError, OutputError
 from ..extras import need
 from . import store
 from .card import card, fonts_file
-from .chunk_rows import Made, RowsJob, empty_table, make_rows, names_of
+from .chunk_rows import Made, RowsJob, empty_table
 from .dataset_spec import DatasetSpec
 from .dataset_summary import Summary
-from .plan import Plan, Shard, Task, chunk_size, plan_of, record_text
-from .scan import FontFacts, ScanJob, scan_files, unread
+from .plan import Plan, Shard, plan_of, record_text
+from .scan import ScanJob
 from .shards import OfFont, Shapes, add_shapes, finished, write_shard
 
 RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
 """Files beside the folder of shards."""
 
 SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
-
-Observer = Callable[[int, int, int], None]
-"""Called with the number of glyphs done, of all glyphs, and of those that failed."""
 
 
 def dataset(
@@ -90,17 +87,12 @@ def dataset(
             jobs, limits.seconds, options, expected=len(found), also=unfitted, scheduler=scheduler
         )
         with nullcontext() if executor else pool:
-            plan = plan_of(spec, list(_scanned(pool, spec, found)))
+            scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
+            plan = plan_of(spec, [facts for part in scanned for facts in part.result])
             _prepare(folder, plan, restart)
             summary = _written(folder, plan, pool, limits, observer)
     summary.seconds = time.perf_counter() - started
     return summary
-
-
-def _scanned(pool: Executor, spec: DatasetSpec, paths: Sequence[Path]) -> Iterator[FontFacts]:
-    """The facts of all fonts, in no order."""
-    for chunk, result in spread(pool, scan_files, ScanJob(spec), [[path.absolute()] for path in paths]):
-        yield from [unread(path, result.message) for path in chunk] if isinstance(result, Exception) else result
 
 
 def _prepare(out: str, plan: Plan, restart: bool) -> None:
@@ -147,21 +139,22 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     }
     left = [shard for shard in plan.shards if shard not in held]
     totals: dict[int, OfFont] = {}
+    numbers = {font.key: k for k, font in enumerate(plan.fonts) if font.taken}
     done = sum(shard.glyphs for shard in held)
     failed = sum(of_font.failed for fonts in held.values() for of_font in fonts.values())
-    numbers = {font.key: k for k, font in enumerate(plan.fonts) if font.taken}
-    results = in_order(pool, RowsJob(plan.spec, limits), chain.from_iterable(map(plan.chunks, left)))
+    chunks = chain.from_iterable(map(plan.chunks, left))
+    watching = observer and (lambda done, total, new: observer(done, total, failed + new))
+    parts = run(
+        RowsJob(plan.spec, limits), (), pool, ordered=True, observer=watching, before=done, chunks=chunks,
+        total=plan.glyphs,
+    )  # fmt: skip
 
     def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
-        nonlocal done, failed
         following = 0
         while following < shard.glyphs:
-            tasks, made = next(results)
-            following += len(tasks)
-            yield numbers[tasks[0].font.key], made
-            done, failed = done + len(tasks), failed + len(made.failed)
-            if observer:
-                observer(done, plan.glyphs, failed)
+            part = next(parts)
+            following += len(part.tasks)
+            yield numbers[part.tasks[0].font.key], part.result
 
     shapes = Shapes()
     schema = empty_table(plan.spec).schema
@@ -183,29 +176,3 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
 def mark_of(shard: Shard, plan: Plan) -> str:
     """What a finished shard has in its footer, and no other file."""
     return f"{plan.digest} {shard.name}"
-
-
-def in_order(pool: Executor, job: RowsJob, chunks: Iterable[Sequence[Task]]) -> Iterator[tuple[Sequence[Task], Made]]:
-    """The rows of glyphs in the order of the tasks, from workers that finish in any; a few chunks are waited for."""
-    due: deque[int] = deque()
-    waiting: dict[int, tuple[Sequence[Task], Made]] = {}
-    most = 2 * AHEAD * pool_size(pool) * chunk_size(job.spec)
-
-    def few() -> Iterator[Sequence[Task]]:
-        for chunk in chunks:
-            while len(due) >= most:
-                yield ()  # none now: the rows that come first are not there yet
-            due.extend([task.number for task in chunk])
-            yield chunk
-
-    for tasks, result in spread(pool, make_rows, job, few()):
-        if isinstance(result, Exception):
-            made = Made(b"", 0, [(name, result.message) for name in names_of(tasks, job.spec)])
-        else:
-            made = result
-        waiting[tasks[0].number] = tasks, made
-        while due and due[0] in waiting:
-            ready = waiting.pop(due[0])
-            for _ in ready[0]:
-                due.popleft()
-            yield ready

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, TypeAlias
 
-from ..errors import OptionError, is_positive, require, require_choice
+from ..errors import OptionError, require
+from ..fields import SHARE, check, option, whole
 from ..fitting.options import Options
 
 Rows: TypeAlias = Literal["glyph", "contour"]
 Normalise: TypeAlias = Literal["em", "units"]
 Instances: TypeAlias = Literal["default", "named"]
+
+ROWS = "What rows hold"
+TAKEN = "Which fonts and glyphs"
+SPLIT = "Splits, by family"
+"""Headings of groups of options."""
 
 MOST_POINTS = 4096
 """Points of a contour, and pixels of a raster's side."""
@@ -38,19 +44,28 @@ class DatasetSpec:
         seed: of the split. validation, test: shares of the families in these splits; the rest is for training.
     """
 
-    rows: Rows = "glyph"
-    points: int | None = 64
-    normalise: Normalise = "em"
+    rows: Rows = option("glyph", "Write a row a glyph, or a row a contour.", ROWS)
+    points: int | None = option(
+        64, "Place this number of points at equal arc lengths of a contour, or give its polygon.",
+        ROWS, "N|polygon", rule=whole(3, MOST_POINTS), words={"polygon": None},
+    )  # fmt: skip
+    normalise: Normalise = option("em", "Write coordinates in em, or in font units.", ROWS)
     options: Options | None = FIT
-    raster: int | None = None
-    characters: str = ""
-    scripts: tuple[str, ...] = ()
-    licences: tuple[str, ...] = ()
-    instances: Instances = "default"
-    coverage: float = 0.0
-    seed: int = 0
-    validation: float = 0.1
-    test: float = 0.1
+    raster: int | None = option(None, "Add a grey picture of N by N pixels.", ROWS, "N", rule=whole(8, MOST_POINTS))
+    characters: str = option("", "Take only glyphs of these characters.", TAKEN)
+    scripts: tuple[str, ...] = option(
+        (), "Take only glyphs of these scripts, by ISO 15924: Latn,Grek.", TAKEN, "CODE,…", flags="--script"
+    )
+    licences: tuple[str, ...] = option(
+        (), "Take only fonts of these licences, by SPDX, or unknown.", TAKEN, "ID,…", flags="--licence"
+    )
+    instances: Instances = option("default", "Take variable fonts at their default, or at each named instance.", TAKEN)
+    coverage: float = option(0.0, "Take only fonts that have this share of the characters.", TAKEN, "SHARE", rule=SHARE)
+    seed: int = option(0, "Seed the hash that assigns families to splits.", SPLIT, "N")
+    validation: float = option(
+        0.1, "Put this share of the families into the split validation.", SPLIT, "SHARE", rule=SHARE
+    )
+    test: float = option(0.1, "Put this share of the families into the split test.", SPLIT, "SHARE", rule=SHARE)
 
     @property
     def glyph_bytes(self) -> int:
@@ -58,16 +73,7 @@ class DatasetSpec:
         return 8 * 20 * (self.points or 64) + (self.raster or 0) ** 2
 
     def __post_init__(self) -> None:
-        require_choice("rows", self.rows, get_args(Rows))
-        require_choice("normalise", self.normalise, get_args(Normalise))
-        require_choice("instances", self.instances, get_args(Instances))
-        for name, least in (("points", 3), ("raster", 8)):
-            value = getattr(self, name)
-            good = value is None or (isinstance(value, int) and least <= value <= MOST_POINTS)
-            require(good, f"{name} is a whole number from {least} to {MOST_POINTS}", value)
+        check(self)
         require(self.options is None or isinstance(self.options, Options), "options are Options, or None", self.options)
-        for name in ("coverage", "validation", "test"):
-            value = getattr(self, name)
-            require(value == 0 or (is_positive(value) and value <= 1), f"{name} is from 0 to 1", value)
         if self.validation + self.test > 1:
             raise OptionError("validation and test are more than all families together")

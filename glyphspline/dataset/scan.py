@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from ..batch.job import Place
+from ..batch.engine import Job, reason
+from ..batch.places import Place
 from ..errors import GlyphsplineError
 from .dataset_spec import DatasetSpec
 from .licences import UNKNOWN, licence_of
@@ -93,15 +94,21 @@ class FontFacts:
         return self.sha256 or "", self.face, self.at
 
 
-class ScanJob(NamedTuple):
-    """What a worker needs to look at fonts."""
+@dataclass(frozen=True)
+class ScanJob(Job[Path, list[FontFacts]]):
+    """The facts of all faces of font files. A file that cannot be read is a fact too."""
 
     spec: DatasetSpec
 
+    chunk = 1
 
-def scan_files(job: ScanJob, paths: Sequence[Path]) -> list[FontFacts]:
-    """The facts of all faces of font files, in a worker. A file that cannot be read is a fact too."""
-    return [facts for path in paths for facts in _faces(path, job.spec)]
+    def together(self, tasks: Sequence[Path], contents: Sequence[Any]) -> list[FontFacts]:
+        """The facts of some files."""
+        return [facts for path in tasks for facts in _faces(path, self.spec)]
+
+    def failed(self, task: Path, error: Exception) -> list[FontFacts]:
+        """A file that cost a worker."""
+        return [unread(task, reason(error))]
 
 
 def unread(path: Path, reason: str, face: int = 0) -> FontFacts:

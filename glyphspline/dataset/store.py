@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import BinaryIO, TypeAlias, cast
 
 from ..batch import remote
-from ..batch.files import PARTIAL, make_folder, remove_partials, writing
 from ..batch.lock import locked
+from ..files import make_folder, remove_partials, replacing, writing
 
 Content: TypeAlias = bytes | Callable[[BinaryIO], None]
 """What is in a file, or what writes it."""
@@ -66,20 +66,11 @@ def put(path: str, content: Content) -> None:
 def _put_here(path: str, content: Content) -> None:
     place = Path(path)
     make_folder(place.parent)
-    partial = place.with_name(f".{place.name}-{os.getpid()}{PARTIAL}")
-    with writing(path):
-        try:
-            with open(partial, "xb") as file:  # x does not follow a link planted under the temporary name
-                if isinstance(content, bytes):
-                    file.write(content)
-                else:
-                    content(file)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(partial, place)
-        finally:
-            with suppress(OSError):
-                partial.unlink(missing_ok=True)
+    with replacing(place, durable=True) as file:
+        if isinstance(content, bytes):
+            file.write(content)
+        else:
+            content(file)
 
 
 def exists(path: str) -> bool:

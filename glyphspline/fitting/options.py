@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
-from ..errors import OptionError, is_positive, is_whole, require, require_choice
+from ..errors import OptionError
+from ..fields import CLOSENESS, CORNERS, METHOD, WRITTEN, check, option, positive, whole
 from ..interpolation.method import Fallback, Method
 from ..outlines.sampling_limits import CORNER_ANGLE, MAX_RATIO, check_sampling
 
@@ -14,7 +15,7 @@ Effort = Literal["fast", "best"]
 Continuity = Literal["c2", "g1"]
 Preset = Literal["paper", "type"]
 
-PRESETS: dict[Preset, dict[str, Any]] = {
+PRESETS: dict[str, dict[str, Any]] = {
     "paper": {"corners": "smooth", "margin": 0.0},
     "type": {"corners": "sharp", "continuity": "c2", "effort": "best"},
 }
@@ -57,22 +58,45 @@ class Options:
         glyphspline.errors.OptionError: give one of tolerance, step and count, not step and count
     """
 
-    variant: int = Method.variant
-    tolerance: float | None = None
-    step: float | None = None
-    count: int | None = None
-    corners: Corners = "smooth"
-    corner_angle: float = CORNER_ANGLE
-    continuity: Continuity = "c2"
-    effort: Effort = "fast"
-    margin: float = 0.02
-    fallback: Fallback = "peak"
+    variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", METHOD, "0…4")
+    tolerance: float | None = option(
+        None, "Keep the curve within this distance of its source, in font units. Without it, 1/1000 em.",
+        CLOSENESS, "UNITS", rule=positive("distance"),
+    )  # fmt: skip
+    step: float | None = option(
+        None, "Place a point every UNITS font units of the outline, instead of by tolerance.", CLOSENESS, "UNITS"
+    )
+    count: int | None = option(
+        None, "Place this number of points on each contour, instead of by tolerance.", CLOSENESS, "N"
+    )
+    corners: Corners = option(
+        "smooth",
+        "Draw one curve a contour (smooth), for brush and traced outlines, or keep corners (sharp), for type.",
+        CORNERS,
+    )  # fmt: skip
+    corner_angle: float = option(CORNER_ANGLE, "Set how sharp a turn counts as a corner.", CORNERS, "DEGREES")
+    continuity: Continuity = option(
+        "c2",
+        "Fit between corners one spline whose curvature has no jumps (c2), or cubics that only meet without a "
+        "kink (g1).",
+        CORNERS,
+    )  # fmt: skip
+    effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
+    margin: float = option(
+        0.02,
+        "Shrink search intervals by this margin, 0 to 0.5 (c of Lemma 2): a better guaranteed rate of "
+        "convergence.",
+        METHOD, "C",
+    )  # fmt: skip
+    fallback: Fallback = option(
+        "peak", "Choose what footpoints do where chords are too uneven for Lemma 2 to have an interval.", METHOD
+    )
     max_ratio: float = MAX_RATIO
-    precision: int = 2
+    precision: int = option(2, "Write this number of decimals, 0 to 9.", WRITTEN, "N", rule=whole(0, 9))
     residual_tolerance: float | None = None
     max_iterations: int = Method.max_iterations
-    measure: bool = False
-    remove_overlaps: bool = False
+    measure: bool = option(False, "Measure distance, length and curvature with --step and --count too.", CLOSENESS)
+    remove_overlaps: bool = option(False, "Unite overlapping contours first.", WRITTEN)
 
     def __post_init__(self) -> None:
         Method(
@@ -80,14 +104,7 @@ class Options:
             max_iterations=self.max_iterations,
         )  # fmt: skip
         check_sampling(self.count, self.step, self.max_ratio, self.corner_angle)
-        positive = self.tolerance is None or is_positive(self.tolerance)
-        require(positive, "tolerance is a positive distance", self.tolerance)
-        require(is_whole(self.precision, 0, 9), "precision is a whole number from 0 to 9", self.precision)
-        require_choice("corners", self.corners, get_args(Corners))
-        require_choice("continuity", self.continuity, get_args(Continuity))
-        require_choice("effort", self.effort, get_args(Effort))
-        require_choice("measure", self.measure)
-        require_choice("remove_overlaps", self.remove_overlaps)
+        check(self)
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
         if len(given) > 1:
             raise OptionError(f"give one of tolerance, step and count, not {' and '.join(given)}")

@@ -183,6 +183,12 @@ class Masters:
         contours = [Contour(contour.points[k], contour.degrees) for contour in self.contours]
         return Outline(self.name, self.gid, self.unicodes, float(self.advances[k]), contours, self.metrics, self.notes)
 
+    def ticks(self, a: int) -> FloatArray:
+        """Ascending normalised values of an axis between which every weight is linear: of regions, and its ends."""
+        axis, regions = self.axes[a], self.regions[self.regions[:, a, 1] != 0, a]
+        ends = [-1.0 * (axis.minimum < axis.default), 0.0, 1.0 * (axis.maximum > axis.default)]
+        return np.unique([*ends, *np.clip(regions.ravel(), ends[0], ends[2])])
+
     def grid(self) -> FloatArray:
         """(V, A) normalised corners of boxes inside which every weight is a product of linear functions.
 
@@ -193,13 +199,8 @@ class Masters:
         Raises:
             GlyphsplineError: there are more than ``MOST_CORNERS``.
         """
-        ticks = []
-        for a, axis in enumerate(self.axes):
-            counts = self.regions[:, a, 1] != 0
-            ends = [-1.0 * (axis.minimum < axis.default), 0.0, 1.0 * (axis.maximum > axis.default)]
-            ticks.append(np.unique([*np.clip(self.regions[counts, a].ravel(), ends[0], ends[2]), *ends]))
-            if not counts.any():  # the glyph does not change along it
-                ticks[-1] = np.zeros(1)
+        moves = (self.regions[:, :, 1] != 0).any(axis=0).tolist()  # the glyph does not change along the other axes
+        ticks = [self.ticks(a) if moves[a] else np.zeros(1) for a in range(len(self.axes))]
         count = int(np.prod([len(values) for values in ticks]))
         if count > MOST_CORNERS:
             raise GlyphsplineError(

@@ -29,7 +29,6 @@ from ..types import FloatArray
 from .opentype.tables import Location, location_within
 from .pens import MAX_COMPONENTS, ContourPen
 from .source import Head, OutlineOrError, Source, attempt, opening
-from .stacks import StackPen
 from .ufo import Ufo, open_ufo, parsed
 
 
@@ -141,7 +140,7 @@ class Designspace(Source):
         regions = [_key(region) for masters in (own, *children.values()) for region in masters.regions]
         found = replace(own, regions=self._stacked(told_apart(regions)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
-        pen = StackPen(len(found))
+        pen = ContourPen(masters=len(found))
         notes: list[str] = []
         for k, part in enumerate(drawn[0][1]):
             points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
@@ -155,9 +154,9 @@ class Designspace(Source):
                 placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
                 pen.contour(placed, contour.degrees)
             notes += child.notes
-        pen.closePath()
+        pen.finish()
         found = replace(
-            found, contours=tuple(pen.contours), advances=weights @ np.array([width for _, _, width in drawn]),
+            found, contours=tuple(pen.stacks), advances=weights @ np.array([width for _, _, width in drawn]),
             notes=(*pen.notes, *notes),
         )  # fmt: skip
         if above:  # components are asked for again
@@ -242,7 +241,7 @@ def _difference(operations: Sequence[tuple[str, int]], expected: Sequence[tuple[
     return f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[other]}"
 
 
-def _replay(pen: StackPen, operations: Sequence[tuple[str, int]], points: FloatArray) -> None:
+def _replay(pen: ContourPen, operations: Sequence[tuple[str, int]], points: FloatArray) -> None:
     """Draw a contour of (K, N, 2) points."""
     at = 0
     for operation, count in operations:

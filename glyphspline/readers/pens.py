@@ -1,4 +1,4 @@
-"""The pen that turns the drawing operations of a glyph into contours."""
+"""The pens that turn the drawing operations of a glyph into contours, in one master or in several at once."""
 
 # The names of a pen's methods are fontTools' own.
 # ruff: noqa: N802, N815
@@ -6,17 +6,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from fontTools.pens.basePen import BasePen
 
 from ..errors import GlyphsplineError
+from ..outlines.masters import MasterContour
 from ..outlines.outline import Contour
-from ..types import FloatArray
-
-Point: TypeAlias = tuple[float, float]
+from ..types import FloatArray, IntArray
 
 COINCIDENT = 1e-3
 """Distance in font units below which points coincide.
@@ -35,31 +33,40 @@ def notes_of(left_out: Sequence[int]) -> tuple[str, ...]:
 
 
 class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
-    """Collects contours: lines, quadratics with their implied points made explicit, and cubics.
+    """Collects contours in K masters: lines, quadratics with their implied points made explicit, and cubics.
 
-    Components are decomposed. Segments of no length are dropped. A contour whose points all lie on one line encloses
-    nothing; it is left out and noted. Most such contours are single points, which fonts use as anchors. A line closes
-    an open path, as in every rasteriser.
+    Components are decomposed. A line closes an open path, as in every rasteriser. Segments of no length in all masters
+    are dropped, that line among them. A contour whose points lie on one line in all masters encloses nothing; it is
+    left out and noted. Most such contours are single points, which fonts use as anchors.
+
+    A point is a pair of coordinates, each a number or an array (K,) over the masters.
 
     Attributes:
-        contours: the contours so far. left_out: numbers of those left out. drawn: the count of both.
+        stacks: the contours so far. left_out: numbers of those left out. drawn: the count of both.
         snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
     """
 
     skipMissingComponents = False
 
-    def __init__(self, glyph_set: Any = None, glyph_name: str | None = None, coincident: float = COINCIDENT) -> None:
+    def __init__(
+        self, glyph_set: Any = None, glyph_name: str | None = None, masters: int = 1, coincident: float = COINCIDENT
+    ) -> None:
         super().__init__(glyph_set)
-        self.contours: list[Contour] = []
+        self.stacks: list[MasterContour] = []
         self.left_out: list[int] = []
         self.drawn = 0
         self.snapped = 0.0
-        self._coincident = coincident
-        self._points: list[Point] = []
+        self._masters, self._coincident = masters, coincident
+        self._points: list[Any] = []
         self._degrees: list[int] = []
         self._segments = 0
         self._components = 0
         self._nesting = [glyph_name]
+
+    @property
+    def contours(self) -> list[Contour]:
+        """The contours in the first master."""
+        return [Contour(stack.points[0], stack.degrees) for stack in self.stacks]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -80,23 +87,16 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         super().addComponent(glyphName, transformation)
         self._nesting.pop()
 
-    def _moveTo(self, pt: Point) -> None:
+    def _moveTo(self, pt: Any) -> None:
         self.finish()
         self._points = [pt]
 
-    def _add(self, *to: Point) -> None:
-        """Append the segment from the current point through ``to``, unless all points coincide."""
+    def _add(self, *to: Any) -> None:
         self._segments += 1
         if self._segments > MAX_SEGMENTS:
             raise GlyphsplineError(f"more than {MAX_SEGMENTS} segments")
-        x, y = self._points[-1]
-        near = self._coincident
-        for a, b in to:  # most of the time of reading: no calls here
-            if not (abs(a - x) <= near and abs(b - y) <= near):
-                self._points.extend(to)
-                self._degrees.append(len(to))
-                return
-        self.snapped = max(self.snapped, *(hypot(a - x, b - y) for a, b in to))
+        self._points.extend(to)
+        self._degrees.append(len(to))
 
     _lineTo = _qCurveToOne = _curveToOne = _add
 
@@ -104,40 +104,54 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         """Close a contour left open at the end."""
         if not self._points:
             return
-        if not self._same(self._points[0], self._points[-1]):
-            self._degrees.append(1)
-        elif self._degrees:
-            (ax, ay), (bx, by) = self._points[0], self._points.pop()  # the last segment ends on points[0]
-            self.snapped = max(self.snapped, hypot(bx - ax, by - ay))
-        points = np.array(self._points, dtype=np.float64)
-        if not np.isfinite(points).all():
-            raise GlyphsplineError("coordinates that are not finite", contour=self.drawn)
-        if self._degrees and (self._is_wide() or not self._flat(points)):
-            self.contours.append(Contour(points, np.array(self._degrees, dtype=np.int64)))
+        points = np.empty((self._masters, len(self._points), 2))
+        if self._masters == 1:
+            points[0] = self._points
         else:
-            self.left_out.append(self.drawn)
-        self.drawn += 1
+            for n, (x, y) in enumerate(self._points):
+                points[:, n, 0], points[:, n, 1] = x, y
+        degrees = np.array([*self._degrees, 1], dtype=np.int64)
         self._points, self._degrees = [], []
+        self.contour(points, degrees)
 
     _closePath = _endPath = finish
 
-    def _same(self, a: Point, b: Point) -> bool:
-        return abs(a[0] - b[0]) <= self._coincident and abs(a[1] - b[1]) <= self._coincident
+    def contour(self, points: FloatArray, degrees: IntArray) -> None:
+        """Add a closed contour of (K, N, 2) points and segments of (m,) degrees."""
+        if not np.isfinite(points).all():
+            raise GlyphsplineError("coordinates that are not finite", contour=self.drawn)
+        points, degrees = self._lasting(points, degrees)
+        if len(degrees) and not all(self._is_flat(master) for master in points):
+            self.stacks.append(MasterContour(points, degrees))
+        else:
+            self.left_out.append(self.drawn)
+        self.drawn += 1
 
-    def _is_wide(self) -> bool:
-        """Whether two of the points prove that the contour is not flat. Most contours pass this quick test.
+    def _lasting(self, points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
+        """The contour without segments all of whose points coincide with the end of the last one that is kept."""
+        closed = np.concatenate([points, points[:, :1]], axis=1)
+        starts = np.cumsum(degrees) - degrees
+        kept = np.zeros(len(degrees), dtype=np.bool_)
+        for k in (1, 2, 3):
+            longer = degrees >= k
+            steps = np.abs(closed[:, starts[longer] + k] - closed[:, starts[longer]])
+            kept[longer] |= (steps > self._coincident).any(axis=(0, 2))
+        index, at = np.arange(points.shape[1]), 0
+        for j in range(len(degrees) if not kept[:-1].all() else 0):
+            index[starts[j]] = at
+            steps = closed[:, starts[j] + 1 : starts[j] + degrees[j] + 1] - closed[:, at : at + 1]
+            kept[j] = (np.abs(steps) > self._coincident).any()
+            at = starts[j] + degrees[j] if kept[j] else at
+        if kept.all():
+            return points, degrees
+        for j in np.flatnonzero(~kept).tolist():
+            steps = closed[:, starts[j] + 1 : starts[j] + degrees[j] + 1] - points[:, index[starts[j]], None]
+            self.snapped = max(self.snapped, float(np.hypot(steps[..., 0], steps[..., 1]).max()))
+        return np.ascontiguousarray(points[:, index[np.repeat(kept, degrees)]]), degrees[kept]
 
-        Two arms a, b whose ends are at most d from one line through their common start have |a × b| ≤ (|a| + |b|) d.
-        """
-        n = len(self._points)
-        (x, y), (ax, ay), (bx, by) = self._points[0], self._points[n // 3], self._points[2 * n // 3]
-        ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
-        return abs(ax * by - ay * bx) > self._coincident * (abs(ax) + abs(ay) + abs(bx) + abs(by))
-
-    def _flat(self, points: FloatArray) -> bool:
+    def _is_flat(self, points: FloatArray) -> bool:
         """Whether all (N, 2) points lie on the line from the first to the farthest."""
         arms = points - points[0]
         lengths = np.hypot(arms[:, 0], arms[:, 1])
         far = arms[lengths.argmax()]
-        across = arms[:, 0] * far[1] - arms[:, 1] * far[0]
-        return bool(np.abs(across).max() <= self._coincident * lengths.max())
+        return bool(np.abs(arms[:, 0] * far[1] - arms[:, 1] * far[0]).max() <= self._coincident * lengths.max())

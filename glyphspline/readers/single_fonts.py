@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..errors import FontError, GlyphsplineError
+from ..matching.match import match_masters
 from ..outlines.masters import DesignAxis, Masters
-from ..outlines.matching import match_masters
 from ..outlines.outline import Outline
 from .source import Source
 

@@ -14,7 +14,6 @@ from svgpathtools.svg_to_paths import rect2pathd
 
 from ..errors import GlyphsplineError
 from ..types import FloatArray
-from .pens import Point
 
 DEEPEST = 200
 """Limit of nested groups, far above any real drawing."""
@@ -142,7 +141,7 @@ def arc_cubics(arc: Any, degrees: float) -> Iterator[list[complex]]:
         yield [start + handle * arc.derivative(t0), end - handle * arc.derivative(t1), end]
 
 
-def placed(points: Sequence[complex], matrix: FloatArray) -> list[Point]:
+def placed(points: Sequence[complex], matrix: FloatArray) -> list[tuple[float, float]]:
     """Points of the drawing in font space."""
     (a, b, x), (c, d, y) = matrix[:2].tolist()
     return [(a * p.real + b * p.imag + x, c * p.real + d * p.imag + y) for p in map(complex, points)]

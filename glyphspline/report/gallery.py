@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import GlyphsplineError
+from ..files import write_whole
 from ..fitting.options import Options
 from ..fitting.quantities import QUANTITIES
 from .data import COLUMNS, as_json, row_of, script
@@ -75,7 +76,7 @@ class Gallery:
         """Write the rest of the tables, and the page. ``run`` is the content of ``run.json``."""
         if self._rows:
             self._end_table()
-        _replace(self._out / FOLDER / "run.js", script(_run(run, self._count)))
+        write_whole(str(self._out / FOLDER / "run.js"), script(_run(run, self._count)))
         for path in (self._out / FOLDER).glob("table-*.js"):  # of an earlier, larger run
             found = re.fullmatch(r"table-(\d{5,})\.js", path.name)
             if found and int(found[1]) >= self._tables:
@@ -84,7 +85,7 @@ class Gallery:
 
     def _end_table(self) -> None:
         text = f'glyphsplineData({{"columns":{as_json(COLUMNS)},"rows":[{",".join(self._rows)}]}});\n'
-        _replace(self._out / FOLDER / f"table-{self._tables:05}.js", text)
+        write_whole(str(self._out / FOLDER / f"table-{self._tables:05}.js"), text)
         self._rows.clear()
         self._tables += 1
 
@@ -121,7 +122,7 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
     page = page_of(
         "gallery.html", ("theme.css", "gallery.css"), heading, SCRIPTS, setup, loads=True, layers=layer_switches()
     )
-    _replace(out_dir / "index.html", page)
+    write_whole(str(out_dir / "index.html"), page)
 
 
 def measures() -> list[list[str]]:
@@ -168,10 +169,3 @@ def _words(run: Mapping[str, Any]) -> str:
         return Options(**options).words
     except (KeyError, TypeError, GlyphsplineError):
         return ""
-
-
-def _replace(path: Path, content: str | bytes) -> None:
-    """Write a file under a temporary name and rename it, so that it is never incomplete."""
-    temporary = path.with_name(f".{path.name}.part")
-    temporary.write_bytes(content.encode() if isinstance(content, str) else content)
-    os.replace(temporary, path)

@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from threading import RLock
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from ..curves.curvature import Comb, robust_scale
 from ..errors import GlyphsplineError
+from ..fields import arguments, instance_arguments
 from ..fitting.closed_curves import History, recorded
 from ..fitting.convert import convert
 from ..fitting.convert_masters import MastersResult, convert_masters
@@ -120,28 +122,17 @@ class Work:
 
     def command(self, state: State) -> str:
         """The command that converts the glyph with the options of the state, without moved vertices."""
-        gid = self.font.glyph_names.index(state.glyph)
-        words = ["convert", *self._words(state, gid), "--out", f"outputs/gid-{gid}"]
-        return shlex.join(["glyphspline", *words])
+        return self._command("convert", state, "outputs/gid-{}")
 
     def axis_command(self, state: State) -> str:
         """The command that draws the glyph along the font's first axis."""
-        gid = self.font.glyph_names.index(state.glyph)
-        words = ["atlas", *self._words(state, gid), "--axis", self.font.axes[0].tag, "--out", f"gid-{gid}.pdf"]
-        return shlex.join(["glyphspline", *words])
+        return self._command("atlas", state, "gid-{}.pdf", "--axis", self.font.axes[0].tag)
 
-    def _words(self, state: State, gid: int) -> list[str]:
-        """Font, glyph, location and options of a state as words of a command."""
-        options = state.options
-        words = [str(self.path), "--gids", str(gid)]
-        if self.face_index:
-            words += ["--face-index", str(self.face_index)]
-        if state.location:
-            words += ["--location", ",".join(f"{tag}={value:g}" for tag, value in state.location)]
-        words += ["--variant", str(options.variant), "--margin", f"{options.margin:g}", "--fallback", options.fallback]
-        words += ["--corners", options.corners, f"--{state.sampling}", f"{state.amount:.6g}"]
-        words += ["--continuity", options.continuity] if options.corners == "sharp" else []
-        return words + (["--effort", options.effort] if state.sampling == "tolerance" else [])
+    def _command(self, name: str, state: State, out: str, *more: str) -> str:
+        gid = str(self.font.glyph_names.index(state.glyph))
+        words = [str(self.path), "--gids", gid, *instance_arguments(self.face_index, dict(state.location))]
+        words += chain(*arguments(replace(state.options, measure=False), Options()).values())
+        return shlex.join(["glyphspline", name, *words, *more, "--out", out.format(gid)])
 
 
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:

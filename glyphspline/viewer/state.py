@@ -54,18 +54,14 @@ def read_state(given: Any, units_per_em: float) -> State:
     if sampling == "count":
         amount = float(min(max(round(amount), 3), MOST_VERTICES))
     else:
-        amount = max(amount, FINEST[sampling] * units_per_em)
+        amount = float(f"{max(amount, FINEST[sampling] * units_per_em):.6g}")  # as the command has it
+    names = ("variant", "corners", "continuity", "effort", "fallback")
+    chosen: dict[str, Any] = {name: given[name] for name in names if name in given}
+    chosen[sampling] = int(amount) if sampling == "count" else amount
     options = Options(
-        variant=given.get("variant", Options.variant),
+        **chosen,
         margin=min(max(_number(given, "margin", Options.margin), 0.0), 0.25),
-        corners=given.get("corners", Options.corners),
-        continuity=given.get("continuity", Options.continuity),
-        effort=given.get("effort", Options.effort),
-        fallback=given.get("fallback", Options.fallback),
         measure=given.get("measure") is True,
-        tolerance=amount if sampling == "tolerance" else None,
-        step=amount if sampling == "step" else None,
-        count=int(amount) if sampling == "count" else None,
     )
     return State(given["glyph"], _location(given), options, sampling, amount, _moved(given), _text(given))
 

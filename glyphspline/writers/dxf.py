@@ -30,7 +30,7 @@ from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Contour
 from ..types import BoolArray, FloatArray
-from .settings import DxfKind, Settings, settings_for
+from .settings import DxfKind, Settings
 from .svg.appearance import INCHES, Appearance
 
 VERSION = "R2000"
@@ -94,7 +94,7 @@ def to_dxf(
         >>> to_dxf(glyph, size="20mm").count("AcDbSpline"), len(glyph.contours)
         (2, 2)
     """
-    return write(result, settings_for(Appearance(size=size), result.outline.metrics, flatness, dxf))
+    return write(result, Settings(Appearance(size=size), flatness=flatness, dxf=dxf).scaled(result.outline.metrics))
 
 
 def write(result: GlyphResult, settings: Settings) -> str:

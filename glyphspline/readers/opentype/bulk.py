@@ -3,8 +3,9 @@
 HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
 2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
 the rules of :class:`~glyphspline.readers.pens.ContourPen`. Flat contours are left out and noted: some fonts have them
-in most glyphs, mainly single points that serve as anchors. Glyphs with a contour that is nearly flat, or whose drawing
-may be incomplete, are read again by the careful reader, which reports what is wrong.
+in most glyphs, mainly single points that serve as anchors. Unusual glyphs are drawn again with that pen: those with a
+contour that is nearly flat through HarfBuzz, and those whose drawing is incomplete through fontTools, which reports
+what is wrong. HarfBuzz leaves out what it cannot read without an error.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
-from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 from threading import Lock
@@ -20,43 +20,42 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import uharfbuzz as hb
-from fontTools.ttLib import TTFont
 from numba import types
 
 from ...compiled import callback, compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...types import BoolArray, FloatArray, IntArray
-from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, notes_of
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, notes_of
 from ..source import Head, OutlineOrError, attempt, opening
-from .careful import CarefulReader
 from .containers import unpacked
-from .harfbuzz import HarfBuzz
+from .face import HarfBuzz
+from .fonttools import FontTools
 
 USED, CAPACITY, FIRST = 0, 1, 2
 """Indices in the buffer: of the count of numbers in use, of the capacity, and of the first operation."""
 
 BUFFER_SIZE = 1 << 18
-"""Capacity of the buffer: 2 MB. The careful reader reads larger glyphs, of more than some 37,000 cubics."""
+"""Capacity of the buffer: 2 MB. The pen reads larger glyphs, of more than some 37,000 cubics."""
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
 
 LARGEST = 1e12
-"""Coordinates beyond this go to the careful reader, which refuses infinities and NaN."""
+"""Coordinates beyond this go to the pen, which refuses infinities and NaN."""
 
 WIDE, FLAT = 3 * COINCIDENT, COINCIDENT / 3
 """A contour is certainly not flat if a point is farther than the first of these from the line from the first point to
 the farthest, and certainly flat if no point is farther than the second.
 
-The careful reader uses ``COINCIDENT``, but may choose another of several farthest points.
+The pen uses ``COINCIDENT``, but may choose another of several farthest points.
 """
 
 HeadLike: TypeAlias = tuple[str, int, tuple[int, ...]]
 """A :class:`Head`, or the plain tuple that a task holds."""
 
 UNUSUAL, UNCOUNTED = -1, -2
-"""In place of a number of contours: the careful reader has to read the glyph; the number is unknown."""
+"""In place of a number of contours: fontTools has to read the glyph; the number is unknown."""
 
 
 def _drawing(points: int) -> Any:
@@ -131,8 +130,8 @@ def _contours(
     Returns:
         Points, degrees, offsets and starts as in :class:`ContourArrays`; offsets and starts count from 0 in each glyph,
         and are one more than contours in each. Numbers of the flat contours, which are left out. (k + 1, 4) the
-        contours, segments, points and contours left out before each glyph. (k,) whether the careful reader has to read
-        a glyph. (k,) how far points were snapped: see :class:`.Outline`.
+        contours, segments, points and contours left out before each glyph. (k,) which glyphs are unusual. (k,)
+        how far points were snapped: see :class:`.Outline`.
     """
     count = len(expected)
     room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
@@ -211,9 +210,9 @@ def _contours(
 
 @compiled
 def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
-    """Number of contours of each glyph by its record, components included, as :class:`.glyf.GlyphRecords` counts them.
+    """Number of contours of each glyph by its record, components included.
 
-    ``UNUSUAL`` where a record is broken.
+    ``UNUSUAL`` where a record is broken, or the glyph has too many components or contours, as in a loop.
 
     Args:
         glyf: (B,) bytes of the table. loca: where in it records begin, and the end. gids: (k,) of the glyphs.
@@ -281,7 +280,7 @@ class BulkReader:
         path: the file. face_index: which face of a collection.
         location: axis tag to user-space value, within the axes' limits.
         data: the file's bytes without compression, if they are in memory.
-        careful: the reader of unusual glyphs; by default it is opened for the first of them.
+        face: the same face at the location, if it is open.
 
     Raises:
         FontError: the file cannot be read.
@@ -293,27 +292,23 @@ class BulkReader:
         face_index: int = 0,
         location: Mapping[str, float] | Sequence[tuple[str, float]] = (),
         data: bytes | None = None,
-        careful: CarefulReader | None = None,
+        face: HarfBuzz | None = None,
     ) -> None:
         self._path, self._face_index = path, face_index
         with opening(path):
             self._data = data or _without_compression(path)
-            if careful is not None:
-                self._careful = careful
-                self._hb = careful.hb
-            else:
+            if face is None:
                 blob = hb.Blob(self._data) if self._data else hb.Blob.from_file_path(str(path))
-                self._hb = HarfBuzz(blob, face_index, dict(location))
+                face = HarfBuzz(blob, face_index, dict(location))
+            self._hb = face
         self._buffer = np.zeros(BUFFER_SIZE)
         self._buffer[CAPACITY] = BUFFER_SIZE
         self._pointer = _capsule(self._buffer.ctypes.data)
         self._lock = Lock()
 
     @cached_property
-    def _careful(self) -> CarefulReader:
-        data = self._data or self._path.read_bytes()
-        tables = TTFont(BytesIO(data), fontNumber=self._face_index, lazy=True)
-        return CarefulReader(self._hb, tables, data, self._face_index)
+    def _fonttools(self) -> FontTools:
+        return FontTools(self._data or self._path.read_bytes(), self._face_index, self._hb.normalized)
 
     def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
         """Read glyphs; the result has an error in place of each broken glyph.
@@ -338,7 +333,7 @@ class BulkReader:
         for g, (head, odd, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
             name, gid, unicodes = head
             if odd:
-                found.append(self._read_carefully(Head(*head), metrics))
+                found.append(self.draw_again(Head(*head), metrics, int(expected[g])))
                 continue
             own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
             width, moved = float(advance(gid)), float(snapped[g])
@@ -382,8 +377,19 @@ class BulkReader:
         offsets = np.frombuffer(loca, kind, count=len(loca) // np.dtype(kind).itemsize).astype(np.int64) * size
         return np.frombuffer(face.reference_table("glyf").data, dtype=np.uint8), offsets
 
-    def _read_carefully(self, head: Head, metrics: FontMetrics) -> OutlineOrError:
-        return attempt(self._path, head.name, lambda: self._careful.outline(head, metrics))
+    def draw_again(self, head: Head, metrics: FontMetrics, expected: int) -> OutlineOrError:
+        """Read a glyph with the pen, which checks it and says what is wrong; ``expected`` is its number of contours."""
+
+        def read() -> Outline:
+            pen, advance = ContourPen(), self._hb.advance(head.gid)
+            if expected != UNUSUAL:
+                self._hb.font.draw_glyph_with_pen(head.gid, pen)
+                pen.finish()
+            if expected == UNUSUAL or (expected >= 0 and pen.drawn != expected):
+                pen, advance = self._fonttools.draw(head.name)
+            return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
+
+        return attempt(self._path, head.name, read)
 
 
 def _without_compression(path: Path) -> bytes | None:

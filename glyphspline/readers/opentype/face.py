@@ -17,7 +17,6 @@ from ...errors import FontError
 from ...outlines.outline import FontMetrics
 from ..source import opening
 from .containers import FORMATS, unpacked
-from .harfbuzz import HarfBuzz
 from .tables import Location, axes_of, instances_of, location_within, metrics_of, names_of
 
 REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
@@ -26,6 +25,35 @@ PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 
 UNICODE_CMAPS = frozenset({(3, 10), (3, 1), *((0, encoding) for encoding in (0, 1, 2, 3, 4, 6))})
 """Platforms and encodings of the tables of characters that a font is read by."""
+
+
+class HarfBuzz:
+    """A face at a location.
+
+    Attributes:
+        face, font: HarfBuzz's own objects.
+        normalized: axis tag to normalised coordinate, rounded to 1/16384 as in the format; empty at the default.
+        has_records: whether glyphs are records of the ``glyf`` table; char strings otherwise.
+    """
+
+    def __init__(self, blob: hb.Blob, face_index: int, location: Mapping[str, float]) -> None:
+        self.face = hb.Face(blob, face_index)
+        self.font = hb.Font(self.face)
+        self.normalized: dict[str, float] = {}
+        if location:
+            self.font.set_variations(dict(location))
+            tags = [axis.tag for axis in self.face.axis_infos]
+            self.normalized = dict(zip(tags, self.font.get_var_coords_normalized(), strict=False))
+        tags = self.face.table_tags
+        self.has_records = "glyf" in tags and "loca" in tags and "VARC" not in tags
+
+    def advance(self, gid: int) -> float:
+        """The horizontal advance of a glyph."""
+        return float(self.font.get_glyph_h_advance(gid))
+
+    def is_whole(self, gid: int) -> bool:
+        """Whether HarfBuzz interprets a char string to its end; it draws the part before a fault without an error."""
+        return self.font.get_glyph_extents(gid) is not None
 
 
 class Face:

@@ -14,7 +14,6 @@ from fontTools.ttLib import TTFont
 
 from ...outlines.masters import Masters
 from ..source import Head, OutlineOrError, Source, opening
-from .careful import CarefulReader
 from .containers import FORMATS, unpacked
 from .face import Face, read_file
 from .tables import Location, metrics_of
@@ -41,7 +40,6 @@ class Font(Face, Source):
         self.num_glyphs = len(self.glyph_names)
         mapped = (self._tables.getBestCmap() or {}).items()
         self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
-        self._careful = CarefulReader(self._hb, self._tables, self._plain, face_index)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
@@ -71,7 +69,7 @@ class Font(Face, Source):
     def _bulk(self) -> BulkReader:
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
-        return BulkReader(self.path, self.face_index, self.location, self._plain, self._careful)
+        return BulkReader(self.path, self.face_index, self.location, self._plain, self._hb)
 
 
 def open_font(path: str | Path, face_index: int = 0, location: Location = None) -> Font:

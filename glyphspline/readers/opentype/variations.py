@@ -23,9 +23,8 @@ from ...errors import GlyphsplineError
 from ...outlines.masters import Masters, Region, region_scalars, told_apart
 from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
-from ..pens import MAX_COMPONENTS, MAX_SEGMENTS
+from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen
 from ..source import Head
-from ..stacks import StackPen
 from .tables import axes_of
 
 MOST_MASTERS = 500
@@ -97,11 +96,11 @@ class Variations:
         stacks: FloatArray = np.tensordot(scalars, np.array([parts.points, *parts.deltas.values()]), axes=1)
         left, right = stacks[:, -2, 0], stacks[:, -1, 0]
         stacks[:, :, 0] -= left[:, None]  # where rasterisers draw it: with the left side bearing as the font has it
-        pen, first = StackPen(len(masters)), 0
+        pen, first = ContourPen(masters=len(masters)), 0
         for end in parts.ends:
             _draw_quadratics(pen, stacks[:, first:end], parts.on[first:end])
             first = end
-        return replace(masters, contours=tuple(pen.contours), advances=right - left, notes=tuple(pen.notes))
+        return replace(masters, contours=tuple(pen.stacks), advances=right - left, notes=pen.notes)
 
     def _parts_of(self, name: str, above: tuple[str, ...]) -> _Parts:
         """The points and deltas of a glyph of ``glyf``, components decomposed."""
@@ -189,11 +188,11 @@ class Variations:
         else:
             stored = self._regions_of(store.otVarStore, reader.vsIndex)
         masters, scalars = self._empty(head, stored)
-        pen = StackPen(len(masters))
+        pen = ContourPen(masters=len(masters))
         string.draw(pen, lambda _, deltas: scalars[:, 1:] @ np.array(deltas, dtype=np.float64))
-        pen.closePath()
+        pen.finish()
         advances = np.array([self._advance(head, peak) for peak in masters.peaks])
-        return replace(masters, contours=tuple(pen.contours), advances=advances, notes=tuple(pen.notes))
+        return replace(masters, contours=tuple(pen.stacks), advances=advances, notes=pen.notes)
 
     def _regions_of(self, store: Any, index: int) -> list[Region]:
         """The regions of one of the lists of a store, in order, as often as they occur."""
@@ -252,7 +251,7 @@ class _Parts:
         return self.points if region is None else self.deltas.get(region, np.zeros_like(self.points))
 
 
-def _draw_quadratics(pen: StackPen, points: FloatArray, on: BoolArray) -> None:
+def _draw_quadratics(pen: ContourPen, points: FloatArray, on: BoolArray) -> None:
     """Draw a TrueType contour of (K, n, 2) points; implied points, midway between two control points, made explicit.
 
     As in rasterisers it begins at its first point; if this is a control point, at the last or midway to it.

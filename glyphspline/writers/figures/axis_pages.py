@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...checks.along_axis import AlongAxis, along_axis, places_along
-from ...checks.axis_kinks import Kink
+from ...checks.kinks import Kink
 from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
 from ...outlines.masters import Masters

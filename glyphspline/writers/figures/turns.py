@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ...checks.axis_kinks import AxisKinks, Kink, KinkReport, joint_turns
-from ...checks.axis_kinks import Source as VariableSource
+from ...checks.kinks import AxisKinks, Kink, KinkReport, joint_turns
+from ...checks.kinks import Source as VariableSource
 from .images import FigureKind, blank, saved
 from .patches import ascii_text
 

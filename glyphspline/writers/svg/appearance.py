@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from ...errors import OptionError, require, require_choice
+from ...errors import OptionError, require
+from ...fields import LOOK, check, option
 
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
@@ -43,14 +44,14 @@ class Appearance:
         OptionError: one of these is none of what it can be, or both sizes are given.
     """
 
-    view_box: ViewBox = "em"
-    size: str | None = None
-    fill: str = CURRENT
-    stroke: str = "none"
-    em: str | None = None
+    view_box: ViewBox = option("em", "Show this region.", LOOK)
+    size: str | None = option(None, "Set the height with its unit, as 20mm; the width is in proportion.", LOOK)
+    fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", LOOK)
+    stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", LOOK)
+    em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", LOOK, "LENGTH", flags="--size")
 
     def __post_init__(self) -> None:
-        require_choice("view_box", self.view_box, VIEW_BOXES)
+        check(self)
         require(self.size is None or self.em is None, "size and em exclude each other", (self.size, self.em))
         for name in ("size", "em"):
             _length_of(name, getattr(self, name))

@@ -8,11 +8,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..curves.bezier import split
+from ..outlines.outline import Contour
 from ..types import FloatArray, IntArray
-from .elastic import elastic_nodes
+from .alignment import cheapest_pairs, elastic_nodes
 from .landmarks import STRONG, Landmarks, wrapped
-from .outline import Contour
-from .pairing import cheapest_pairs
 
 POSITION, DIRECTION, UNLIKE = 3.0, 0.5, 0.8
 """Cost of a pair: of the squared distance between its places in the contours' boxes, which are 1 wide and high, of the

@@ -1,8 +1,7 @@
 """Masters of a glyph out of outlines whose points do not correspond: single fonts of a family, say.
 
-Contours are paired first (:mod:`.contour_pairs`), then one of their landmarks each (:mod:`.pairing`); from there the
-whole contours are aligned (:mod:`.elastic`), and all masters are cut where any has a joint (:mod:`.common_cuts`). Every
-master keeps exactly the outline it had.
+Contours are paired (:mod:`.contours`), then their landmarks; whole contours are aligned from a sure pair of these
+(:mod:`.alignment`), and all masters are cut where any has a joint (:mod:`.cuts`). Every master keeps its outline.
 """
 
 from __future__ import annotations
@@ -12,12 +11,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..errors import GlyphsplineError, OptionError
+from ..outlines.masters import DesignAxis, MasterContour, Masters
+from ..outlines.outline import Contour, Outline
 from ..types import FloatArray
-from .common_cuts import common_cuts, cut
-from .contour_pairs import directed, paired_contours
+from .contours import along_ink, paired_contours
+from .cuts import common_cuts, cut
 from .landmarks import Landmarks
-from .masters import DesignAxis, MasterContour, Masters
-from .outline import Contour, Outline
 
 MOST_COST = 0.7
 """Cost of a pair of contours, a landmark, from which they are not taken for the same."""
@@ -62,7 +61,7 @@ def _matched(
     scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
     masters = []
     for scale, outline in zip(scales.tolist(), outlines, strict=True):
-        contours = directed(outline)
+        contours = along_ink(outline)
         masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
     parts = [[own.contour] for own in masters[0]]
     for other, location in zip(masters[1:], locations[1:], strict=True):

@@ -1,4 +1,4 @@
-"""Files of a run: folders, atomic writes, and what a run has left."""
+"""Files that are written: whole or not at all, errors that name them, and what an interrupted process has left."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
-from ..errors import OutputError
+from .errors import OutputError
 
 PARTIAL = ".part"
 """Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
@@ -37,7 +38,7 @@ def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> in
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
     data = content.encode() if isinstance(content, str) else content
-    partial = f"{path.rpartition('/')[0]}/.{os.getpid()}{PARTIAL}"
+    partial = os.path.join(os.path.dirname(path), f".{os.getpid()}{PARTIAL}")
     with writing(path):
         # O_EXCL does not follow a link planted under the temporary name.
         handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | O_BINARY, 0o666)
@@ -56,6 +57,27 @@ def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> in
                 os.unlink(partial)
             raise
     return len(data)
+
+
+@contextmanager
+def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
+    """A file to write to, which gets its name when the block ends without an error; see :func:`write_whole`.
+
+    Raises:
+        OutputError: it cannot be written; a file of this name remains unchanged.
+    """
+    partial = path.with_name(f".{path.name.strip('.')}-{os.getpid()}{PARTIAL}")
+    with writing(path):
+        try:
+            with open(partial, "xb") as file:  # x does not follow a link planted under the temporary name
+                yield file
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
+            os.replace(partial, path)
+        finally:
+            with suppress(OSError):
+                partial.unlink(missing_ok=True)
 
 
 def make_folder(path: Path) -> None:

@@ -9,9 +9,9 @@ from scipy.optimize import linear_sum_assignment
 
 from ..curves.integrals import area
 from ..errors import GlyphsplineError
+from ..outlines.outline import Contour, Outline
 from ..types import FloatArray, counted
 from .landmarks import STEPS, Landmarks
-from .outline import Contour, Outline
 
 FLAT = 0.02
 """Share of the area of a circle of the same length below which the sign of a contour's area says nothing."""
@@ -23,8 +23,8 @@ CORNERS = 0.01
 """Weight of the number of corners: so far apart, in the outlines' sizes, are contours that have one more or less."""
 
 
-def directed(outline: Outline) -> list[Contour]:
-    """The contours of an outline that last, reversed if what they enclose together has a negative area."""
+def along_ink(outline: Outline) -> list[Contour]:
+    """Contours that have an extent, all reversed if their total signed area is negative."""
     contours = [contour for contour in outline.contours if len(contour) and np.ptp(contour.points, axis=0).any()]
     if sum(area(contour.cubics()) for contour in contours) < 0:
         return [contour.reversed() for contour in contours]

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..curves.bezier import evaluate
 from ..curves.cubics import bernstein
+from ..outlines.extrema import extremal_places
+from ..outlines.outline import Contour
+from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray
-from .extrema import extremal_places
-from .outline import Contour
-from .sampling_limits import CORNER_ANGLE
 
 STEPS = 16
 """Steps a segment of the tables of length and turn."""
@@ -190,7 +190,7 @@ class Landmarks:
         return self._rows[i] + share[:, None] * (self._rows[i + 1] - self._rows[i])
 
     def table(self, which: IntArray) -> FloatArray:
-        """(k, 4) weight, length and directions of landmarks, as :func:`.pairing.cheapest_pairs` takes them."""
+        """(k, 4) weight, length and directions of landmarks, as :func:`.alignment.cheapest_pairs` takes them."""
         return np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
 
     def lap_places(self, which: IntArray) -> FloatArray:

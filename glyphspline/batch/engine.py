@@ -1,0 +1,232 @@
+"""The one engine for runs over glyphs: a job says what is done with tasks, the engine does it in a pool of workers.
+
+A worker reads a chunk of tasks and does them batch by batch. After an unexpected error it does those of the batch one
+by one, so that only the task at fault fails. If a worker is lost or killed, the tasks of its chunk are tried one by one
+too. Results do not depend on the number of workers, nor on chunks and batches.
+
+This module is imported before the compiled code: jobs import what they need within their methods, in the worker.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
+
+from ..errors import GlyphsplineError, OutputError
+from .pool import TimeLimitError, WorkerLostError, pool_size, sign_of_life
+
+CHUNKS = 8
+"""Chunks for each worker at least, so that the workers finish at about the same time."""
+
+AHEAD = 4
+"""Chunks in flight for each worker, so that none waits: two in the worker, and two in the queue."""
+
+TRIALS = 3
+"""Attempts at a task whose worker died: the task need not be the cause."""
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+Observer = Callable[[int, int, int], None]
+"""Called with the number of tasks done, of all tasks, and of those that failed."""
+
+
+class Item(NamedTuple):
+    """A task that has been read.
+
+    Attributes:
+        content: what :meth:`Job.together` takes. cost: its part of a batch's budget.
+        kind: items of one batch have the same.
+    """
+
+    content: Any
+    cost: float = 1.0
+    kind: Hashable = None
+
+
+@dataclass(frozen=True)
+class Part(Generic[Task, Result]):
+    """Tasks that were done together; ``seconds`` is what they took without reading."""
+
+    tasks: Sequence[Task]
+    result: Result
+    seconds: float = 0.0
+
+
+class Job(Generic[Task, Result]):
+    """What a run does with its tasks: a frozen dataclass of what a worker needs to know, pickled for each call.
+
+    Attributes:
+        chunk: maximum number of tasks in a call: enough to make the exchange cheap, few enough for a smooth progress
+            bar. budget: maximum cost of a batch. A worker's time limit and memory are for one batch.
+    """
+
+    chunk: ClassVar[int] = 40
+    budget: ClassVar[float] = float("inf")
+
+    def read(self, tasks: Sequence[Task]) -> Sequence[Item | Exception]:
+        """Read tasks, in a worker: an item for each, or why it cannot be read."""
+        return [Item(task) for task in tasks]
+
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Result:
+        """Do a batch of tasks, in a worker.
+
+        Raises:
+            OutputError: the output folder cannot be written to; every other task would fail too.
+        """
+        raise NotImplementedError
+
+    def failed(self, task: Task, error: Exception) -> Result:
+        """The result of a task that could not be read or done, or whose worker was lost."""
+        raise NotImplementedError
+
+    def failures(self, result: Result) -> int:
+        """Number of tasks of a result that failed."""
+        return 0
+
+
+def run(
+    job: Job[Task, Result],
+    tasks: Sequence[Task],
+    pool: Executor,
+    *,
+    ordered: bool = False,
+    observer: Observer | None = None,
+    before: int = 0,
+    chunks: Iterable[Sequence[Task]] | None = None,
+    total: int | None = None,
+) -> Iterator[Part[Task, Result]]:
+    """Do all tasks in a pool; yield the results, each of one task or more, as they come or in the tasks' order.
+
+    Args:
+        ordered: in the tasks' order. Results wait until those before them are there; only a few chunks are in flight.
+        observer: called when the results of a chunk have been taken.
+        before: number of tasks done in an earlier run, for the observer.
+        chunks: the tasks of each call, where they cannot be cut anywhere; ``total``: their number with those before.
+    """
+    total = before + len(tasks) if total is None else total
+    if chunks is None:
+        chunks = slices(tasks, max(1, min(job.chunk, len(tasks) // (CHUNKS * pool_size(pool)))))
+    most = 2 * AHEAD * pool_size(pool)
+    yielded, waiting = 0, dict[int, Part[Task, Result]]()
+
+    def numbered() -> Iterator[tuple[int, Sequence[Task]]]:
+        number = 0
+        for chunk in chunks:
+            while ordered and number - yielded >= most * len(chunk):
+                yield number, ()  # none now: the results that come first are not there yet
+            yield number, chunk
+            number += len(chunk)
+
+    done, failed = before, 0
+    for number, parts in _spread(job, numbered(), pool):
+        done += sum(len(part.tasks) for part in parts)
+        failed += sum(job.failures(part.result) for part in parts)
+        if ordered:
+            for part in parts:
+                waiting[number] = part
+                number += len(part.tasks)
+            while yielded in waiting:
+                part = waiting.pop(yielded)
+                yielded += len(part.tasks)
+                yield part
+        else:
+            yield from parts
+        if observer:
+            observer(done, total, failed)
+
+
+def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
+    """Tasks in chunks of a size."""
+    return [tasks[start : start + size] for start in range(0, len(tasks), size)]
+
+
+def _spread(
+    job: Job[Task, Result], chunks: Iterator[tuple[int, Sequence[Task]]], pool: Executor
+) -> Iterator[tuple[int, list[Part[Task, Result]]]]:
+    """Do numbered chunks in a pool; yield the number of each chunk's first task, and its results, as it completes.
+
+    ``chunks`` may yield an empty one while others are in flight: it is asked again when one of them completes.
+    """
+    again: deque[tuple[int, Sequence[Task], int]] = deque()
+    pending: dict[Future[list[Part[Task, Result]]], tuple[int, Sequence[Task], int]] = {}
+    try:
+        while True:
+            while len(pending) < AHEAD * pool_size(pool):
+                number, chunk, trial = again.popleft() if again else (*next(chunks, (0, ())), 1)
+                if not chunk:
+                    break
+                pending[pool.submit(work, job, chunk)] = number, chunk, trial
+            if not pending:
+                return
+            wait(pending, return_when=FIRST_COMPLETED)
+            for future in [future for future in pending if future.done()]:
+                number, chunk, trial = pending.pop(future)
+                try:
+                    parts = future.result()
+                except (WorkerLostError, TimeLimitError) as error:
+                    if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < TRIALS):
+                        again.extend((k, [task], trial + 1) for k, task in enumerate(chunk, number))
+                        continue
+                    parts = [Part(chunk, job.failed(chunk[0], error))]
+                yield number, parts
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def work(job: Job[Task, Result], tasks: Sequence[Task]) -> list[Part[Task, Result]]:
+    """Do a chunk of tasks, in a worker; the results are in the tasks' order."""
+    parts: list[Part[Task, Result]] = []
+    batch: list[tuple[Task, Item]] = []
+    cost = 0.0
+
+    def finish() -> None:
+        nonlocal cost
+        if batch:
+            parts.extend(_done(job, batch))
+            batch.clear()
+            cost = 0.0
+            sign_of_life()
+
+    for task, item in zip(tasks, job.read(tasks), strict=True):
+        if isinstance(item, Exception):
+            finish()
+            parts.append(Part([task], job.failed(task, item)))
+            continue
+        if batch and (cost + item.cost > job.budget or item.kind != batch[0][1].kind):
+            finish()
+        batch.append((task, item))
+        cost += item.cost
+    finish()
+    return parts
+
+
+def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Part[Task, Result]]:
+    """Do a batch; after an unexpected error, one by one."""
+    started = time.perf_counter()
+    tasks = [task for task, _ in batch]
+    try:
+        result = job.together(tasks, [item.content for _, item in batch])
+    except OutputError:
+        raise
+    except Exception as error:  # broken data raises anything
+        if len(batch) > 1:
+            return [part for one in batch for part in _done(job, [one])]
+        result = job.failed(tasks[0], error)
+    return [Part(tasks, result, time.perf_counter() - started)]
+
+
+def reason(error: Exception) -> str:
+    """The message of an error without the file's path, which may not be in a manifest."""
+    if isinstance(error, GlyphsplineError):
+        return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    from ..readers.source import reason
+
+    return reason(error)

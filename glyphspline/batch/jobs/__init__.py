@@ -1,0 +1,1 @@
+"""What runs do with glyphs: the jobs of :mod:`..engine`."""

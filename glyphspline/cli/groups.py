@@ -1,0 +1,198 @@
+"""Commands that take values: a parameter whose type is a frozen dataclass becomes options, one for each field."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from inspect import Parameter, Signature, signature
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
+
+import typer
+
+from ..errors import OptionError
+from ..fields import CORNERS, Described, option, options_of
+from ..fitting.options import PRESETS, Options, Preset
+from .messages import errors, listen
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Fields of a dataclass that are options of a command: those with these names, or all others."""
+
+    names: frozenset[str] = frozenset()
+    listed: bool = False
+
+    def __contains__(self, name: str) -> bool:
+        return (name in self.names) == self.listed
+
+
+def only(*names: str) -> Shown:
+    """These fields are options of the command."""
+    return Shown(frozenset(names), True)
+
+
+def without(*names: str) -> Shown:
+    """All fields but these are options of the command."""
+    return Shown(frozenset(names))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Options that are set together."""
+
+    preset: Preset | None = option(
+        None,
+        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with "
+        "margin 0. Options given beside it win.",
+        CORNERS,
+    )  # fmt: skip
+
+
+def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
+    """A command for typer, from a function that takes values and returns the exit status.
+
+    Expected errors end the command with status 2, those of making the values too. A field whose option is not given,
+    neither on the command line nor in a file, keeps the value of the parameter's default, or that of the preset. The
+    command's attribute ``values`` is the function that makes the values from typer's context.
+    """
+    hints = get_type_hints(function, include_extras=True)
+    hints.pop("return")
+    defaults = {name: parameter.default for name, parameter in signature(function).parameters.items()}
+    groups = {name: group for name, hint in hints.items() if (group := _group(hint, defaults[name]))}
+    flat = [_parameter("context", typer.Context)]
+    for name, hint in hints.items():
+        flat += _expanded(*groups[name]) if name in groups else [_parameter(name, hint, defaults[name])]
+
+    def values(context: Any) -> dict[str, Any]:
+        given, source = context.params, context.get_parameter_source
+        own = {name: value for name, value in given.items() if getattr(source(name), "name", "") != "DEFAULT"}
+        return {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
+
+    def command(context: typer.Context, **given: Any) -> None:
+        quiet = bool(given.get("quiet"))
+        with errors(quiet, bool(given.get("json_log"))):
+            listen(quiet)
+            status = function(**values(context))
+        if status:
+            raise typer.Exit(status)
+
+    command.values = values  # type: ignore[attr-defined]
+    command.__name__, command.__doc__ = function.__name__, function.__doc__
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in flat}
+    command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
+    return command
+
+
+def _group(hint: Any, default: Any) -> tuple[Any, Shown] | None:
+    """The value that a parameter has without options, and its fields that are options; None: it is no dataclass."""
+    kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
+    if not (isinstance(kind, type) and is_dataclass(kind)):
+        return None
+    shown = next((extra for extra in extras if isinstance(extra, Shown)), Shown())
+    return kind() if default is Parameter.empty else default, shown
+
+
+def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
+    """A dataclass with the options that are given, by name, and as ``base`` is in the rest.
+
+    Raises:
+        OptionError: a value is out of its range; the message names the option.
+    """
+    kind: Any = type(base)
+    if kind is Options:
+        given = {**PRESETS.get(given.get("preset", ""), {}), **given}
+    found = {
+        one.name: collected(value, shown, given)
+        for one in fields(kind)
+        if is_dataclass(value := getattr(base, one.name)) and one.name in shown
+    }
+    found = {name: value for name, value in found.items() if value != getattr(base, name)}
+    known = {one.name: one for one in options_of(kind) if one.name in shown and one.name in given}
+    found |= {name: _read(one, given[name]) for name, one in known.items()}
+    try:
+        return replace(base, **found)  # type: ignore[type-var]
+    except OptionError as error:
+        first, *rest = re.split(" (?=is |and .* are )", error.message, maxsplit=1)
+        named = rest and first in known
+        raise OptionError(f"{known[first].flags[0]} {rest[0]}" if named else error.message) from None
+
+
+def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:
+    """The options of a dataclass and of those in it, as parameters for typer."""
+    if isinstance(base, Options):
+        yield from _expanded(Choice(), Shown())
+    known = {one.name: one for one in options_of(base)}
+    for one in fields(base):
+        value = getattr(base, one.name)
+        if one.name in shown and is_dataclass(value):
+            yield from _expanded(value, shown)
+        elif one.name in shown and one.name in known:
+            yield _option(known[one.name], value)
+
+
+def _option(one: Described, default: Any) -> Parameter:
+    """An option as a parameter for typer. A tuple is written between commas."""
+    kind, about = one.kind, one.about
+    if about.words or get_origin(kind) is tuple:
+        kind, default = str, _written(default, about.words)
+    parsers = {int: whole, float: number}
+    more = {"parser": parsers[kind]} if kind in parsers else {}
+    made = typer.Option(
+        *one.flags, help=about.help, rich_help_panel=about.panel, metavar=about.metavar, **more | dict(about.more)
+    )
+    return _parameter(one.name, Annotated[kind if default is not None else kind | None, made], default)
+
+
+def _written(value: Any, words: Mapping[str, Any]) -> str | None:
+    named = [word for word, meant in words.items() if meant == value]
+    return named[0] if named else ",".join(value) or None if isinstance(value, tuple) else str(value)
+
+
+def _read(one: Described, value: Any) -> Any:
+    """A value of the command line as its field has it."""
+    if get_origin(one.kind) is tuple:
+        return tuple(part.strip() for part in value.split(",") if part.strip())
+    if one.about.words:
+        return one.about.words[value] if value in one.about.words else whole(value)
+    return value
+
+
+def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:
+    return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def number(text: Any) -> float:
+    """Parse a float; the error message quotes the value."""
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        raise typer.BadParameter(f"{text!r} is not a number") from None
+
+
+def whole(text: Any) -> int:
+    """Parse an integer; the error message quotes the value."""
+    try:
+        if isinstance(text, float | bool):
+            raise ValueError
+        return int(text)
+    except (TypeError, ValueError):
+        raise typer.BadParameter(f"{text!r} is not a whole number") from None
+
+
+def natural(text: Any) -> int:
+    """Parse an integer from 0 on; the error message quotes the value."""
+    found = whole(text)
+    if found < 0:
+        raise typer.BadParameter(f"{found} is below 0")
+    return found
+
+
+def place(text: Any) -> Path:
+    """Parse a path. Empty strings are rejected, as ``Path("")`` is the current folder."""
+    if not str(text):
+        raise typer.BadParameter("it is empty: give a folder, or . for this one")
+    return Path(text)

@@ -1,0 +1,1 @@
+"""Unlike outlines made alike: contours paired, aligned and cut, so that they are masters of one glyph."""
