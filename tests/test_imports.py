@@ -20,7 +20,7 @@ BASE = {"compiled", "errors", "extras", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"checks", "readers", "layout", "writers"}
+WRITERS = FITTING | {"checks", "readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
     "compiled": set(),
@@ -35,7 +35,7 @@ PLAN = {
     "comparing": CHECKS | {"comparing"},
     "fitting": FITTING,
     "readers": CURVES | {"outlines"},
-    "layout": FITTING | {"readers"},
+    "typesetting": FITTING | {"readers"},
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"comparing", "report"},

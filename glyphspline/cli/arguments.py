@@ -14,8 +14,8 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..fitting.options import PRESETS, Continuity, Corners, Effort, Options, Preset
 from ..interpolation.method import Fallback
-from ..layout.setting import Align, Direction, Side
 from ..types import Names
+from ..typesetting.setting import Align, Direction, Side
 from ..writers.formats import OURS
 from ..writers.settings import DxfKind
 from ..writers.svg.appearance import ViewBox, Whose

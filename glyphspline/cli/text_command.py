@@ -16,7 +16,7 @@ from .messages import say
 if TYPE_CHECKING:
     from ..batch.text_drawings import TextJob
     from ..fitting.options import Options
-    from ..layout.placed import Layout
+    from ..typesetting.placed import Layout
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -45,7 +45,7 @@ def set_text(given: Mapping[str, Any]) -> int:
     # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
     with workers(1, inf, options, names, expected=1) as executor:
         from ..batch.text_drawings import drawings
-        from ..layout.placed import LEFT_OUT
+        from ..typesetting.placed import LEFT_OUT
 
         job = job_of(given, look, options, names)
         drawn = executor.submit(drawings, job).result()
@@ -120,8 +120,8 @@ def job_of(given: Mapping[str, Any], look: Appearance, options: Options, formats
         GlyphsplineError: it cannot be laid out, or options clash.
     """
     from ..batch.text_drawings import TextJob
-    from ..layout.lay_out import layout
     from ..readers import open_source
+    from ..typesetting.lay_out import layout
 
     text = words_of(given)
     location = opt.location_of(given["location"])
@@ -140,7 +140,7 @@ def job_of(given: Mapping[str, Any], look: Appearance, options: Options, formats
             raise GlyphsplineError("--width is for lines; text on a --path is one")
         if given["direction"] in ("ttb", "btt"):
             raise GlyphsplineError("columns cannot stand on a --path")
-        from ..layout.path_file import open_path
+        from ..typesetting.path_file import open_path
 
         curve = open_path(given["path"]).scaled(pixel(em, look))
     setting["align"] = given["align"] if curve is None else "start"
