@@ -108,7 +108,6 @@ FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_d
 FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]
 OwnFont = Annotated[Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)]
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)]
-RunFont = Annotated[Path | None, typer.Option("--font", metavar="FONT", help="The font that the run was made of.")]
 
 Text = Annotated[str | None, glyph_option("--text", help="Glyphs of these characters.")]
 TextFile = Annotated[Path | None, glyph_option("--text-file", help="Glyphs of a UTF-8 file's characters.")]

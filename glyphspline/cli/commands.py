@@ -216,17 +216,15 @@ def look_deep(font: Path, facts: dict[str, Any]) -> None:
 
 
 @app.command()
-def report(folder: opt.Folder, font: opt.RunFont = None) -> None:
+def report(folder: opt.Folder) -> None:
     """Write the gallery, index.html, of one run, or of a folder that holds several.
 
-    Results of a run without --format gallery come from its drawings, source outlines from its font: --font, or the
-    file of the same name and bytes in the current folder, in DIR or above it. There are no polygons in such a gallery,
-    and without the font no sources.
+    Of a run without --format gallery, the command is shown that adds it.
     """
     with errors():
         from ..batch import write_gallery
 
-        write_gallery(folder, font)
+        write_gallery(folder)
     typer.echo(folder / "index.html")
 
 
