@@ -20,7 +20,10 @@ SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
 
 SAMPLES = 33
-"""Places of each cubic where the error is measured. Between two of them it is larger by a few per cent at most."""
+"""Places of each cubic where the error is measured."""
+
+BETWEEN = 1.02
+"""Factor on the largest error measured, for what lies between: at 513 places it was larger by 0.7 % at most."""
 
 ROUNDS = 5
 """Least-squares fits of the two handles, each followed by new parameters of the nearest points."""
@@ -59,7 +62,7 @@ def bend(
     stay corners; the handles are fitted by least squares. Small kinks of the path are rounded first, by
     :meth:`.Path.rounded`. Where the path's curvature jumps, a slanted line gets a corner, as the map has it.
 
-    The distance to the deformed outline is measured at 33 places of each cubic.
+    The distance to the deformed outline is measured at 33 places of each cubic, and taken 2 % larger.
 
     Args:
         layout: of one horizontal line. path: in font units. tolerance: two-sided distance allowed, in font units.
@@ -262,7 +265,7 @@ def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, 
     target = points + y[..., None] * N
     arms = _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3)
     pieces, at = _handles(target, *arms, ENOUGH * tolerance)
-    return pieces, np.sqrt(_off(pieces, at, target)), shrink.max(axis=1)
+    return pieces, BETWEEN * np.sqrt(_off(pieces, at, target)), shrink.max(axis=1)
 
 
 def _values(pieces: FloatArray, places: FloatArray) -> FloatArray:
