@@ -42,12 +42,6 @@ if TYPE_CHECKING:
     from .interpolation.api import interpolate as interpolate
     from .interpolation.api import interpolate_many as interpolate_many
     from .interpolation.api import interpolate_vertex as interpolate_vertex
-    from .layout.along_path import along as along
-    from .layout.bent import bend as bend
-    from .layout.lay_out import layout as layout
-    from .layout.path import Path as Path
-    from .layout.path_file import open_path as open_path
-    from .layout.placed import Layout as Layout
     from .notebook import plot as plot
     from .outlines.masters import DesignAxis as DesignAxis
     from .outlines.masters import MasterContour as MasterContour
@@ -59,6 +53,12 @@ if TYPE_CHECKING:
     from .readers import Font as Font
     from .readers import open_font as open_font
     from .readers import open_source as open_source
+    from .typesetting.along_path import along as along
+    from .typesetting.bent import bend as bend
+    from .typesetting.lay_out import layout as layout
+    from .typesetting.path import Path as Path
+    from .typesetting.path_file import open_path as open_path
+    from .typesetting.placed import Layout as Layout
     from .writers.dxf import to_dxf as to_dxf
     from .writers.font.font_file import write_font as write_font
     from .writers.json_file import to_json as to_json
@@ -89,7 +89,7 @@ _ON_DEMAND = {
     "Interpolation": ".interpolation.api",
     "Kink": ".checks.kinks",
     "KinkReport": ".checks.kinks",
-    "Layout": ".layout.placed",
+    "Layout": ".typesetting.placed",
     "Loaded": ".dataset.loading",
     "MasterContour": ".outlines.masters",
     "Masters": ".outlines.masters",
@@ -100,13 +100,13 @@ _ON_DEMAND = {
     "Options": ".fitting.options",
     "Outline": ".outlines.outline",
     "OutputError": ".errors",
-    "Path": ".layout.path",
+    "Path": ".typesetting.path",
     "PolygonError": ".errors",
     "Spline": ".curves.bspline",
     "Thresholds": ".checks.kinds",
     "Turn": ".comparing.difference",
-    "along": ".layout.along_path",
-    "bend": ".layout.bent",
+    "along": ".typesetting.along_path",
+    "bend": ".typesetting.bent",
     "check": ".checks.check",
     "compare": ".comparing.compare",
     "convert": ".fitting.convert",
@@ -117,10 +117,10 @@ _ON_DEMAND = {
     "interpolate_many": ".interpolation.api",
     "interpolate_vertex": ".interpolation.api",
     "kinks": ".checks.kinks",
-    "layout": ".layout.lay_out",
+    "layout": ".typesetting.lay_out",
     "load": ".dataset.loading",
     "open_font": ".readers",
-    "open_path": ".layout.path_file",
+    "open_path": ".typesetting.path_file",
     "open_source": ".readers",
     "plot": ".notebook",
     "sample": ".outlines.sampling",

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.layout.bidi import embedding_levels, line_levels, visual_order
+from glyphspline.typesetting.bidi import embedding_levels, line_levels, visual_order
 
 FONTS = Path("/usr/share/fonts")
 DEJAVU = FONTS / "truetype/dejavu/DejaVuSans.ttf"

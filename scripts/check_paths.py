@@ -23,7 +23,7 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 
 import glyphspline as gs
-from glyphspline.layout.along_path import letters_of
+from glyphspline.typesetting.along_path import letters_of
 
 FONTS = Path("/usr/share/fonts")
 CASES = (

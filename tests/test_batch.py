@@ -367,24 +367,7 @@ def test_fonts_of_one_name_get_folders_of_their_own() -> None:
     assert folders_for(fonts) == ["Fine-ttf", "fine-ttf-2", "CON-2", "font", "Fine-otf"]
 
 
-def test_a_gallery_afterwards_shows_results_and_sources(finished: Path, font: Font, tmp_path: Path) -> None:
-    def drawings(folder: Path) -> list[dict[str, Any]]:
-        return [json.loads(path.read_text()[16:-3]) for path in sorted(folder.glob("gallery/*.glyph.js"))]
-
-    for kind in ("svg", "curvature"):
-        out = tmp_path / kind / "run"
-        convert_font(font, font.select(text="O8 B"), out, replace(SPEC, formats=(kind,)), jobs=0)
-        write_gallery(out, font.path)
-        for made, whole in zip(drawings(out), drawings(finished), strict=True):
-            assert (made["result"], made["source"]) == (whole["result"], whole["source"])
-            assert made["contours"] == whole["contours"]
-            assert made["files"].keys() == {kind}
-        shutil.copy(font.path, tmp_path / kind)
-        (out / "gallery" / "O.glyph.js").unlink()
-        write_gallery(out)
-        assert [drawing["source"] != "" for drawing in drawings(out)] == [True] * 3
-        (tmp_path / kind / font.path.name).write_bytes(b"another font")
-        write_gallery(out)
-        assert [drawing["source"] for drawing in drawings(out)] == [""] * 3
-    with pytest.raises(OutputError, match="another font"):
-        write_gallery(out, FONTS / "kouzan-gyosho.ttf")
+def test_a_gallery_afterwards_needs_the_format(font: Font, tmp_path: Path) -> None:
+    convert_font(font, font.select(text="O"), tmp_path, replace(SPEC, formats=("svg",)), jobs=0)
+    with pytest.raises(OutputError, match=r"without the format gallery; add it by: .*--format svg,gallery --out"):
+        write_gallery(tmp_path)

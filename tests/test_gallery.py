@@ -17,7 +17,6 @@ import pytest
 from svgpathtools import parse_path
 
 import glyphspline as gs
-from glyphspline.batch.galleries import result_path
 from glyphspline.report.data import glyph_text, inside
 from glyphspline.report.gallery import write_index, write_report
 from glyphspline.report.glyph_measures import glyph_measures
@@ -111,17 +110,6 @@ def test_hostile_text_stays_text(tmp_path: Path) -> None:
 def test_a_link_out_of_the_folder_is_none(path: object) -> None:
     assert not inside(path)
     assert inside("svg/a.svg")
-
-
-@pytest.mark.parametrize(
-    "drawing",
-    ['<path id="g1-a-outline" d="M0 0Z&quot;onload"/>', "<path", '<!DOCTYPE a [<!ENTITY b "c">]><svg>&b;</svg>', ""],
-)
-def test_a_file_that_is_no_drawing_of_ours_gives_nothing(drawing: str, tmp_path: Path) -> None:
-    text = f'<svg xmlns="http://www.w3.org/2000/svg">{drawing}</svg>' if drawing.endswith("/>") else drawing
-    (tmp_path / "a.svg").write_text(text)
-    assert result_path(tmp_path, {"svg": "a.svg"}) == ""
-    assert result_path(tmp_path, {"svg": "missing.svg"}) == ""
 
 
 def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:

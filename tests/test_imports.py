@@ -20,7 +20,7 @@ BASE = {"compiled", "errors", "extras", "fields", "files", "intrinsics", "types"
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"checks", "readers", "layout", "writers"}
+WRITERS = FITTING | {"checks", "readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
     "compiled": set(),
@@ -38,7 +38,7 @@ PLAN = {
     "comparing": CHECKS | {"comparing"},
     "fitting": FITTING,
     "readers": CURVES | {"outlines", "matching"},
-    "layout": FITTING | {"readers"},
+    "typesetting": FITTING | {"readers"},
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"matching", "comparing", "report"},

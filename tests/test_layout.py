@@ -18,10 +18,10 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline import OptionError
-from glyphspline.layout.bidi import embedding_levels, line_levels, visual_order
-from glyphspline.layout.boundaries import clusters
-from glyphspline.layout.placed import Layout
-from glyphspline.layout.scripts import scripts_of, upright_in_columns
+from glyphspline.typesetting.bidi import embedding_levels, line_levels, visual_order
+from glyphspline.typesetting.paragraph import clusters
+from glyphspline.typesetting.placed import Layout
+from glyphspline.typesetting.scripts import scripts_of, upright_in_columns
 
 from .text_fonts import advance, text_font
 
@@ -605,5 +605,5 @@ def test_many_characters_are_shaped_in_parts(font: gs.Font) -> None:
 
 
 def test_layout_is_a_function_whatever_was_imported() -> None:
-    code = "import glyphspline.layout.placed, glyphspline as gs; gs.layout.__kwdefaults__"
+    code = "import glyphspline.typesetting.bent as bent, glyphspline as gs; bent.SHARE; gs.layout.__kwdefaults__"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -17,13 +17,14 @@ from scipy.special import ellipe
 import glyphspline as gs
 from glyphspline.curves.bezier import derivative_points, evaluate
 from glyphspline.errors import FontError, GlyphsplineError, OptionError
-from glyphspline.layout.along_path import Align, along, letters_of
-from glyphspline.layout.bent import SHARE, bend
-from glyphspline.layout.path import Path
-from glyphspline.layout.path_file import open_path
-from glyphspline.layout.placed import Layout
 from glyphspline.outlines.joins import joins
 from glyphspline.types import FloatArray
+from glyphspline.typesetting.along_path import along, letters_of
+from glyphspline.typesetting.bent import SHARE, bend
+from glyphspline.typesetting.path import Path
+from glyphspline.typesetting.path_file import open_path
+from glyphspline.typesetting.placed import Layout
+from glyphspline.typesetting.setting import PathAlign
 
 from .drawings import circle
 from .text_fonts import text_font
@@ -252,7 +253,7 @@ def test_letters_stand_with_their_middles_on_a_circle() -> None:
 def test_text_is_aligned_moved_and_reversed() -> None:
     layout = placed([400, 600], [0, 1])
     path = Path.of([[0, 0], [3000, 0]])
-    aligned: tuple[tuple[Align, float], ...] = (("start", 0), ("center", 1000), ("end", 2000))
+    aligned: tuple[tuple[PathAlign, float], ...] = (("start", 0), ("center", 1000), ("end", 2000))
     for align, first in aligned:
         assert along(layout, path, align=align).origin[:, 0].tolist() == [first, first + 400]
     assert along(layout, path, offset=50, align="center").origin[0].tolist() == [1050, 0]

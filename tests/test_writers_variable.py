@@ -298,7 +298,7 @@ def test_the_fitted_spline_is_what_the_format_draws(closed: bool) -> None:
     contour = MasterContour(points, degrees).mixed(np.ones(1))
     count = 7 if closed else 5
     places = np.linspace(0, count, 101)[:-1]
-    index, weight, _, _ = basis(places, count, closed)
+    index, weight, _ = basis(places, count, closed)
     drawn = (weight[..., None] * controls[0][index]).sum(axis=1)
     # The closed contour begins at the first implied point, after control point 0, where the spline is at 1.
     assert contour.at(places - 1 if closed else places) == pytest.approx(drawn)

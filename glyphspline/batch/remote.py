@@ -6,7 +6,6 @@ nowhere.
 
 from __future__ import annotations
 
-import io
 import os
 import re
 import tempfile
@@ -16,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from hashlib import file_digest
 from pathlib import Path, PurePosixPath
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar, cast
 from urllib.parse import unquote, urlsplit
 
 from ..errors import FontError, GlyphsplineError, OutputError
@@ -33,6 +32,9 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.5, 8.0
 
 PASSING = ("ConnectionError", "TimeoutError", "HTTPClientError", "ClientConnectionError", "ServerTimeoutError")
 """Errors of a connection, by the names of their classes: libraries of providers have types of their own."""
+
+BLOCK = 1 << 16
+"""Bytes that are fetched at once of a file that is read by parts."""
 
 AT_A_TIME = 8
 """Files fetched at the same time."""
@@ -176,57 +178,15 @@ def remove(url: str) -> None:
         asked(url, lambda: system.rm_file(path))
 
 
-class RemoteFile(io.RawIOBase):
-    """A file behind a URL open for reading at any place; only what is read is fetched.
+def opened(url: str) -> BinaryIO:
+    """A file open for reading at any place; little more than what is read is fetched.
 
     Raises:
         OutputError: there is no such file, or the store refuses or does not answer.
     """
-
-    def __init__(self, url: str) -> None:
-        self._url = url
-        self._system, self._path = file_system(url)
-        found = info(url)
-        if found is None:
-            raise OutputError("there is no such file", font=shown(url))
-        self._size, self._at = int(found["size"]), 0
-
-    def readable(self) -> bool:
-        """It is."""
-        return True
-
-    def seekable(self) -> bool:
-        """It is."""
-        return True
-
-    def tell(self) -> int:
-        """The place of the next byte read."""
-        return self._at
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Move to a place; returns it."""
-        self._at = max(0, offset + (0, self._at, self._size)[whence])
-        return self._at
-
-    def read(self, size: int | None = -1) -> bytes:
-        """The next bytes: as many as there are, up to ``size``."""
-        end = self._size if size is None or size < 0 else min(self._at + size, self._size)
-        if end <= self._at:
-            return b""
-        with missing(self._url, OutputError):
-            content: bytes = asked(self._url, lambda: self._system.cat_file(self._path, start=self._at, end=end))
-        self._at += len(content)
-        return content
-
-    def readall(self) -> bytes:
-        """All bytes that follow."""
-        return self.read()
-
-    def readinto(self, buffer: Any) -> int:
-        """Read bytes into a buffer; returns their number."""
-        content = self.read(len(buffer))
-        buffer[: len(content)] = content
-        return len(content)
+    system, path = file_system(url)
+    with missing(url, OutputError):
+        return cast(BinaryIO, asked(url, lambda: system.open(path, "rb", block_size=BLOCK)))
 
 
 @contextmanager

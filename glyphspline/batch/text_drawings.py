@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ..errors import GlyphsplineError
 from ..fitting.options import Options
-from ..layout.placed import Layout
-from ..layout.setting import Side
+from ..typesetting.placed import Layout
+from ..typesetting.setting import Side
 from ..writers.settings import Settings
 
 if TYPE_CHECKING:
     from ..fitting.results import GlyphResult
-    from ..layout.path import Path
+    from ..typesetting.path import Path
 
 
 @dataclass(frozen=True)
@@ -64,12 +64,12 @@ class _Drawn:
         self.notes: dict[str, None] = {}
         self.bent = None
         if job.path is not None and job.bend:
-            from ..layout.bent import SHARE, bend
+            from ..typesetting.bent import SHARE, bend
 
             tolerance = SHARE * self.options.tolerance_for(self.layout.fonts[0].metrics.units_per_em)
             self.bent = bend(self.layout, job.path, tolerance, align=job.align, side=job.side, offset=job.offset)
         elif job.path is not None:
-            from ..layout.along_path import along
+            from ..typesetting.along_path import along
 
             self.layout = along(self.layout, job.path, align=job.align, side=job.side, offset=job.offset)
 

@@ -12,7 +12,7 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..errors import GlyphsplineError
 from ..fields import WRITTEN, option
-from ..layout.setting import Align, Direction, Side
+from ..typesetting.setting import Align, Direction, Side
 from .groups import natural, place
 
 if TYPE_CHECKING:

@@ -167,19 +167,14 @@ def look_deep(font: Path, facts: dict[str, Any]) -> None:
 @grouped
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)],
-    font: Annotated[
-        Path | None, typer.Option("--font", metavar="FONT", help="Read the outlines of this font of the run.")
-    ] = None,
 ) -> None:
     """Write the gallery, index.html, of one run, or of a folder that holds several.
 
-    Results of a run without --format gallery come from its drawings, source outlines from its font: --font, or the
-    file of the same name and bytes in the current folder, in DIR or above it. There are no polygons in such a gallery,
-    and without the font no sources.
+    A run without the format gallery is named, with the command that adds it.
     """
     from ..batch import write_gallery
 
-    write_gallery(folder, font)
+    write_gallery(folder)
     typer.echo(folder / "index.html")
 
 

@@ -17,7 +17,7 @@ from .messages import say
 if TYPE_CHECKING:
     from ..batch.text_drawings import TextJob
     from ..fitting.options import Options
-    from ..layout.placed import Layout
+    from ..typesetting.placed import Layout
     from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
@@ -61,7 +61,7 @@ def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
     # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
     with workers(1, inf, call.options, names, expected=1) as executor:
         from ..batch.text_drawings import drawings
-        from ..layout.placed import LEFT_OUT
+        from ..typesetting.placed import LEFT_OUT
 
         job = job_of(call, names)
         drawn = executor.submit(drawings, job).result()
@@ -127,8 +127,8 @@ def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
         GlyphsplineError: it cannot be laid out, or options clash.
     """
     from ..batch.text_drawings import TextJob
-    from ..layout.lay_out import layout
     from ..readers import open_source
+    from ..typesetting.lay_out import layout
 
     lines, along, look = call.lines, call.along, call.settings.look
     text = words_of(call.words, lines.text_file)
@@ -147,7 +147,7 @@ def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
             raise GlyphsplineError("--width is for lines; text on a --path is one")
         if lines.direction in ("ttb", "btt"):
             raise GlyphsplineError("columns cannot stand on a --path")
-        from ..layout.path_file import open_path
+        from ..typesetting.path_file import open_path
 
         curve = open_path(along.path).scaled(pixel(em, look))
     laid_out = layout(

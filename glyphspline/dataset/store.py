@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO, TypeAlias, cast
+from typing import BinaryIO, TypeAlias
 
 from ..batch import remote
 from ..batch.lock import locked
@@ -96,7 +96,7 @@ def read(path: str) -> BinaryIO:
     Raises:
         OSError: it cannot be opened.
     """
-    return cast(BinaryIO, remote.RemoteFile(path)) if remote.is_url(path) else open(path, "rb")
+    return remote.opened(path) if remote.is_url(path) else open(path, "rb")
 
 
 def size(path: str) -> int:
@@ -105,7 +105,8 @@ def size(path: str) -> int:
     Raises:
         OSError: there is no such file.
     """
-    return read(path).seek(0, os.SEEK_END) if remote.is_url(path) else os.path.getsize(path)
+    with read(path) as file:
+        return file.seek(0, os.SEEK_END)
 
 
 def remove(path: str) -> None:

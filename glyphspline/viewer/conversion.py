@@ -23,10 +23,10 @@ from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph
 from ..interpolation.result import Interpolation
-from ..layout.lay_out import layout
 from ..outlines.outline import Contours, Outline
 from ..readers import Font, open_font
 from ..types import FloatArray
+from ..typesetting.lay_out import layout
 from ..writers.svg.curvature_map import combs
 from ..writers.svg.text_drawing import text_document
 from .state import Moved, State

@@ -7,7 +7,6 @@ are at these in layers of the default's UFO. Only redrawn glyphs are in the fold
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Mapping
 from dataclasses import astuple, replace
 from itertools import count
@@ -26,7 +25,7 @@ from ..outlines.outline import Contour
 from ..readers import Font, Source
 from ..types import MadeOnDemand
 from .font.master_deltas import Redrawn
-from .ufo_folder import as_number, draw, smooth_ends
+from .ufo_folder import as_number, draw, replacing, smooth_ends
 
 DIGITS = 4
 """Decimals of coordinates: a handle of 10 units turns by less than 0.001 degrees."""
@@ -60,13 +59,9 @@ def write_designspace(
     if not chosen:
         why = f": {next(iter(left.values()))}" if left else ""
         raise OutputError(f"no glyph to write{why}", font=str(path))
-    partial = path.with_name(f".{path.name}.part")
-    shutil.rmtree(partial, ignore_errors=True)
-    partial.mkdir(parents=True)
-    _write(source, chosen, partial, family or source.family)
-    if path.exists():
-        shutil.rmtree(path)
-    partial.replace(path)
+    with replacing(path) as partial:
+        partial.mkdir(parents=True)
+        _write(source, chosen, partial, family or source.family)
     return left
 
 
@@ -103,11 +98,11 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
         document.addAxis(_axis(axis))
     styles = styles_of(axes, every)
     taken: set[str] = set()
-    main = f"{file_stem(f'{family} {styles[default]}', taken)}.ufo"
+    main = f"{unused_stem(f'{family} {styles[default]}', taken)}.ufo"
     for at in every:
         style = styles[at]
         own = at in shared
-        file = main if at == default or not own else f"{file_stem(f'{family} {style}', taken)}.ufo"
+        file = main if at == default or not own else f"{unused_stem(f'{family} {style}', taken)}.ufo"
         descriptor = SourceDescriptor(
             filename=file,
             name=f"{family} {style}",
@@ -124,7 +119,7 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
         if descriptor.layerName is None:
             layers = [other for other in every if other not in shared] if at == default else []
             _write_ufo(source, redrawn, of_glyph, styles, at, layers, folder / str(descriptor.filename), family)
-    document.write(folder / f"{file_stem(family, set())}.designspace")
+    document.write(folder / f"{unused_stem(family, set())}.designspace")
 
 
 def _write_ufo(
@@ -204,7 +199,7 @@ def styles_of(axes: tuple[DesignAxis, ...], places: list[Place]) -> dict[Place, 
     return dict(zip(places, names, strict=True))
 
 
-def file_stem(text: str, taken: set[str]) -> str:
+def unused_stem(text: str, taken: set[str]) -> str:
     """A file name for a text, other than those taken, without regard to case."""
     base = re.sub(r"[^\w.-]+", "-", text).strip(".-") or "masters"
     stem = next(stem for k in count(1) if (stem := base if k == 1 else f"{base}-{k}").lower() not in taken)

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, astuple
 from itertools import islice
 from pathlib import Path
@@ -50,13 +51,19 @@ def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *
     path = Path(path)
     if path.is_symlink() or (path.exists() and not (path / "metainfo.plist").exists()):
         raise GlyphsplineError("is there already, and is no UFO", font=str(path))
-    partial = path.with_name(f".{path.name}.part")
+    with replacing(path) as partial:
+        return _write(source, glyphs, partial, family or f"{source.family} Spline")
+
+
+@contextmanager
+def replacing(folder: Path) -> Iterator[Path]:
+    """A folder beside another one, to be filled within; it then takes that one's place."""
+    partial = folder.with_name(f".{folder.name}.part")
     shutil.rmtree(partial, ignore_errors=True)
-    count = _write(source, glyphs, partial, family or f"{source.family} Spline")
-    if path.exists():
-        shutil.rmtree(path)
-    partial.replace(path)
-    return count
+    yield partial
+    if folder.exists():
+        shutil.rmtree(folder)
+    partial.replace(folder)
 
 
 def _write(source: Source, glyphs: Iterable[GlyphResult], path: Path, family: str) -> int:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.layout.along_path import along, letters_of
-from glyphspline.layout.path_file import open_path
+from glyphspline.typesetting.along_path import along, letters_of
+from glyphspline.typesetting.path_file import open_path
 
 FONTS = Path(__file__).parents[2] / "fonts_test"
 POSITIONS = """() => {

@@ -3,53 +3,36 @@
 A TrueType contour leaves out a point on the curve that lies midway between two control points. Where only such points
 are inside an arc, the arc is a quadratic B-spline of uniform knots: it has no kink there in any master, nor in any
 instance, wherever its control points are rounded to.
+
+All masters are fitted by least squares at the same parameters, so that an instance of the font is the fit of the
+instance. Errors along the curve, which nobody sees, count little.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from operator import itemgetter
 
 import numpy as np
 
-from ...curves.bezier import evaluate
+from ...curves.bezier import cross, evaluate
 from ...types import BoolArray, FloatArray, IntArray
 
-SAMPLES = 8
-"""Samples of each cubic while its arc is fitted."""
-
-FEWEST = 48
-"""Samples of an arc, at least."""
-
 TANGENT = 0.1
-"""Weight of residuals along the curve once every master may slip, against those across it."""
-
-SLIPPING, OWN, ROUNDS = 2, 5, 9
-"""Rounds of least squares: from the first of these on points may slip, from the second on each master by itself."""
-
-SLIP = 0.5
-"""Spans by which a master's own parameters differ from the common ones at most."""
-
-EVEN = 1e-4
-"""Weight of second differences of control points against the distance, once each master has its own footpoints."""
-
-SHORTEST = 1.5
-"""Leg of a quadratic in font units below which other numbers of points are tried: renderers place implied points in
-single precision, which turns a short leg."""
-
-LEVEL = 4.0
-"""Weight of what rounding moves off a line's direction, against what it moves off the curve."""
+"""Weight of an error along the curve against one across it. Larger: control points cannot move to where few of them
+suffice. Smaller: nothing spaces them evenly."""
 
 STEEPEST = 0.7
-"""Most by which the length of a span changes per unit of length: neighbours are of like size, as they meet midway."""
+"""Change of the length of a span per unit of length, at most: neighbours that meet midway are of like size."""
 
-FUTILE = 4
-"""Tries that came no nearer, or were near enough before rounding, after which more points are not tried."""
+SAMPLES = 8
+"""Samples of a cubic to which an arc is fitted; the distance is measured at four times as many."""
 
-SLACK = 0.35
-"""Share of the tolerance under which the error before rounding is not what keeps an arc from its tolerance."""
+EVEN = 1e-4
+"""Weight of second differences of control points. Smaller: rounds around tight bends do not settle."""
+
+ROUNDS = 3
+"""Least-squares fits, each followed by a step of the parameters towards the footpoints of the samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,273 +70,190 @@ class Fitted:
 def fit(
     arc: Arc, weights: FloatArray, tolerance: float, rounded: Callable[[FloatArray, FloatArray], FloatArray]
 ) -> Fitted:
-    """The fewest control points found within ``tolerance`` of the arc and not too close, or else the nearest found.
+    """The fewest control points found within ``tolerance`` of the arc, or else the nearest found.
+
+    Their number is doubled until they are within the tolerance, and then halved down to the least that is.
 
     Args:
         weights: (V, K) of the masters at the locations where the distance is measured.
         tolerance: in font units.
         rounded: control points (K, n, 2) as they are stored, from those wanted and a metric (K, 2n, 2n) of their error.
     """
-    fitting = _Fitting(arc, weights)
-    found: list[tuple[tuple[float, float, int], Fitted]] = []
+    fitting = _Fitting(arc)
+    found: list[Fitted] = []
 
-    def tried(count: int) -> tuple[bool, float]:
-        """Whether so many points are near enough, and their distance before rounding."""
-        smooth, error = fitting.solve(count)
-        plain = np.broadcast_to(np.eye(2 * count), fitting.metric.shape)
-        for metric in (fitting.metric, plain):
-            controls = rounded(smooth, metric)
-            distance = fitting.distance(controls)
-            if distance <= max(tolerance, min((rank[0] for rank, _ in found), default=np.inf)):
-                distance = fitting.fine_distance(controls)  # of what may be the result
-            near = distance <= tolerance
-            shortest = fitting.shortest(controls)
-            # Of those that are near, one without short legs, and then the one of fewest points.
-            rank = (0.0 if near else distance, -min(shortest, SHORTEST), count)
-            found.append((rank, Fitted(controls, distance, shortest)))
-            if near:
-                break
-        return near, error
+    def near(count: int) -> bool:
+        controls, metric, t = fitting.solve(count)
+        controls = rounded(controls, metric)
+        mixed = np.einsum("vk,knc->vnc", weights, controls)
+        legs = np.diff(np.concatenate([mixed, mixed[:, :1]], axis=1) if arc.closed else mixed, axis=1)
+        shortest = float(np.hypot(legs[..., 0], legs[..., 1]).min(initial=np.inf) / 2)
+        found.append(Fitted(controls, fitting.distance(controls, t, weights), shortest))
+        return found[-1].distance <= tolerance
 
-    count, low, futile = fitting.least, fitting.least - 1, 0
-    while True:
-        before = min((rank[0] for rank, _ in found), default=np.inf)
-        near, error = tried(count)
-        gained = min(rank[0] for rank, _ in found) < 0.98 * before
-        futile += error < SLACK * tolerance or not gained
-        if near or count >= fitting.most or futile == FUTILE:
-            break
-        low = count
-        growth = (error / (SLACK * tolerance)) ** (1 / 3)
-        count = min(max(count + 1 + count // 8, int(count * min(growth, 2.0))), fitting.most)
-    while near and count - low > 1:  # between a count that failed and one that did not
+    low, count = fitting.least - 1, fitting.least
+    while not (enough := near(count)) and count < fitting.most:
+        low, count = count, min(2 * count, fitting.most)
+    while enough and count - low > 1:
         middle = (low + count) // 2
-        if tried(middle)[0]:
-            count = middle
-        else:
-            low = middle
-    for more in (-1, 1, 2, 3):
-        if near and -min(rank for rank, _ in found)[1] < SHORTEST and count + more >= fitting.least:
-            tried(count + more)
-    return min(found, key=itemgetter(0))[1]
+        low, count = (low, middle) if near(middle) else (middle, count)
+    return min(found, key=lambda each: (max(each.distance, tolerance), each.controls.shape[1]))
 
 
 class _Fitting:
-    """The samples of an arc, and how dense spans are to be along it."""
+    """The samples of an arc, and how dense spans are along it."""
 
-    def __init__(self, arc: Arc, weights: FloatArray) -> None:
-        self.arc, self.weights = arc, weights
-        count = arc.cubics.shape[1]
-        self.per = max(SAMPLES, -(-FEWEST // count))
-        self.points, self.tangents = sampled(arc.cubics, self.per, arc.closed)
-        self.targets = np.einsum("vk,knc->vnc", weights, self.points)
-        steps = np.diff(
-            np.concatenate([self.points, self.points[:, :1]], axis=1) if arc.closed else self.points, axis=1
-        )
-        self.lengths = np.sqrt((steps**2).sum(axis=2).mean(axis=0)) + 1e-9  # RMS over the masters
-        ahead = np.roll(self.tangents, -1, axis=1) if arc.closed else self.tangents[:, 1:]
-        here = self.tangents if arc.closed else self.tangents[:, :-1]
-        cross = here[..., 0] * ahead[..., 1] - here[..., 1] * ahead[..., 0]
-        turns = np.abs(np.arctan2(cross, (here * ahead).sum(axis=2)))
-        self.turn = float(turns.sum(axis=1).max())
+    def __init__(self, arc: Arc) -> None:
+        self.arc = arc
+        self.per = SAMPLES * max(1, -(-6 // arc.cubics.shape[1]))
+        self.points, tangents = sampled(arc.cubics, self.per, arc.closed)
+        points, along = self.points, tangents
+        if arc.closed:
+            points, along = (np.concatenate([each, each[:, :1]], axis=1) for each in (points, along))
+        steps, here, there = np.diff(points, axis=1), along[:, :-1], along[:, 1:]
+        turns = np.abs(np.arctan2(cross(here, there), (here * there).sum(axis=2)))
+        lengths = np.sqrt((steps**2).sum(axis=2).mean(axis=0)) + 1e-9  # RMS over the masters
         turn = np.sqrt((turns**2).mean(axis=0))
-        share = self.lengths / self.lengths.sum()
-        self.density = (turn / max(turn.sum(), 1e-9)) ** 0.7 * share**0.3 + 0.3 * share
+        share = lengths / lengths.sum()
+        density = (turn / max(turn.sum(), 1e-9)) ** 0.7 * share**0.3 + 0.3 * share
+        self.lengths, self.density = lengths, density / density.sum()
+        mass = lengths if arc.closed else (np.r_[lengths, 0.0] + np.r_[0.0, lengths])
+        x, y = tangents[..., 0], tangents[..., 1]
+        across = np.stack([np.stack([y * y, -x * y], -1), np.stack([-x * y, x * x], -1)], -2)
+        self.metric = (TANGENT**2 * np.eye(2) + (1 - TANGENT**2) * across) * (mass / mass.sum())[:, None, None]
         bound = 4 if arc.closed else 1 + (arc.leaving is not None and arc.arriving is not None)
-        self.least = max(bound, int(np.ceil(self.turn / np.radians(60))))
-        self.most = self.least + 6 * count + 8
-        mass = (
-            self.lengths
-            if arc.closed
-            else np.r_[self.lengths[0], self.lengths[1:] + self.lengths[:-1], self.lengths[-1]]
-        )
-        self.mass = mass / mass.sum()
-        self.t, self.metric = np.empty(0), np.empty((0, 0, 0))
+        self.least = max(bound, int(np.ceil(turns.sum(axis=1).max() / np.radians(60))))
+        self.most = max(self.least, self.points.shape[1] // 3)
 
     def _start(self, count: int) -> FloatArray:
         """(N,) parameters 0 … n of the samples: spans of the density, graded."""
-        density = self.density / self.density.sum()
-        at = np.cumsum(self.lengths) - self.lengths / 2
-        size = self.lengths / (count * density)  # of a span there
+        lengths = self.lengths
+        at = np.cumsum(lengths) - lengths / 2
         gap = np.abs(at[:, None] - at)
         if self.arc.closed:
-            gap = np.minimum(gap, self.lengths.sum() - gap)
-        graded = self.lengths / (size + STEEPEST * gap).min(axis=1)
-        along = np.cumsum(graded) * (count / graded.sum())
-        return along - along[0] if self.arc.closed else np.r_[0.0, along]
+            gap = np.minimum(gap, lengths.sum() - gap)
+        spans = lengths / (lengths / (count * self.density) + STEEPEST * gap).min(axis=1)
+        along = np.r_[0.0, np.cumsum(spans) * (count / spans.sum())]
+        return along[:-1] if self.arc.closed else ordered(along, count, False)
 
-    def solve(self, count: int) -> tuple[FloatArray, float]:
-        """(K, n, 2) the control points of a fit, and its largest error.
+    def solve(self, count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Control points (K, n, 2) without the ends, the quadratic form of their error (K, 2n, 2n), and the (N,)
+        parameters 0 … n of the samples."""
+        arc = self.arc
+        t = self._start(count)
+        for _ in range(ROUNDS):
+            controls, form = self._least_squares(t, count)
+            t = self._towards_footpoints(t, controls)
+        inside = slice(None) if arc.closed else slice(1, -1)
+        form = form[:, inside, :, inside].reshape(len(form), 2 * count, -1)
+        return controls[:, inside], form + self._beside_lines(form), t
 
-        First all masters have one parameter a sample, then each its own footpoints, so that their points may slip
-        along the outline. ``metric`` (K, 2n, 2n) is then the quadratic form of the error.
-        """
-        t = self._start(count)[None, :]
-        error, best = np.inf, (np.empty((0, 0, 0)), np.empty((0, 0, 0)), np.empty(0))
-        for stage in range(ROUNDS):
-            if stage == OWN:
-                common = t
-                t = np.repeat(t, len(self.points), axis=0)
-            controls = self._least_squares(t, count, 1.0 if stage < SLIPPING else TANGENT)
-            t = self._project(t, controls)
-            if stage >= OWN:  # no span is to be left without samples
-                t = np.clip(t, common - SLIP, common + SLIP)
-            if stage in (OWN - 1, ROUNDS - 1):
-                self.t = t.mean(axis=0)
-                distance = self.distance(controls)
-                if distance < error:
-                    error, best = distance, (controls, self.metric, self.t)
-        controls, self.metric, self.t = best
-        return controls, error
-
-    def _whole(self, controls: FloatArray) -> FloatArray:
-        """The control points with the ends."""
-        if self.arc.closed:
-            return controls
-        return np.concatenate([self.arc.ends[:, :1], controls, self.arc.ends[:, 1:]], axis=1)
-
-    def _project(self, t: FloatArray, controls: FloatArray) -> FloatArray:
-        """A step of parameters (1 or K, N), common or each master's own, towards the footpoints of the samples."""
-        count = controls.shape[1]
-        at, slope, _ = spline(self._whole(controls), t, count, self.arc.closed)
-        off, size = ((self.points - at) * slope).sum(axis=2), (slope**2).sum(axis=2)
-        if len(t) == 1:
-            off, size = off.sum(axis=0, keepdims=True), size.sum(axis=0, keepdims=True)
-        least = 1e-4 * size.mean() + 1e-12  # where a master's arc is a point, parameters stay
-        t = t + np.clip(off / np.maximum(size, least), -0.3, 0.3)
-        if not self.arc.closed:
-            t = np.clip(t, 0, count)
-            t[:, 0], t[:, -1] = 0, count
-        return np.asarray(np.maximum.accumulate(t, axis=1))
-
-    def _least_squares(self, t: FloatArray, count: int, along: float) -> FloatArray:
-        """(K, n, 2) control points nearest the samples at parameters (1 or K, N)."""
-        arc, masters, samples = self.arc, len(self.points), t.shape[1]
-        index, weight, _, _ = basis(t, count, arc.closed)
-        matrix = np.zeros((len(t), samples, count + (0 if arc.closed else 2)))
-        np.add.at(matrix, (np.arange(len(t))[:, None, None], np.arange(samples)[:, None], index), weight)
-        wanted = self.points
+    def _least_squares(self, t: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+        """(K, n, 2) control points with the ends, nearest the samples at (N,) parameters, and the quadratic form."""
+        arc, masters = self.arc, len(self.points)
+        index, weight, _ = basis(t, count, arc.closed)
+        n = count + (0 if arc.closed else 2)
+        form, right = np.zeros((n, n, masters, 2, 2)), np.zeros((n, masters, 2))
+        pairs = weight[:, :, None] * weight[:, None, :]
+        metric = self.metric.transpose(1, 0, 2, 3)  # (N, K, 2, 2)
+        wanted = (self.metric @ self.points[..., None])[..., 0].transpose(1, 0, 2)
+        np.add.at(form, (index[:, :, None], index[:, None, :]), pairs[..., None, None, None] * metric[:, None, None])
+        np.add.at(right, index, weight[..., None, None] * wanted[:, None])
+        form, right = form.transpose(2, 0, 3, 1, 4), right.transpose(1, 0, 2)
+        second = 2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+        if arc.closed:
+            second[-1, 0] = second[0, -1] = -1
+        else:
+            second[[0, -1]] = 0
+        size = np.einsum("kacac->k", form)[:, None, None, None, None] / (2 * n)
+        even = EVEN * second.T @ second + 1e-9 * np.eye(n)  # the latter for what no sample sees
+        form = form + size * even[:, None, :, None] * np.eye(2)[:, None, :]
+        whole = np.zeros((masters, n, 2))
+        known = np.zeros(n, dtype=bool)
         if not arc.closed:
-            wanted = wanted - matrix[:, :, :1] * arc.ends[:, :1] - matrix[:, :, -1:] * arc.ends[:, 1:]
-            matrix = matrix[:, :, 1:-1]
-        metric = (along**2 * np.eye(2) + (1 - along**2) * self._across) * self.mass[:, None, None]
-        pairs = (matrix[:, :, :, None] * matrix[:, :, None, :]).reshape(len(t), samples, -1)
-        normal = np.swapaxes(pairs, 1, 2) @ metric.reshape(masters, samples, 4)
-        normal = normal.reshape(masters, count, count, 2, 2).transpose(0, 1, 3, 2, 4).reshape(masters, 2 * count, -1)
-        right = np.swapaxes(matrix, 1, 2) @ (metric @ wanted[..., None])[..., 0]
-        normal = normal + self._stiffness(count, normal, EVEN if len(t) > 1 else 0.0)
-        self.metric = normal + self._beside_lines(count, normal)
-        return self._solved(normal, right.reshape(masters, -1), count)
+            whole[:, [0, -1]], known[[0, -1]] = arc.ends, True
+        whole = _solved(form, right, whole, known)
+        for j, line, end in self._held(n):
+            along = ((whole[:, j] - end) * line).sum(axis=1) / np.maximum((line**2).sum(axis=1), 1e-12)
+            if not parallel(line):  # one length for all masters: only so the joint has no turn between them either
+                along = np.full(masters, ((whole[:, j] - end) * line).sum() / max(float((line**2).sum()), 1e-12))
+            whole[:, j], known[j] = end + np.maximum(along, 0.0)[:, None] * line, True
+        return (_solved(form, right, whole, known) if known[1:-1].any() else whole), form
 
-    def _held(self, count: int) -> list[tuple[int, FloatArray, FloatArray]]:
+    def _towards_footpoints(self, t: FloatArray, controls: FloatArray) -> FloatArray:
+        """A step of the parameters (N,), which all masters share, towards the footpoints of the samples."""
+        closed = self.arc.closed
+        count = controls.shape[1] - (0 if closed else 2)
+        at, slope = spline(controls, t[None], count, closed)
+        off, size = ((self.points - at) * slope).sum(axis=(0, 2)), (slope**2).sum(axis=(0, 2))
+        t = t + np.clip(off / np.maximum(size, 1e-4 * size.mean() + 1e-12), -0.3, 0.3)
+        return ordered(t, count, closed)
+
+    def _held(self, n: int) -> list[tuple[int, FloatArray, FloatArray]]:
         """The control points that are to be on the lines before and after the arc: index, line and end."""
-        lines = ((0, self.arc.leaving, 0), (count - 1, self.arc.arriving, 1))
+        lines = ((1, self.arc.leaving, 0), (n - 2, self.arc.arriving, 1))
         return [(j, line, self.arc.ends[:, side]) for j, line, side in lines if line is not None]
 
-    def _beside_lines(self, count: int, normal: FloatArray) -> FloatArray:
+    def _beside_lines(self, form: FloatArray) -> FloatArray:
         """A penalty on control points beside the lines that they are to be on: rounding would turn the joint."""
-        penalty = np.zeros_like(normal)
-        for j, line, _ in self._held(count):
+        penalty = np.zeros_like(form)
+        count = form.shape[1] // 2
+        for j, line, _ in self._held(count + 2):
             across = np.stack([-line[:, 1], line[:, 0]], axis=1) / np.maximum(np.hypot(*line.T), 1e-12)[:, None]
-            block = slice(2 * j, 2 * j + 2)
-            size = np.trace(normal, axis1=1, axis2=2)[:, None, None] / count
-            penalty[:, block, block] += LEVEL * size * across[:, :, None] * across[:, None, :]
+            block = slice(2 * j - 2, 2 * j)
+            size = np.trace(form, axis1=1, axis2=2)[:, None, None] / count
+            penalty[:, block, block] += 4 * size * across[:, :, None] * across[:, None, :]
         return penalty
 
-    @cached_property
-    def _across(self) -> FloatArray:
-        """(K, N, 2, 2) projection to the normal of the cubics at each sample."""
-        x, y = self.tangents[..., 0], self.tangents[..., 1]
-        rows: FloatArray = np.stack([np.stack([y * y, -x * y], -1), np.stack([-x * y, x * x], -1)], -2)
-        return rows
-
-    def _stiffness(self, count: int, normal: FloatArray, even: float) -> FloatArray:
-        """A penalty on second differences, which spaces points evenly along the curve; a trace of it on first ones
-        and on all, which keeps what no sample sees in place."""
-        first = np.eye(count) - np.eye(count, k=1)
-        second = 2 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
-        if self.arc.closed:
-            first[-1, 0] = second[0, -1] = second[-1, 0] = -1
-        else:
-            first[-1] = second[0] = second[-1] = 0
-        form = 1e-7 * (first.T @ first + 1e-3 * np.eye(count)) + even * second.T @ second
-        return np.asarray(np.kron(form, np.eye(2)) * np.trace(normal, axis1=1, axis2=2)[:, None, None] / (2 * count))
-
-    def _solved(self, normal: FloatArray, right: FloatArray, count: int) -> FloatArray:
-        """The solution, its first and last control point on the lines before and after the arc."""
-        masters = len(self.points)
-        held = self._held(count)
-        if not held:
-            return np.asarray(np.linalg.solve(normal, right[..., None])).reshape(masters, count, 2)
-        fixed = np.zeros((masters, count, 2))
-        keep = [np.eye(2 * count)[:, c] for c in range(2 * count) if not any(c // 2 == j for j, _, _ in held)]
-        free = np.broadcast_to(np.array(keep).T.reshape(2 * count, -1), (masters, 2 * count, len(keep)))
-        columns = []
-        for j, line, end in held:
-            fixed[:, j] = end
-            column = np.zeros((masters, count, 2))
-            column[:, j] = line
-            columns.append(column.reshape(masters, -1, 1))
-        found = _constrained(normal, right, fixed, np.concatenate([free, *columns], axis=2))
-        stay = []
-        for number, (j, line, end) in enumerate(held):
-            if parallel(line):
-                stay.append(columns[number])
-                continue
-            # One length for all masters: only so the joint has no turn between them either.
-            along = ((found[:, j] - end) * line).sum() / max(float((line**2).sum()), 1e-12)
-            fixed[:, j] = end + max(along, 0.0) * line
-        return _constrained(normal, right, fixed, np.concatenate([free, *stay], axis=2))
-
-    def distance(self, controls: FloatArray) -> float:
-        """The largest distance from the cubics at all locations.
+    def distance(self, controls: FloatArray, t: FloatArray, weights: FloatArray) -> float:
+        """The largest distance from the cubics at locations (V, K), from samples.
 
         Each location has its own footpoints; they run forward along the arc, so that the distance is one in both
         directions, up to what lies between two samples.
         """
-        return self._farthest(controls, self.t, self.targets)
-
-    def shortest(self, controls: FloatArray) -> float:
-        """The shortest leg of a quadratic at a joint inside the arc, at any location."""
-        whole = np.einsum("vk,knc->vnc", self.weights, controls)
-        if self.arc.closed:
-            whole = np.concatenate([whole, whole[:, :1]], axis=1)
-        arms = np.diff(whole, axis=1)
-        return float(np.hypot(arms[..., 0], arms[..., 1]).min(initial=np.inf) / 2)
-
-    def fine_distance(self, controls: FloatArray) -> float:
-        """The largest distance from four times as many samples."""
-        arc, count, t = self.arc, controls.shape[1], self.t
-        points = sampled(arc.cubics, 4 * self.per, arc.closed)[0]
-        known = np.r_[t, t[0] + count] if arc.closed else t
-        t = np.interp(np.arange(points.shape[1]) / 4, np.arange(len(known)), known)
-        targets = np.einsum("vk,knc->vnc", self.weights, points)
-        return self._farthest(controls, t, targets)
-
-    def _farthest(self, controls: FloatArray, t: FloatArray, targets: FloatArray) -> float:
-        """The largest distance of targets from the spline, and of the spline between them from the targets' chords."""
-        count, closed = controls.shape[1], self.arc.closed
-        whole = np.einsum("vk,knc->vnc", self.weights, self._whole(controls))
-        t, at = footpoints(targets, whole, t, count, closed)
-        far = np.hypot(*np.moveaxis(at - targets, -1, 0)).max()
+        arc, count, closed = self.arc, controls.shape[1], self.arc.closed
+        if not closed:
+            controls = np.concatenate([arc.ends[:, :1], controls, arc.ends[:, 1:]], axis=1)
+        targets = np.einsum("vk,knc->vnc", weights, sampled(arc.cubics, 4 * self.per, closed)[0])
+        mixed = np.einsum("vk,knc->vnc", weights, controls)
+        known = np.r_[t, t[0] + count] if closed else t
+        at = np.broadcast_to(
+            np.interp(np.arange(targets.shape[1]) / 4, np.arange(len(known)), known), targets.shape[:2]
+        )
+        for _ in range(3):
+            points, slope = spline(mixed, at, count, closed)
+            size = (slope**2).sum(axis=2)
+            move = ((targets - points) * slope).sum(axis=2) / np.maximum(size, 1e-12)
+            at = ordered(at + np.clip(move, -0.4, 0.4), count, closed)
+        far = np.hypot(*np.moveaxis(spline(mixed, at, count, closed)[0] - targets, -1, 0)).max()
+        # Of the spline between these places, the distance from the chord.
         if closed:
-            t, targets = np.c_[t, t[:, :1] + count], np.concatenate([targets, targets[:, :1]], axis=1)
+            at, targets = np.c_[at, at[:, :1] + count], np.concatenate([targets, targets[:, :1]], axis=1)
         arms = np.diff(targets, axis=1)
         for share in (0.25, 0.5, 0.75):
-            off = spline(whole, (1 - share) * t[:, :-1] + share * t[:, 1:], count, closed)[0] - targets[:, :-1]
+            off = spline(mixed, (1 - share) * at[:, :-1] + share * at[:, 1:], count, closed)[0] - targets[:, :-1]
             x = np.clip((off * arms).sum(axis=2) / np.maximum((arms**2).sum(axis=2), 1e-12), 0, 1)
             far = max(far, np.hypot(*np.moveaxis(off - x[..., None] * arms, -1, 0)).max())
         return float(far)
 
 
-def _constrained(normal: FloatArray, right: FloatArray, fixed: FloatArray, free: FloatArray) -> FloatArray:
-    """The solution (K, n, 2) of the form ``fixed + free @ y``."""
-    base = fixed.reshape(len(fixed), -1, 1)
-    if not free.shape[2]:
-        return fixed
-    left = np.swapaxes(free, 1, 2)
-    y = np.linalg.solve(left @ normal @ free, left @ (right[..., None] - normal @ base))
-    return (base + free @ y).reshape(fixed.shape)
+def _solved(form: FloatArray, right: FloatArray, whole: FloatArray, known: BoolArray) -> FloatArray:
+    """The control points (K, n, 2) of least error, of which those ``known`` stay as they are."""
+    found, free = whole.copy(), ~known
+    if free.any():
+        rest = right[:, free] - np.einsum("kacbd,kbd->kac", form[:, free][:, :, :, known], whole[:, known])
+        size = 2 * int(free.sum())
+        left = form[:, free][:, :, :, free].reshape(len(form), size, size)
+        found[:, free] = np.linalg.solve(left, rest.reshape(len(form), size, 1)).reshape(len(form), -1, 2)
+    return found
+
+
+def ordered(t: FloatArray, count: int, closed: bool) -> FloatArray:
+    """Parameters (…, N) that never run back, and of an arc with ends from 0 to ``count``."""
+    if not closed:
+        t = np.clip(t, 0, count)
+        t[..., 0], t[..., -1] = 0, count
+    return np.asarray(np.maximum.accumulate(t, axis=-1))
 
 
 def parallel(directions: FloatArray) -> bool:
@@ -382,8 +282,8 @@ def sampled(cubics: FloatArray, per: int, closed: bool) -> tuple[FloatArray, Flo
     return points, np.where(sizes > 0, chords / np.maximum(sizes, 1e-300), [1.0, 0.0])
 
 
-def basis(t: FloatArray, count: int, closed: bool) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """(…, 3) indices of the control points at parameters t, their weights, and first and second derivatives."""
+def basis(t: FloatArray, count: int, closed: bool) -> tuple[IntArray, FloatArray, FloatArray]:
+    """(…, 3) indices of the control points at parameters t, their weights, and the weights' derivatives."""
     span = np.floor(t).astype(np.int64)
     if not closed:
         span = np.clip(span, 0, count - 1)
@@ -393,41 +293,16 @@ def basis(t: FloatArray, count: int, closed: bool) -> tuple[IntArray, FloatArray
     y = 1 - x
     weight = np.stack([first * y * y, 2 * x * y + (1 - first) * y * y + (1 - last) * x * x, last * x * x], axis=-1)
     slope = np.stack([-2 * first * y, 2 - 4 * x - 2 * (1 - first) * y + 2 * (1 - last) * x, 2 * last * x], axis=-1)
-    bend = np.stack([2 * first, -4 + 2 * (1 - first) + 2 * (1 - last), 2 * last], axis=-1) + 0 * weight
     index = span[..., None] + np.arange(3)
-    return (index - 1) % count if closed else index, weight, slope, bend
+    return (index - 1) % count if closed else index, weight, slope
 
 
-def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(L, N, 2) points, first and second derivatives of splines of (L, n, 2) controls at parameters (L or 1, N)."""
+def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray]:
+    """(L, N, 2) points and first derivatives of splines of (L, n, 2) controls at parameters (L or 1, N)."""
     index, *weights = basis(t, count, closed)
-    rows = np.arange(len(controls))[:, None, None]
-    chosen = controls[rows, index]
-    at, first, second = [np.squeeze(each[..., None, :] @ chosen, axis=2) for each in weights]
-    return at, first, second
-
-
-def footpoints(
-    targets: FloatArray, controls: FloatArray, t: FloatArray, count: int, closed: bool
-) -> tuple[FloatArray, FloatArray]:
-    """(V, N) parameters near (N,) given ones, in their order, where splines of (V, n, 2) controls are near targets.
-
-    Also (V, N, 2) the points there.
-    """
-    t = np.broadcast_to(t, targets.shape[:2])
-    for _ in range(2):
-        at, first, second = spline(controls, t, count, closed)
-        off = at - targets
-        size = (first**2).sum(axis=2)
-        full = size + (off * second).sum(axis=2)
-        move = (off * first).sum(axis=2) / np.where(full > 0.3 * size, full, np.maximum(size, 1e-12))
-        t = t - np.clip(move, -0.4, 0.4)
-        if not closed:
-            t = np.clip(t, 0, count)
-    if not closed:
-        t = np.concatenate([np.zeros((len(t), 1)), t[:, 1:-1], np.full((len(t), 1), float(count))], axis=1)
-    t = np.maximum.accumulate(t, axis=1)
-    return t, spline(controls, t, count, closed)[0]
+    chosen = controls[np.arange(len(controls))[:, None, None], index]
+    at, slope = [np.squeeze(each[..., None, :] @ chosen, axis=2) for each in weights]
+    return at, slope
 
 
 def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray, BoolArray]:

@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 
 from ...fitting.results import GlyphResult, end_to_end
-from ...layout.placed import Layout
+from ...typesetting.placed import Layout
 from .appearance import PLAIN, Appearance
 from .document import painting, shown_as, shown_box
 from .markup import document, head, id_prefix, number, text

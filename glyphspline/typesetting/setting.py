@@ -13,7 +13,8 @@ from ..errors import OptionError, is_positive, require, require_choice
 from .features import Feature, parsed
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
-Align: TypeAlias = Literal["start", "center", "end", "justify"]
+PathAlign: TypeAlias = Literal["start", "center", "end"]
+Align: TypeAlias = Literal[PathAlign, "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
 Side: TypeAlias = Literal["left", "right"]
 """Of a path, on which letters stand."""

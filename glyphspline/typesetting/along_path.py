@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 
@@ -11,9 +11,7 @@ from ..errors import GlyphsplineError, is_number, require, require_choice
 from ..types import FloatArray, IntArray, counted
 from .path import Path
 from .placed import Layout
-from .setting import Side
-
-Align = Literal["start", "center", "end"]
+from .setting import PathAlign, Side
 
 ROUNDING = 1e-9
 """Share of the path's length by which a text may be too long."""
@@ -42,7 +40,9 @@ class Letters(NamedTuple):
         return (self.left + self.right) / 2
 
 
-def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "start", side: Side = "left") -> Layout:
+def along(
+    layout: Layout, path: Path, *, offset: float = 0.0, align: PathAlign = "start", side: Side = "left"
+) -> Layout:
     """Put a line of text on a path, as SVG's ``textPath`` does.
 
     The middle of a letter's advance comes to the path at its arc length, and the letter is turned by the path's tangent
@@ -89,14 +89,14 @@ def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "st
     return replace(layout, origin=origin, angle=layout.angle + angle[letters.of], box=(left, low, right, high))
 
 
-def laid(layout: Layout, path: Path, offset: float, align: Align, side: Side) -> tuple[Path, Letters, float]:
+def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side) -> tuple[Path, Letters, float]:
     """The path in the text's direction, the letters, and the arc length of the path where x = 0 of the line comes.
 
     Raises:
         GlyphsplineError, OptionError: as for :func:`along`.
     """
     require(is_number(offset), "offset is a finite distance along the path", offset)
-    require_choice("align", align, get_args(Align))
+    require_choice("align", align, get_args(PathAlign))
     require_choice("side", side, get_args(Side))
     lines = len(np.unique(layout.line))
     if lines > 1:
