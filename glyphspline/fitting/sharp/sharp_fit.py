@@ -20,9 +20,9 @@ from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
+from ..faithful import Fits
 from ..measures import Columns, distance_columns
 from ..options import Options
-from ..refit import Fits
 from ..results import ConvertedContours
 from .assembly import certify, certify_masters, put_together
 from .corners import Joints

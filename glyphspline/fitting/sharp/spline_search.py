@@ -6,6 +6,8 @@ two, vertices that seem unnecessary are taken out, and after every change the ve
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
@@ -61,9 +63,6 @@ a quarter is right where the outline is smooth, one beside a corner.
 STEEP = 3.0
 """Ratio of adjacent chords from which the longer one is cut where vertices are laid on the outline."""
 
-BEGIN, INSERT, REMOVE, RESTART, LAY = 0, 1, 2, 3, 4
-"""What is tried: a first guess, more vertices, one vertex less, a new guess with one less; vertices on the outline."""
-
 
 @compiled
 def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Search, given: bool) -> Pieces:
@@ -74,7 +73,7 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
     """
     P, S, masters = len(pieces.where), len(stretches.piece), len(pieces.vertices)
     room = len(pieces.places) + len(stretches.places) + S
-    found, count, s = empty_pieces(masters, P, room), 0 * P, 0 * P
+    found, count, s = empty_pieces(masters, P, room), 0, 0
     for q in range(P):
         if s == S or stretches.piece[s] != q:
             count = add_pieces(found, count, part(pieces, q, q + 1))
@@ -88,13 +87,12 @@ def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Searc
             places[r] = pieces.places[at]
             for v in range(masters):
                 p[v, r, 0], p[v, r, 1] = pieces.vertices[v, at, 0], pieces.vertices[v, at, 1]
-        begun = k if given else 0 * k
-        fit = empty_fit(masters, n, most_spans(samples, search, begun, closed), closed)
-        k, error = find_spline(
-            borrowed(fit), borrowed(samples), near, search, begun, pieces.errors[q] if k == 1 else np.inf, p, places,
-            tangents,
-        )  # fmt: skip
-        keep_alive((fit, samples))
+        fit = empty_fit(masters, n, most_spans(samples, search, k if given else 0, closed), closed)
+        room = fit.curve.p.shape[1]
+        trial = Trial(samples, near, search, fit, np.empty(room), np.empty(room), np.empty(room, dtype=np.bool_))
+        missed = pieces.errors[q] if k == 1 else np.inf
+        k, error = find_spline(borrowed(trial), k if given else 0, missed, p, places, tangents)
+        keep_alive(trial)
         count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, places, tangents, error)
         s += 1
     return used(found, count)
@@ -115,18 +113,32 @@ def spans_wanted(samples: Samples, search: Search) -> int:
     return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.places)))))
 
 
+class Trial(NamedTuple):
+    """One search for the spline of a stretch.
+
+    Attributes:
+        samples: of the stretch. near: how near all of them have to be.
+        fit: scratch arrays: ``curve`` is what is tried now, ``best`` the curve with the fewest spans that passed.
+        goals: (room,) integrals of the density up to vertices that are laid.
+        costs, tried: (room,) of the vertices of ``best``: see :func:`removal_costs` and :func:`remove_cheapest`.
+    """
+
+    samples: Samples
+    near: float
+    search: Search
+    fit: Fit
+    goals: FloatArray
+    costs: FloatArray
+    tried: BoolArray
+
+
 @compiled
 def find_spline(
-    fit: Fit, samples: Samples, near: float, search: Search, given: int, missed: float, p: FloatArray,
-    places: FloatArray, tangents: FloatArray,
-) -> tuple[int, float]:  # fmt: skip
+    trial: Trial, given: int, missed: float, p: FloatArray, places: FloatArray, tangents: FloatArray
+) -> tuple[int, float]:
     """Fit one spline to a stretch, of as few spans as the search finds.
 
-    All that is tried goes through one loop: each place that calls :func:`.spline_fit.improve` would take ten seconds
-    more to compile.
-
     Args:
-        fit: scratch arrays. near: how near all samples have to be.
         given: spans to begin with, whose vertices and tangents are in p and ``tangents``; 0 for a first guess.
         missed: by how much a single cubic misses the samples.
         p: (K, n + 1, 2) receives the vertices, and places: (n + 1,) theirs. tangents: (K, 2, 2) receives the end
@@ -135,112 +147,184 @@ def find_spline(
     Returns:
         The number of spans and the largest distance of a sample; 0 and infinity if there is none.
     """
-    Q, curve, best, directions = samples.Q, fit.curve, fit.best, samples.directions
-    n, closed, alone = len(samples.places), curve.size[1], len(samples.Q) == 1
+    samples, near, search, fit = trial.samples, trial.near, trial.search, trial.fit
+    closed, alone = fit.curve.size[1], len(samples.Q) == 1
     if given == 1 and alone:
         missed = fit_cubic(
-            Q[0], directions[0, 0], samples.free[0] == FREE, directions[0, 1], samples.free[1] == FREE, near,
-            search.cubic_rounds, tangents[0, 0], tangents[0, 1],
+            samples.Q[0], samples.directions[0, 0], samples.free[0] == FREE, samples.directions[0, 1],
+            samples.free[1] == FREE, near, search.cubic_rounds, tangents[0, 0], tangents[0, 1],
         )  # fmt: skip
         if missed <= near:
             return 1, missed
-    wanted = spans_wanted(samples, search)
-    begun = given > 1 or (given == 1 and not alone)
-    least = 4 if closed else (2 if alone else 1)
+        given = 0
+    least, wanted = 4 if closed else (2 if alone else 1), spans_wanted(samples, search)
     guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
-    if max(guess, given) > min(search.most, n - 1):
+    if max(guess, given) > min(search.most, len(samples.places) - 1):
         return 0, np.inf
-    tried, costs = np.zeros(fit.gram.shape[1] + 1, dtype=np.bool_), np.empty(fit.gram.shape[1])
-    what, at, starts, slow, turn, tries, removed = BEGIN, 0 * n, 1, 0, 0, 0, True
-    insertions = 0 * n
-    best_error = last = np.inf
-    goals, laid = np.empty(fit.gram.shape[1] if search.lays > 0 and closed else 0), 0 * n
-    respaced, what = 0 * n, LAY if len(goals) > 0 and search.lays > 1 else BEGIN
-    while True:
-        # What is tried, in ``curve``.
-        possible = True
-        if what == BEGIN and begun:
-            begin_from(curve, given, p, tangents)
-        elif what in (BEGIN, RESTART):
-            possible = place_vertices(curve, samples, guess, fit.gram.shape[1] - 1)
-        elif what == INSERT:
-            insertions += 1
-            possible = insert_vertices(fit, near, search.growth if insertions <= PATIENCE else np.inf)
-        elif what == LAY:
-            if laid == 0 or respaced < RESPACINGS:
-                if laid > 0:
-                    respace(samples, fit.rows, goals[:laid], AIM * near)
-                    respaced += 1
-                laid = 0 * laid
-            possible = lay_vertices(fit, samples, goals, laid, near)
-            laid = curve.size[0]
-        else:
-            remove_vertex(curve, best, at)
-        error = np.inf
-        hold_tied(curve, directions, samples.free)
-        if what == LAY:
-            if possible and interpolate_cold(curve, search.margin, search.residual) < search.residual:
-                guess_feet(samples, goals[:laid], fit.rows)
-                error = measure(samples, curve, near, fit.rows, fit.rows)
-        elif possible and interpolate_cold(curve, search.margin, search.residual) < np.inf:
-            k = curve.size[0]
-            rounds = search.few_rounds if k <= 3 else (search.removal_rounds if what == REMOVE else search.rounds)
-            start, width = slots_beside(curve, at, search.reach) if what == REMOVE else (0 * k, k + 1 - closed)
-            wobble = search.fairness * mean_chord(curve) ** 3
-            error = improve(fit, samples, near, search.margin, search.residual, rounds, start, width, wobble)
-        # How it went.
-        good = error <= near
-        if good:
-            copy_curve(curve, best)
-            best_error, removed = error, True
-            removal_costs(fit, costs)
-        if best.size[0] == 0:  # more vertices, or another guess
+    if given > 0:
+        begin_from(fit.curve, given, p, tangents)
+    lays, laid = search.lays if closed else 0, 0
+    good = lays < 2 and grow(trial, given, guess, wanted, lays > 0)
+    if not good and lays > 0:
+        laid = lay_on_outline(trial)
+    if not good and laid == 0:
+        return 0, np.inf
+    if given == 0 and (laid == 0 or search.passes > 1):
+        remove_vertices(trial, least)
+    return take_result(trial, laid, p, places, tangents)
+
+
+@compiled
+def grow(trial: Trial, given: int, guess: int, wanted: int, lays: bool) -> bool:
+    """Move the vertices, and add more where they miss the tolerance, until a curve passes; whether one does.
+
+    Args:
+        given: spans of the curve to begin with; 0 to begin with ``guess`` spans, and then with more.
+        wanted: spans by the density. lays: give up soon, as vertices can be laid on the outline.
+    """
+    fit, near = trial.fit, trial.near
+    last = np.inf
+    for start in range(1 if given > 0 or lays else STARTS):
+        if start > 0:
+            guess = max(wanted, guess + 2) + start - 1
+        possible = given > 0 or place_vertices(fit.curve, trial.samples, guess)
+        slow = insertions = 0
+        while possible:
+            error = move_all(trial)
+            if error <= near:
+                keep(trial)
+                return True
+            if lays and (error > FAR * near or insertions >= FEW):
+                return False
             slow = slow + 1 if error > 4 * near and error > 0.7 * last else 0
             last = error
-            if len(goals) > 0 and (what == LAY or error > FAR * near or insertions >= FEW):
-                if what == LAY and (not possible or error == np.inf):
-                    return 0, np.inf
-                what = LAY
+            if error == np.inf or slow == 3:
+                break
+            insertions += 1
+            possible = insert_vertices(fit, near, trial.search.growth if insertions <= PATIENCE else np.inf)
+        if not possible:
+            last = np.inf
+    return False
+
+
+@compiled
+def move_all(trial: Trial) -> float:
+    """Move all vertices of the curve; see :func:`move`."""
+    curve, search = trial.fit.curve, trial.search
+    k = curve.size[0]
+    return move(trial, search.few_rounds if k <= 3 else search.rounds, 0, k + 1 - curve.size[1])
+
+
+@compiled
+def move(trial: Trial, rounds: int, start: int, width: int) -> float:
+    """Interpolate the vertices and move ``width`` slots from ``start`` on, in ``rounds`` steps at most.
+
+    Returns:
+        The largest distance of a sample: see :func:`.spline_fit.improve`.
+    """
+    fit, samples, search = trial.fit, trial.samples, trial.search
+    hold_tied(fit.curve, samples.directions, samples.free)
+    if not interpolate_cold(fit.curve, search.margin, search.residual) < np.inf:
+        return np.inf
+    wobble = search.fairness * mean_chord(fit.curve) ** 3
+    return improve(fit, samples, trial.near, search.margin, search.residual, rounds, start, width, wobble)
+
+
+@compiled
+def keep(trial: Trial) -> None:
+    """Keep the curve, which passed, as the best so far."""
+    copy_curve(trial.fit.curve, trial.fit.best)
+    removal_costs(trial.fit, trial.costs)
+
+
+@compiled
+def lay_on_outline(trial: Trial) -> int:
+    """Lay the vertices of a closed curve on the outline, more and more, until it passes.
+
+    Returns:
+        The number of vertices; 0 if no curve passes.
+    """
+    fit, samples, search, near = trial.fit, trial.samples, trial.search, trial.near
+    laid, respaced = 0, 0
+    while lay_vertices(fit, samples, trial.goals, laid, near):
+        laid = fit.curve.size[0]
+        if not interpolate_cold(fit.curve, search.margin, search.residual) < search.residual:
+            return 0
+        error = measure_laid(trial, fit.curve)
+        if error <= near:
+            keep(trial)
+            return laid
+        if error == np.inf:
+            return 0
+        if respaced < RESPACINGS:
+            respace(samples, fit.rows, trial.goals[:laid], AIM * near)
+            laid, respaced = 0, respaced + 1
+    return 0
+
+
+@compiled
+def measure_laid(trial: Trial, curve: Curve) -> float:
+    """The largest distance of a sample from a closed curve whose vertices are laid."""
+    rows = trial.fit.rows
+    guess_feet(trial.samples, trial.goals[: curve.size[0]], rows)
+    return measure(trial.samples, curve, trial.near, rows, rows)
+
+
+@compiled
+def remove_vertices(trial: Trial, least: int) -> None:
+    """Take vertices out of the best curve, the cheapest first, as long as what is left passes.
+
+    After a pass that took any out another one follows. Where none can be taken out, a new guess has one less.
+    """
+    fit, search = trial.fit, trial.search
+    best = fit.best
+    for n in range(search.passes):
+        if best.size[0] <= least:
+            return
+        before = best.size[0]
+        if remove_cheapest(trial, least):
+            if best.size[0] <= least or n == search.passes - 1:
+                return
+            if best.size[0] < before:
                 continue
-            what = INSERT if possible and error < np.inf and slow < 3 else BEGIN
-            if what == BEGIN:
-                if starts == STARTS or begun:
-                    return 0, np.inf
-                guess, starts, slow, insertions = max(wanted, guess + 2) + starts - 1, starts + 1, 0, 0 * n
-            continue
-        # What is tried next: to take out a vertex. After a pass over all of them another one, if it took out any; if
-        # not, a new guess with one less.
-        if what == REMOVE:
-            mark_tried(tried, at, good, best.size[0])
-        elif not good or begun or (laid > 0 and search.passes == 1):
-            break
+        if not place_vertices(fit.curve, trial.samples, best.size[0] - 1) or not move_all(trial) <= trial.near:
+            return
+        keep(trial)
+
+
+@compiled
+def remove_cheapest(trial: Trial, least: int) -> bool:
+    """One pass: try to take out a share of the vertices, each of them once; False if all are too dear to be tried."""
+    fit, search, tried = trial.fit, trial.search, trial.tried
+    curve, best = fit.curve, fit.best
+    tried[:] = False
+    for n in range(max(int(np.ceil(search.removals * best.size[0])), 1)):
+        i = cheapest(best, trial.costs, tried, search.dear * trial.near)
+        if i < 0:
+            return n > 0
+        remove_vertex(curve, best, i)
+        start, width = slots_beside(curve, i, search.reach)
+        good = move(trial, search.few_rounds if curve.size[0] <= 3 else search.removal_rounds, start, width)
+        if good <= trial.near:
+            keep(trial)
+        mark_tried(tried, i, good <= trial.near, best.size[0])
         if best.size[0] <= least:
             break
-        at = cheapest(best, costs, tried, search.dear * near)
-        if what != REMOVE or tries == 0 or at < 0:
-            if turn == search.passes:
-                break
-            if removed:
-                turn, removed = turn + 1, False
-                tries = max(int(np.ceil(search.removals * best.size[0])), 1)
-                tried[:] = False
-                at = cheapest(best, costs, tried, search.dear * near)
-            else:
-                at = -1 - 0 * n
-        what, tries = REMOVE, tries - 1
-        if at < 0:
-            what, guess = RESTART, best.size[0] - 1
-    if best.size[0] == laid:
-        guess_feet(samples, goals[:laid], fit.rows)
-        measure(samples, best, near, fit.rows, fit.rows)
-    else:
-        measure_afresh(samples, best, near, fit.rows)
+    return True
+
+
+@compiled
+def take_result(trial: Trial, laid: int, p: FloatArray, places: FloatArray, tangents: FloatArray) -> tuple[int, float]:
+    """Write the best curve, of which ``laid`` vertices are laid; arguments and result as of :func:`find_spline`."""
+    samples, fit, best = trial.samples, trial.fit, trial.fit.best
+    k = best.size[0]
+    error = measure_laid(trial, best) if k == laid else measure_afresh(samples, best, trial.near, fit.rows)
     find_places(samples, best, fit.rows, places)
     for v in range(len(p)):
-        for i in range(best.size[0] + 1 - closed):
+        for i in range(k + 1 - best.size[1]):
             p[v, i, 0], p[v, i, 1] = best.p[v, i, 0], best.p[v, i, 1]
     end_tangents(best, tangents)
-    return best.size[0], best_error
+    return k, error
 
 
 @compiled
@@ -254,11 +338,11 @@ def begin_from(curve: Curve, k: int, p: FloatArray, tangents: FloatArray) -> Non
 
 
 @compiled
-def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
+def place_vertices(curve: Curve, samples: Samples, k: int) -> bool:
     """A curve of k spans with its vertices on the outline, as the density has them; False if there is no room."""
     Q, D, p, closed = samples.Q, samples.D, curve.p, curve.size[1]
     n = len(samples.places)
-    if k > most:
+    if k > curve.p.shape[1] - 1:
         return False
     curve.size[0] = k
     goals = np.empty(k + 1 - closed)
@@ -287,7 +371,7 @@ def place_vertices(curve: Curve, samples: Samples, k: int, most: int) -> bool:
 def put_on_outline(samples: Samples, goals: FloatArray, p: FloatArray) -> None:
     """Put vertices p on the outline where the density's integral reaches the goals, which increase."""
     Q, D, n = samples.Q, samples.D, len(samples.places)
-    j = 0 * n
+    j = 0
     for i in range(len(goals)):
         while j + 2 < len(D) and D[j + 1] <= goals[i]:
             j += 1
@@ -355,7 +439,7 @@ def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> Non
     """Make the wanted density higher where laid vertices are too far apart, and lower where they are too close."""
     D, Q, n, k = samples.D, samples.Q, len(samples.places), len(goals)
     errors, h, step = span_errors(rows, k), np.empty(n), np.empty(n)
-    s = 0 * n
+    s = 0
     for j in range(n):
         while s + 1 < k and D[j] >= goals[s + 1]:
             s += 1
@@ -369,7 +453,7 @@ def respace(samples: Samples, rows: Rows, goals: FloatArray, near: float) -> Non
 def guess_feet(samples: Samples, goals: FloatArray, rows: Rows) -> None:
     """First guesses for the feet on a closed curve whose vertices are laid: the samples' places between these."""
     D, k, n = samples.D, len(goals), len(samples.places)
-    s = 0 * n
+    s = 0
     for j in range(n):
         while s + 1 < k and D[j] >= goals[s + 1]:
             s += 1
@@ -394,7 +478,7 @@ def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
     for s in range(k):
         if errors[s] > near:
             wanted += min((errors[s] / near) ** growth - 1, 1.0)
-    count = min(max(int(np.rint(wanted)), 1), fit.gram.shape[1] - 1 - k)
+    count = min(max(int(np.rint(wanted)), 1), curve.p.shape[1] - 1 - k)
     if count <= 0:
         return False
     cut = np.zeros(k, dtype=np.bool_)
@@ -410,9 +494,9 @@ def insert_vertices(fit: Fit, near: float, growth: float) -> bool:
             break
         cut[worst] = True
     copy_curve(curve, trial)
-    at = 0 * k
+    at = 0
     for v in range(len(curve.p)):
-        p, at = curve.p[v], 0 * k
+        p, at = curve.p[v], 0
         for s in range(k):
             p[at, 0], p[at, 1] = trial.p[v, s, 0], trial.p[v, s, 1]
             at += 1
@@ -452,7 +536,7 @@ def slots_beside(curve: Curve, at: int, reach: int) -> tuple[int, int]:
     k, closed = curve.size[0], curve.size[1]
     slots, width = k + 1 - closed, 2 * reach
     if width >= slots:
-        return 0 * k, slots
+        return 0, slots
     return (at - reach) % k if closed else min(max(at - reach, 0), slots - width), width
 
 
@@ -490,7 +574,7 @@ def removal_costs(fit: Fit, costs: FloatArray) -> None:
 def cheapest(curve: Curve, costs: FloatArray, tried: BoolArray, most: float) -> int:
     """The vertex that costs least of those not tried, ``most`` at most; -1 if there is none."""
     first, stop = inner_vertices(curve)
-    found = -1 - 0 * stop
+    found = -1
     for i in range(first, stop):
         if not tried[i] and costs[i] <= most and (found < 0 or costs[i] < costs[found]):
             found = i

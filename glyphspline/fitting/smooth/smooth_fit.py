@@ -10,9 +10,9 @@ from ...interpolation.result import Interpolation, reversed_interpolation, turne
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...types import Views
 from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
+from ..faithful import Fits
 from ..measures import distance_columns, solved_columns
 from ..options import Options
-from ..refit import Fits
 from ..results import ConvertedContours
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
