@@ -20,6 +20,7 @@ from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
 from .convert import enclosing
+from .ladders import SHARP_TRIES
 from .options import Options
 
 if TYPE_CHECKING:
@@ -182,15 +183,14 @@ class _Fits(NamedTuple):
         single outlines are.
         """
         from .faithful import Search
-        from .sharp.sharp_fit import TRIES
 
         every = range(len(self.numbers))
         search = Search(
-            np.array([0, len(every)]), self.fitted(every, TRIES[0]),
+            np.array([0, len(every)]), self.fitted(every, SHARP_TRIES[0]),
             compare=lambda a, b, results: changes_at(self.mixes, results),
             is_outside=lambda result: not result.within_tolerance,
         )  # fmt: skip
-        for share in TRIES[1:]:
+        for share in SHARP_TRIES[1:]:
             search.attempt(search.found.any, partial(self.fitted, share=share))
         new, collapsed = search.kept
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
@@ -203,13 +203,13 @@ class _Fits(NamedTuple):
     def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""
         from ..outlines.segments import all_cubics
-        from .sharp.sharp_fit import Source, fit_sharp
+        from .sharp.sharp_fit import fit_sharp
 
         which = [int(c) for c in which]
         chosen = [arrays.chosen(which) for arrays in self.outlines]
-        source = Source(chosen[0], np.stack([all_cubics(arrays) for arrays in chosen]), self.mixes)
+        cubics, em = np.stack([all_cubics(arrays) for arrays in chosen]), self.masters.metrics.units_per_em
         try:
-            fit = fit_sharp(source, self.options, share * self.tolerance, self.masters.metrics.units_per_em)
+            fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, share * self.tolerance, em)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else self.numbers[which[error.contour]]
             raise

@@ -15,13 +15,11 @@ from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, jo
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
 from .apart import drawn_apart
+from .ladders import APART
 from .measures import distance_columns, with_geometry
 from .options import Options
 from .results import ConvertedContours, assembled
 from .topology import Changes, changes
-
-APART = (0.35, 0.7)
-"""Shares of the tolerance by which contours are drawn apart, if closer fits do not help."""
 
 
 class Fits(NamedTuple):
