@@ -56,7 +56,7 @@ class Changes(NamedTuple):
     @staticmethod
     def _of_contours(changed: BoolArray) -> BoolArray:
         """(C,) whether a contour changed in any instance."""
-        found: BoolArray = changed.reshape(-1, changed.shape[-1]).any(axis=0)
+        found: BoolArray = np.logical_or.reduce(changed.reshape(-1, changed.shape[-1]))
         return found
 
     def copy(self) -> Changes:
