@@ -1,4 +1,8 @@
-"""What fits try in turn, and how long they search: one table of all ladders, with what each rung gains."""
+"""What fits try in turn, and how long they search: one table of all ladders, with what each rung gains.
+
+Gains are measured by leaving a rung out: on 924 contours of 400 glyphs (DejaVu Sans and Serif, STIX General, Computer
+Modern) and of two brush faces, which have 10,575 segments with ``effort="fast"`` and 10,155 with "best".
+"""
 
 from __future__ import annotations
 
@@ -23,8 +27,10 @@ class Search(NamedTuple):
         fairness: weight of the curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube
             of the mean chord.
         reach: vertices on either side of a change that move.
-        starts: first guesses, each with more vertices, before a stretch is given up.
-        some_more: a cubic that misses the tolerance by less than this factor is followed by a try with two spans.
+        starts: first guesses, each with more vertices, before a stretch is given up. The second one saves 25 segments
+            with "best", the third one none.
+        some_more: a cubic that misses the tolerance by less than this factor is followed by a try with two spans: this
+            saves 483 segments with "fast"; without a limit 289 more, for 1.4 times the time.
         patience: insertions after a first guess from which on all spans that miss the tolerance are cut. On long
             stretches of fine detail very many miss it by little, and would get two or three vertices at a time.
         far, few: a closed curve that may go round corners is laid on the outline once its vertices, moved, leave it
@@ -76,23 +82,35 @@ SEARCHES = {
 MOST_SPANS = {"c2": 1000, "g1": 1}
 """Spans of one spline at most, by continuity."""
 
-SMOOTH_TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3), (0.1, 3), (0.04, 3))
+SMOOTH_TRIES = ((1.0, None), (1.0, 3), (0.25, 3))
 """Of contours that cross or collapse, in the smooth mode: shares of the tolerance, and rounds in which vertices are
 taken out as well; None for the usual number.
 
-Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
+Strands of an outline that lie on each other are crossed the less the fewer vertices they have: at a tolerance of 5/1000
+em the second try saves 27 of 68,144 segments. The third one saves 731 of 257,403. Shares of 0.5, 0.1 and 0.04 besides
+change nothing in 8,233 contours of four faces. A single try leaves 122 changes for 8.
 """
 
 SHARP_TRIES = (1.0, 0.5, 0.25, 0.1)
-"""The same in the sharp mode, and of masters: shares of the tolerance."""
+"""The same in the sharp mode, and of masters: shares of the tolerance.
 
-TRY_APART, APART = 3, (0.35, 0.7)
-"""Which of the smooth mode's tries fits contours that are drawn apart, and by which shares of the tolerance."""
+With "best", a single try would keep nine contours as the source has them, with 80 segments more; 0.5 saves 39 segments.
+The last two change nothing in these contours.
+"""
+
+TRY_APART, APART = 2, (0.35, 0.7)
+"""Which of the smooth mode's tries fits contours that are drawn apart, and by which shares of the tolerance.
+
+In 8,233 contours the first share saves 6 segments, the second one 6 crossings; without either there are 93 changes for
+8.
+"""
 
 RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
 RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0.6, True))
 """What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
 corners. In the end the source's own segments take their place.
+
+With "best", all together save 56 segments, 0.9 alone 13, 0.75 six, and the cut none; 0.8 of "g1" saves three.
 """
 
 MOVED = 0.9
