@@ -95,7 +95,7 @@ SHARP_TRIES = (1.0, 0.5, 0.25, 0.1)
 """The same in the sharp mode, and of masters: shares of the tolerance.
 
 With "best", a single try would keep nine contours as the source has them, with 80 segments more; 0.5 saves 39 segments.
-The last two change nothing in these contours.
+The last two change nothing in these contours; without them one of 3,557 is kept as the source has it.
 """
 
 TRY_APART, APART = 2, (0.35, 0.7)
