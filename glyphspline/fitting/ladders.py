@@ -32,10 +32,13 @@ class Search(NamedTuple):
         some_more: a cubic that misses the tolerance by less than this factor is followed by a try with two spans: this
             saves 483 segments with "fast"; without a limit 289 more, for 1.4 times the time.
         patience: insertions after a first guess from which on all spans that miss the tolerance are cut. On long
-            stretches of fine detail very many miss it by little, and would get two or three vertices at a time.
+            stretches of fine detail very many miss it by little, and would get two or three vertices at a time. It
+            saves 13 of 35,142 segments.
         far, few: a closed curve that may go round corners is laid on the outline once its vertices, moved, leave it
             this many tolerances off, or after so many insertions.
-        respacings: how often laid vertices are spaced anew, before spans that miss the tolerance are cut.
+        respacings: how often laid vertices are spaced anew, before spans that miss the tolerance are cut. Of 169
+            contours of two masters, with 9,117 segments, 206 segments stay the source's; without respacing 221, with
+            one respacing 74, of 9,279 segments in 0.74 of the time.
         aim, power: share of the tolerance that spacing aims at, and the power of a span's error with which its vertices
             become denser: a quarter is right where the outline is smooth, one beside a corner.
         steep: ratio of adjacent chords from which the longer one is cut where vertices are laid on the outline.
@@ -110,8 +113,10 @@ RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0
 """What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
 corners. In the end the source's own segments take their place.
 
-With "best", all together save 56 segments, 0.9 alone 13, 0.75 six, and the cut none; 0.8 of "g1" saves three.
+With "best", all together save 56 segments, 0.9 alone 13, 0.75 six, and the cut none; 0.8 of "g1" saves three. Of two
+masters (169 contours, smooth and sharp) the retries save 481 segments from staying as the source has them, 0.9 alone
+109 and 0.75 seven; the last three none.
 """
 
 MOVED = 0.9
-"""Share of the tolerance below which vertices of closed curves round corners are no longer moved, but laid at once."""
+"""Share of the tolerance below which vertices of closed curves round corners are no longer moved, but laid at once. It changes nothing in 169 contours of two masters."""
