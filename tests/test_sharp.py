@@ -14,13 +14,13 @@ import glyphspline as gs
 from glyphspline.batch.warm import converted
 from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.integrals import shape
+from glyphspline.fitting.ladders import SEARCHES
 from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import Corners, Effort
 from glyphspline.fitting.sharp.assembly import certify, put_together
 from glyphspline.fitting.sharp.cubic_fit import fit_cubic
 from glyphspline.fitting.sharp.cutting import choose, cut_all
 from glyphspline.fitting.sharp.pieces import Pieces
-from glyphspline.fitting.sharp.search_settings import SEARCHES
 from glyphspline.fitting.sharp.sharp_fit import chords, refitted
 from glyphspline.fitting.sharp.spline_search import fit_splines
 from glyphspline.fitting.sharp.split_contours import Settings, SplitContours

@@ -180,9 +180,9 @@ def _convert_contours(
     # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING
+    from .faithful import faithful
     from .fixed_sampling import convert_fixed, fixed_fits
     from .measures import check_coordinates
-    from .refit import faithful
 
     check_coordinates(contours)
     if options.is_fixed and not options.measure:

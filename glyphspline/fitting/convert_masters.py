@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import BoolArray, FloatArray, IntArray, counted, rounded_up
 from .convert import enclosing
+from .ladders import SHARP_TRIES
 from .options import Options
 
 if TYPE_CHECKING:
@@ -175,43 +177,39 @@ class _Fits(NamedTuple):
         return self.options.tolerance_for(self.masters.metrics.units_per_em)
 
     def faithful(self) -> tuple[list[MastersContourResult], Changes]:
-        """Results of all contours, and what changed at each corner, (V C,).
+        """Results of all contours, and what changed at each corner, (V, C).
 
         Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
         single outlines are.
         """
-        from .sharp.sharp_fit import TRIES
+        from .faithful import Search
 
-        results = self.fitted(range(len(self.numbers)), TRIES[0])
-        found = changes_at(self.mixes, results)
-        for share in TRIES[1:]:
-            wrong = found.any.reshape(len(self.mixes), -1).any(axis=0)
-            if not wrong.any():
-                break
-            closer = dict(zip(np.flatnonzero(wrong).tolist(), self.fitted(np.flatnonzero(wrong), share), strict=True))
-            trial = [closer.get(c, result) for c, result in enumerate(results)]
-            changed = changes_at(self.mixes, trial)
-            if (_outside(trial), changed.number) < (_outside(results), found.number):
-                results, found = trial, changed
-        new = found.new_crossings.reshape(len(self.mixes), -1)
+        every = range(len(self.numbers))
+        search = Search(
+            np.array([0, len(every)]), self.fitted(every, SHARP_TRIES[0]),
+            compare=lambda a, b, results: changes_at(self.mixes, results),
+            is_outside=lambda result: not result.within_tolerance,
+        )  # fmt: skip
+        for share in SHARP_TRIES[1:]:
+            search.attempt(search.found.any, partial(self.fitted, share=share))
+        new, collapsed = search.kept
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
-        gone = [bool(own.any()) for own in found.collapsed.reshape(new.shape).T]
         measured = [
-            replace(result, new_crossings=count, collapsed=lost)
-            for result, count, lost in zip(results, most, gone, strict=True)
+            replace(result, new_crossings=count, collapsed=bool(lost))
+            for result, count, lost in zip(search.best, most, collapsed.any(axis=0), strict=True)
         ]
-        return measured, found
+        return measured, search.kept
 
     def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""
         from ..outlines.segments import all_cubics
-        from .sharp.sharp_fit import Source, fit_sharp
+        from .sharp.sharp_fit import fit_sharp
 
         which = [int(c) for c in which]
         chosen = [arrays.chosen(which) for arrays in self.outlines]
-        source = Source(chosen[0], np.stack([all_cubics(arrays) for arrays in chosen]), self.mixes)
+        cubics, em = np.stack([all_cubics(arrays) for arrays in chosen]), self.masters.metrics.units_per_em
         try:
-            fit = fit_sharp(source, self.options, share * self.tolerance, self.masters.metrics.units_per_em)
+            fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, share * self.tolerance, em)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else self.numbers[which[error.contour]]
             raise
@@ -229,13 +227,13 @@ class _Fits(NamedTuple):
             if not result.within_tolerance:
                 bound = rounded_up(result.deviation_bound, 3)
                 yield f"contour {c} is certified to {bound:g} units, not to {self.tolerance:g}"
-            new = found.new_crossings.reshape(len(self.mixes), -1)[:, c]
+            new = found.new_crossings[:, c]
             if (new > 0).any():
                 more = f"{new.max()} times more than its source"
                 yield f"contour {c} crosses itself or others, {more}, {self.where(np.maximum(new, 0))}"
             elif (new < 0).any():
                 yield f"crossings of contour {c} are not counted: too many strands lie on each other"
-            lost = found.collapsed.reshape(new.size, -1)[:, c].astype(np.int64)
+            lost = found.collapsed[:, c].astype(np.int64)
             if lost.any():
                 how = "has lost its area, or runs the other way round than its source,"
                 yield f"contour {c} {how} {self.where(lost)}"
@@ -248,19 +246,15 @@ class _Fits(NamedTuple):
 
 
 def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Changes:
-    """What a glyph's C contours enclose otherwise than their sources: (V C,), with each of (V, K) weights in turn."""
-    from .topology import changes
+    """What a glyph's C contours enclose otherwise than their sources, with each of (V, K) weights: (V, C)."""
+    from .topology import Changes, changes
 
     source, written = (
         joined([Contours([each.mixed(weights) for each in contours]).arrays for weights in mixes])
         for contours in ([result.source for result in results], [result.curve for result in results])
     )
-    return changes(source, written, np.arange(len(mixes) + 1) * len(results))
-
-
-def _outside(results: Sequence[MastersContourResult]) -> int:
-    """Number of contours outside the tolerance."""
-    return sum(not result.within_tolerance for result in results)
+    found = changes(source, written, np.arange(len(mixes) + 1) * len(results))
+    return Changes(*(values.reshape(len(mixes), -1) for values in found))
 
 
 def check_options(options: Options) -> None:

@@ -16,9 +16,9 @@ from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
 from .certified_distance import SHARPNESS, pair_stretches
 from .closed_curves import beziers, interpolated
+from .faithful import Fits
 from .measures import distance_columns, solved_columns
 from .options import Options
-from .refit import Fits
 from .results import ConvertedContours
 
 

@@ -27,7 +27,7 @@ UNCOUNTED = 1_000
 
 
 class Changes(NamedTuple):
-    """What changed in C contours.
+    """What changed in C contours, or in V instances of them: then all arrays are (V, C).
 
     Attributes:
         new_crossings: (C,) crossings of the contour that its source does not have, with itself and with others of the
@@ -44,9 +44,20 @@ class Changes(NamedTuple):
         return int(np.where(self.new_crossings < 0, UNCOUNTED, self.new_crossings).sum() + self.collapsed.sum())
 
     @property
+    def crosses(self) -> BoolArray:
+        """(C,) whether there are crossings that the source does not have."""
+        return self._of_contours(self.new_crossings > 0)
+
+    @property
     def any(self) -> BoolArray:
         """(C,) whether there is a change that a closer fit may undo."""
-        return (self.new_crossings > 0) | self.collapsed
+        return self._of_contours((self.new_crossings > 0) | self.collapsed)
+
+    @staticmethod
+    def _of_contours(changed: BoolArray) -> BoolArray:
+        """(C,) whether a contour changed in any instance."""
+        found: BoolArray = np.logical_or.reduce(changed.reshape(-1, changed.shape[-1]))
+        return found
 
     def copy(self) -> Changes:
         """The same in arrays of their own."""
@@ -54,12 +65,12 @@ class Changes(NamedTuple):
 
     def part(self, first: int, last: int) -> Changes:
         """Those of the contours from ``first`` up to ``last``, as views."""
-        return Changes(self.new_crossings[first:last], self.collapsed[first:last])
+        return Changes(self.new_crossings[..., first:last], self.collapsed[..., first:last])
 
     def put(self, first: int, last: int, found: Changes) -> None:
         """Replace those of the contours from ``first`` up to ``last``."""
         for values, new in zip(self, found, strict=True):
-            values[first:last] = new
+            values[..., first:last] = new
 
 
 def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> Changes:

@@ -49,3 +49,15 @@ def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
             for axis in range(2):
                 flipped[j, k, axis] = cubics[m - 1 - j, 3 - k, axis]
     return flipped, True
+
+
+@compiled
+def begun_at(cubics: FloatArray, first: int) -> FloatArray:
+    """A closed chain of cubics (m, 4, 2) from joint ``first`` on."""
+    m = len(cubics)
+    turned = np.empty((m, 4, 2))
+    for j in range(m):
+        for k in range(4):
+            for axis in range(2):
+                turned[j, k, axis] = cubics[(first + j) % m, k, axis]
+    return turned

@@ -52,7 +52,7 @@ def put_together(
     points, degrees, b = np.empty((3 * total, 2)), np.empty(total, dtype=np.int64), np.empty((total, 4, 2))
     offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
     own, ends, closed = np.empty((total + 3 * arcs, 2)), np.zeros(arcs + 1, np.int64), np.empty(arcs, np.bool_)
-    at = knot = control = arc = 0 * total
+    at = knot = control = arc = 0
     for q in range(P):
         c, k, ring, first = pieces.where[q, CONTOUR], pieces.where[q, SPANS], pieces.where[q, CLOSED], pieces.starts[q]
         p, tau = pieces.vertices[0, first : pieces.starts[q + 1]], pieces.tangents[0, q]
@@ -97,7 +97,7 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
         cubics: of all curves as they are written. offsets: (C + 1,) where each contour begins in them.
     """
     anchors = np.empty((len(cubics) + len(offsets) - 1, 2))
-    at = 0 * len(cubics)
+    at = 0
     for q in range(len(pieces.where)):
         c, k, closed = pieces.where[q, CONTOUR], max(pieces.where[q, SPANS], 1), pieces.where[q, CLOSED]
         outline = contours.cubics[0, contours.offsets[c] : contours.offsets[c + 1]]

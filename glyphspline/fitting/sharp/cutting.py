@@ -53,18 +53,18 @@ def cut_all(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> 
     )  # fmt: skip
     pieces, stretches = empty_pieces(masters, 2 * most, 4 * most), empty_stretches(masters, 2 * most, most)
     at = split.offsets[0] = 0
-    done = wanted = contours.offsets[0]  # 0, and no literal, for which callees would be compiled once more
+    done = wanted = 0
     for c in range(count):
         a, b = contours.offsets[c], contours.offsets[c + 1]
         chain, degrees, back, joints = laid_out(cubics[:, a:b].copy(), contours.degrees[a:b], settings)
         split.flipped[c], m = back, len(degrees)
-        i = 0 * c
+        i = 0
         while i < m:
             j = i + 1
             while not joints.hard[j] and j < m:
                 j += 1
             if joints.line[i]:
-                done = _add_line(joints, (c, i, j, 0 * c, 0, ONLY), pieces, done)
+                done = _add_line(joints, (c, i, j, 0, 0, ONLY), pieces, done)
             elif settings.c2:
                 done, wanted, stretches = _add_splines(joints, c, i, j, settings, pieces, done, stretches, wanted)
             else:
@@ -110,7 +110,7 @@ def _add_splines(
     wanted: int,
 ) -> tuple[int, int, Stretches]:  # fmt: skip
     """Add what runs from hard joint i to hard joint j: as a whole, and cut at its corners if it has any."""
-    corners = 0 * c
+    corners = 0
     if joints.hard[0]:
         for n in range(i + 1, j):
             corners += joints.corner[n]
@@ -158,7 +158,7 @@ def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, 
     closed = i == 0 and j == len(joints.line) and not joints.hard[0]
     corners = not closed and joints.corner[i] and joints.corner[j]
     if corners and is_straight(joints.samples, joints.first[i], joints.first[j], settings.near):
-        return _add_line(joints, (c, i, j, 0 * c, 0, choice), pieces, count)
+        return _add_line(joints, (c, i, j, 0, 0, choice), pieces, count)
     (p, places), tangents = ends(joints, i, j), np.zeros((len(joints.samples), 2, 2))
     error = np.inf
     if not (closed or joints.tied[i] or joints.tied[j]):
@@ -219,7 +219,7 @@ def source_pieces(contours: SplitContours, piece: Pieces) -> Pieces:
     a, b = contours.offsets[row[CONTOUR]], contours.offsets[row[CONTOUR] + 1]
     most = row[LAST] - row[FIRST]
     found = empty_pieces(len(contours.cubics), most, 2 * most)
-    return used(found, add_source(found, 0 * most, row, contours.cubics[:, a:b].copy(), contours.degrees[a:b]))
+    return used(found, add_source(found, 0, row, contours.cubics[:, a:b].copy(), contours.degrees[a:b]))
 
 
 @compiled
@@ -246,7 +246,7 @@ def cut_again(
     """
     c = piece.where[0, CONTOUR]
     masters = len(contours.cubics)
-    given, count = empty_pieces(masters, 1, len(piece.places)), 0 * c
+    given, count = empty_pieces(masters, 1, len(piece.places)), 0
     add_pieces(given, count, piece)
     if contours.flipped[c]:
         reverse_last(given, count + 1, contours.offsets[c + 1] - contours.offsets[c])

@@ -151,11 +151,11 @@ def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Row
     span, x, e, nx, ny = rows.span, rows.x, rows.e, rows.nx, rows.ny
     worst, guessed = 0.0, known.used[0] > 0
     for j in range(n):
-        s, at = (k - 1, 1.0) if j > 0 else (0 * k, 0.0)
+        s, at = (k - 1, 1.0) if j > 0 else (0, 0.0)
         if closed or 0 < j < n - 1:
             s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
             later = guessed and (known.span[j] > s0 or (known.span[j] == s0 and known.x[j] > at0))
-            s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0 * k, 0.0))
+            s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0, 0.0))
             end = k if not closed else (span[0] + k + 1 if j > 0 else k)
             span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
         else:
@@ -165,7 +165,7 @@ def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Row
     count = n
     for j in range(n if closed else n - 1):
         i = j + 1 if j + 1 < n else 0
-        lap = k if i == 0 else 0 * k
+        lap = k if i == 0 else 0
         step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
         chord = length(step_x, step_y)
         own = _distance_along(h, k, span[j], x[j], span[i] + lap, x[i])
@@ -312,13 +312,13 @@ def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) 
     """The places of the outline beside the knots of a curve, from the feet of the samples in the first master."""
     Q, k, closed, n, lap = samples.places, curve.size[0], curve.size[1], len(samples.places), samples.lap
     span, x = rows.span[0], rows.x[0]
-    j = 0 * n
+    j = 0
     for i in range(k + 1 - closed):
         knot = float(i)
         if closed and knot < span[0] + x[0]:
             knot += k
         if closed:
-            j = 0 * n
+            j = 0
         while j + 1 < n and span[j + 1] + x[j + 1] <= knot:
             j += 1
         low, here = span[j] + x[j], Q[j]

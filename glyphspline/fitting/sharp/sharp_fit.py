@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,20 +19,17 @@ from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..certified_distance import SHARPNESS
+from ..faithful import Fits
+from ..ladders import MOST_SPANS, MOVED, RETRIES, RETRIES_OF_MASTERS, SEARCHES, SHARP_TRIES
 from ..measures import Columns, distance_columns
 from ..options import Options
-from ..refit import Fits
 from ..results import ConvertedContours
 from .assembly import certify, certify_masters, put_together
 from .corners import Joints
 from .cutting import choose, cut_again, cut_all, joints_again, source_pieces
 from .pieces import CLOSED, CONTOUR, SPANS, Pieces, of_master, part
-from .search_settings import MOST_SPANS, SEARCHES
 from .spline_search import fit_splines
 from .split_contours import Settings, SplitContours
-
-TRIES = (1.0, 0.5, 0.25, 0.1)
-"""Shares of the tolerance that are tried."""
 
 LONG_LINE = 0.02
 """Share of the em from which straight lines stay lines."""
@@ -47,28 +43,19 @@ STRIDE = {"fast": 2, "best": 1}
 ROUNDS = {"fast": 4, "best": 6}
 """Most Gauss-Newton steps of such a cubic."""
 
-MOVED = 0.9
-"""Share of the tolerance below which vertices of closed curves round corners are no longer moved, but laid at once."""
-
-RETRIES = {"c2": ((0.9, False), (0.75, False), (1.0, True)), "g1": ((0.8, False),)}
-RETRIES_OF_MASTERS = ((0.9, False), (0.75, False), (0.5, False), (1.0, True), (0.6, True))
-"""What is tried for pieces that fail the certificate: a share of the samples' tolerance, and whether to cut at all
-corners. In the end the source's own segments take their place.
-"""
-
 
 def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:
     """Fits within ``tolerance``, and then closer; it and ``em`` are in font units."""
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
-        return _converted(contours, options, tolerance, TRIES[attempt], em)
+        return _converted(contours, options, tolerance, SHARP_TRIES[attempt], em)
 
-    return Fits(len(TRIES), fit, keeps_crossing=True)
+    return Fits(len(SHARP_TRIES), fit, keeps_crossing=True)
 
 
 def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
     """Contours fitted to within a share of the tolerance, and measured."""
-    fit = fit_sharp(single(source), options, share * tolerance, em)
+    fit = fit_sharp(source, all_cubics(source)[None], None, options, share * tolerance, em)
     where, starts, vertices = fit.pieces.where, fit.pieces.starts, fit.pieces.vertices[0]
     # Where two pieces meet, the vertex belongs to the second one.
     open_ends = starts[1:][where[:, CLOSED] == 0] - 1
@@ -160,31 +147,18 @@ def _single_span(controls: FloatArray) -> Interpolation:
     )
 
 
-class Source(NamedTuple):
-    """Contours in K masters.
-
-    Attributes:
-        contours: their degrees and offsets. cubics: (K, m, 4, 2) their segments in each master.
-        mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline, which
-            is certified as it is written.
-    """
-
-    contours: ContourArrays
-    cubics: FloatArray
-    mixes: FloatArray | None
-
-
-def single(contours: ContourArrays) -> Source:
-    """Contours by themselves: their only master."""
-    return Source(contours, all_cubics(contours)[None], None)
-
-
-def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> SharpFit:
+def fit_sharp(
+    source: ContourArrays, cubics: FloatArray, mixes: FloatArray | None, options: Options, tolerance: float, em: float
+) -> SharpFit:
     """Lines and arcs within ``tolerance`` of contours, certified: a plain outline after rounding to the precision of
     the options, masters in the whole design space.
 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
     the source's own segments, of which each is an arc of one span.
+
+    Args:
+        source: the contours' degrees and offsets. cubics: (K, m, 4, 2) their segments in each of K masters.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline.
     """
     sharp = options.corners == "sharp"  # or else no joint is hard, and every contour is one closed curve
     settings = Settings(
@@ -197,19 +171,19 @@ def fit_sharp(source: Source, options: Options, tolerance: float, em: float) -> 
         ),
         rounds=ROUNDS[options.effort], stride=STRIDE[options.effort],
     )  # fmt: skip
-    split, pieces, stretches = cut_all(source.cubics, source.contours, settings)
+    split, pieces, stretches = cut_all(cubics, source, settings)
     if len(stretches.piece):
         pieces = fit_splines(pieces, stretches, settings.near, settings.search, False)
     pieces = choose(split, pieces, settings.near)
-    fit = _certified(split, pieces, source.mixes, options, tolerance, None, np.full(len(pieces.where), -1))
-    tries = RETRIES[options.continuity] if source.mixes is None else RETRIES_OF_MASTERS
+    fit = _certified(split, pieces, mixes, options, tolerance, None, np.full(len(pieces.where), -1))
+    tries = RETRIES[options.continuity] if mixes is None else RETRIES_OF_MASTERS
     joints: dict[int, Joints] = {}
     for attempt in range(len(tries) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():
             break
         pieces, same = refitted(split, fit.pieces, poor, tries[attempt:], settings, joints)
-        fit = _certified(split, pieces, source.mixes, options, tolerance, fit, same)
+        fit = _certified(split, pieces, mixes, options, tolerance, fit, same)
     return fit
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import length
 from ...types import FloatArray
-from .cholesky import solve
+from .cubic_fit import solve
 from .feet import Samples, copy_rows, measure, measure_afresh
 from .spline_curve import Curve, copy_curve, hold_tied, inner_vertices, interpolate_cold, iterate, set_knots
 from .spline_equations import (

@@ -11,11 +11,11 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import split
-from ...outlines.canonical import directed, farthest_joint
+from ...outlines.canonical import begun_at, directed, farthest_joint
 from ...outlines.segments import lasting
 from ...types import BoolArray, FloatArray, IntArray
+from ..ladders import Search
 from .corners import Joints, find_joints
-from .search_settings import Search
 
 
 class Settings(NamedTuple):
@@ -107,9 +107,8 @@ def laid_out(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     if k == 0:
         return chain, kept, flipped, joints
     turned, own = np.empty((masters, m, 4, 2)), np.empty(m, dtype=np.int64)
+    for v in range(masters):
+        turned[v] = begun_at(chain[v], k)
     for j in range(m):
         own[j] = kept[(j + k) % m]
-        for v in range(masters):
-            for c in range(4):
-                turned[v, j, c, 0], turned[v, j, c, 1] = chain[v, (j + k) % m, c, 0], chain[v, (j + k) % m, c, 1]
     return turned, own, flipped, find_joints(turned, own, settings.near, settings.angle, settings.line, settings.c2)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
-from ...outlines.canonical import directed, farthest_joint
+from ...outlines.canonical import begun_at, directed, farthest_joint
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import contour_cubics, lasting
 from ...types import BoolArray, FloatArray, IntArray
@@ -54,12 +54,8 @@ def canonical_contours(contours: ContourArrays) -> CanonicalContours:
             for c in range(4):
                 given[j, c, 0], given[j, c, 1] = given[kept[j], c, 0], given[kept[j], c, 1]
         chain, flipped[k] = directed(given[:m])
-        first = farthest_joint(chain[:, 0])
-        own = cubics[at : at + m]
-        for j in range(m):
-            for c in range(4):
-                for axis in range(2):
-                    own[j, c, axis] = chain[(first + j) % m, c, axis]
+        own = begun_at(chain, farthest_joint(chain[:, 0]))
+        cubics[at : at + m] = own
         turned, table = turns(own, 0.0), length_table(own, WEIGHTS)
         for j in range(m):
             angles[at + j] = abs(turned[j])

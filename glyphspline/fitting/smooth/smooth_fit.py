@@ -10,35 +10,27 @@ from ...interpolation.result import Interpolation, reversed_interpolation, turne
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...types import Views
 from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
+from ..faithful import Fits
+from ..ladders import SMOOTH_TRIES, TRY_APART
 from ..measures import distance_columns, solved_columns
 from ..options import Options
-from ..refit import Fits
 from ..results import ConvertedContours
 from .canonical_contours import CanonicalContours, canonical_contours
 from .refine import Round, refined
-
-TRIES = ((1.0, None), (1.0, 3), (0.5, 3), (0.25, 3), (0.1, 3), (0.04, 3))
-"""Shares of the tolerance, and rounds in which vertices are taken out as well: a number of its own, or None.
-
-Strands of an outline that lie on each other are crossed the less the fewer vertices they have.
-"""
-
-APART = 3
-"""Which of them fits contours that are drawn apart."""
 
 
 def smooth_fits(options: Options, tolerance: float) -> Fits:
     """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer."""
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
-        share, early = TRIES[attempt]
+        share, early = SMOOTH_TRIES[attempt]
         canonical = canonical_contours(contours)
         near = np.full(contours.num_contours, share * tolerance)
         kept = refined(canonical, np.arange(contours.num_contours), options, near, early)
         fits = [kept[k] for k in range(contours.num_contours)]
         return _converted(contours, canonical, fits, tolerance)
 
-    return Fits(len(TRIES), fit, apart=APART)
+    return Fits(len(SMOOTH_TRIES), fit, apart=TRY_APART)
 
 
 def _converted(

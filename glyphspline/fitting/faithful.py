@@ -1,0 +1,225 @@
+"""Fits of contours, and closer ones of those that cross or collapse where their source does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from ..curves.crossings import meetings
+from ..errors import GlyphsplineError
+from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, joined, offsets_of
+from ..outlines.segments import all_cubics
+from ..types import BoolArray, IntArray
+from .apart import drawn_apart
+from .ladders import APART
+from .measures import distance_columns, with_geometry
+from .options import Options
+from .results import ConvertedContours, assembled
+from .topology import Changes, changes
+
+
+class Fits(NamedTuple):
+    """What a mode tries for contours.
+
+    Attributes:
+        tries: how many fits there are; later ones are closer to the source.
+        fit: from contours, and the number of a fit, to their results, of which the geometry is not yet measured.
+        apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
+            Contours that touch in the source are drawn apart at once: closer fits do not help.
+        keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
+            the source.
+    """
+
+    tries: int
+    fit: Callable[[ContourArrays, int], ConvertedContours]
+    apart: int = 0
+    keeps_collapsed: bool = True
+    keeps_crossing: bool = False
+
+
+Result = TypeVar("Result")
+
+
+class Search(Generic[Result]):
+    """The search for results that enclose what their sources do, for one outline or for all masters of one.
+
+    Of what is tried for a glyph, the first with the fewest contours outside the tolerance counts, and among these the
+    first with the fewest changes.
+
+    Attributes:
+        tried, found: the (C,) results tried last, and what changed in them. best, kept: the same of those that count.
+    """
+
+    def __init__(
+        self, glyphs: IntArray, results: Iterable[Result],
+        compare: Callable[[int, int, Sequence[Result]], Changes], is_outside: Callable[[Result], bool],
+    ) -> None:  # fmt: skip
+        """Begin with first results.
+
+        Args:
+            glyphs: (G + 1,) where the contours of each glyph begin.
+            compare: from a range of contours, a to b - 1, and their results, to what changed in them.
+            is_outside: whether a result is outside the tolerance.
+        """
+        self.glyphs, self.compare, self.is_outside = glyphs, compare, is_outside
+        self.tried = list(results)
+        self.found = compare(0, len(self.tried), self.tried)
+        self.best, self.kept = list(self.tried), self.found.copy()
+
+    def attempt(self, wrong: BoolArray, fit: Callable[[list[int]], Iterable[Result]]) -> None:
+        """Put other results in the place of some contours', and keep what is better for their glyphs."""
+        which = np.flatnonzero(wrong).tolist()
+        if not which:
+            return
+        for c, result in zip(which, fit(which), strict=True):
+            self.tried[c] = result
+        for a, b in self.ranges(which):
+            tried, found = self.tried[a:b], self.compare(a, b, self.tried[a:b])
+            self.found.put(a, b, found)
+            if self._rank(tried, found) < self._rank(self.best[a:b], self.kept.part(a, b)):
+                self.best[a:b] = tried
+                self.kept.put(a, b, found)
+
+    def _rank(self, results: Sequence[Result], found: Changes) -> tuple[int, int]:
+        """Lower is better: the number of results outside the tolerance, then of changes."""
+        return sum(map(self.is_outside, results)), found.number
+
+    def go_back(self) -> None:
+        """Go on from the best results."""
+        self.tried, self.found = list(self.best), self.kept.copy()
+
+    def ranges(self, which: Sequence[int]) -> list[tuple[int, int]]:
+        """The contours of each glyph that has one of some contours: the first, and the one after the last."""
+        those = np.unique(np.searchsorted(self.glyphs, which, side="right") - 1)
+        return [(int(self.glyphs[g]), int(self.glyphs[g + 1])) for g in those]
+
+
+Part = tuple[ConvertedContours, int]
+"""The result of one contour: results of several, and its number among these."""
+
+
+def faithful(
+    contours: ContourArrays, glyphs: IntArray, fits: Fits, options: Options, tolerance: float
+) -> ConvertedContours:
+    """Fit contours; those that cross or collapse where their source does not are fitted again.
+
+    They are fitted more closely, then drawn apart, and in the end kept as they are in the source, as far as the mode
+    has it: see :class:`Search`. What still crosses in the best result is flagged.
+
+    Args:
+        contours: of all glyphs. glyphs: (G + 1,) where the contours of each glyph begin.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
+    """
+    first = fits.fit(contours, 0)
+
+    def compare(a: int, b: int, results: Sequence[Part]) -> Changes:
+        written = assembled(results).curves.rounded(options.precision)
+        return changes(contours.part(a, b), written, np.unique(glyphs.clip(a, b)) - a)
+
+    search = Search(glyphs, [(first, c) for c in range(len(first))], compare, _is_outside)
+    kept = np.zeros(len(first), dtype=np.bool_)
+    if search.found.number:
+        _Tries(contours, fits, options, tolerance, search).run()
+        fitted = list(search.best)
+        wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
+        search.go_back()
+        search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
+        kept = np.array([new is not old for new, old in zip(search.best, fitted, strict=True)])
+    crossings = [None if count < 0 else count for count in search.kept.new_crossings.tolist()]
+    columns = {
+        "new_crossings": crossings,
+        "collapsed": search.kept.collapsed.tolist(),
+        "source_kept": kept.tolist(),
+    }
+    result = assembled(search.best)
+    return with_geometry(replace(result, measures={**result.measures, **columns}), options.precision)
+
+
+def _is_outside(result: Part) -> bool:
+    found, k = result
+    return found.measures["within_tolerance"][k] is False
+
+
+def _parts(found: ConvertedContours) -> list[Part]:
+    return [(found, k) for k in range(len(found))]
+
+
+class _Tries(NamedTuple):
+    """What is tried for contours with changes."""
+
+    contours: ContourArrays
+    fits: Fits
+    options: Options
+    tolerance: float
+    search: Search[Part]
+
+    def run(self) -> None:
+        """Try what the mode has, as long as there are changes."""
+        search, fits = self.search, self.fits
+        touching = self.touching() if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
+        for turn in range(1, fits.tries):
+            search.attempt(search.found.any & ~touching, partial(self.fit_closer, turn))
+            near = list(search.tried)
+            for share in APART if turn == fits.apart else ():
+                search.attempt(search.found.crosses, partial(self.fit_apart, near, share))
+
+    def touching(self) -> BoolArray:
+        """(C,) whether a contour that crosses touches itself or others in the source."""
+        found = np.zeros(len(self.search.tried), dtype=np.bool_)
+        for a, b in self.search.ranges(np.flatnonzero(self.search.found.crosses).tolist()):
+            source = self.contours.part(a, b)
+            met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
+            found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True
+        return found
+
+    def fit_closer(self, turn: int, which: list[int]) -> list[Part]:
+        """Contours by a later fit."""
+        return _parts(self.fit(self.contours.chosen(which), which, turn))
+
+    def fit(self, contours: ContourArrays, which: list[int], turn: int) -> ConvertedContours:
+        """A fit of contours that are those numbered ``which``, or stand for them."""
+        try:
+            return self.fits.fit(contours, turn)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else which[error.contour]
+            raise
+
+    def fit_apart(self, near: Sequence[Part], share: float, which: list[int]) -> list[Part]:
+        """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
+        shift, moved = share * self.tolerance, []
+        for a, b in self.search.ranges(which):
+            written = assembled(near[a:b]).curves.rounded(self.options.precision)
+            apart = drawn_apart(self.contours.part(a, b), written, shift, self.tolerance)
+            moved.append(apart.chosen([c - a for c in which if a <= c < b]))
+        found, source = self.fit(joined(moved), which, self.fits.apart), self.contours.chosen(which)
+        bounds = [bound + shift for bound in found.measures["deviation_bound"]]
+        measures = {**found.measures, **distance_columns([None] * len(bounds), bounds, self.tolerance)}
+        return _parts(replace(found, source=source, measures=measures))
+
+
+def as_source(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
+    """Contours as they are: lines, and cubics in the place of curves. Nothing is interpolated."""
+    cubics, lines = all_cubics(contours), contours.degrees == 1
+    needed = np.ones((len(cubics), 3), dtype=np.bool_)
+    needed[lines, 1:] = False
+    degrees = np.where(lines, 1, 3)
+    starts = offsets_of(degrees)[contours.offsets]
+    curves = ContourArrays(cubics[:, :3][needed], degrees, contours.offsets, starts)
+    polygons = Polylines(cubics[:, 0].copy(), contours.offsets, np.ones(contours.num_contours, dtype=np.bool_))
+    # A curve is within the largest distance of its Bézier points from those of another one.
+    moved = np.hypot(*(curves.rounded(options.precision).points - curves.points).T)
+    distances = np.maximum.reduceat(moved, starts[:-1]).tolist()
+    segments = np.diff(contours.offsets).tolist()
+    measures = {
+        "vertices": segments, "segments": segments, "numbers": (2 * np.diff(starts)).tolist(),
+        **distance_columns(distances, distances, tolerance),
+    }  # fmt: skip
+    return ConvertedContours(
+        contours, curves, polygons, (), NO_POLYLINES, np.zeros(contours.num_contours + 1, dtype=np.int64), measures
+    )
