@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv demo test test-extras test-browser test-package docs lint check-reference check-topology bench paper clean
+.PHONY: venv demo test test-extras test-browser test-package wheel docs lint check-reference check-topology bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -67,8 +67,16 @@ docs: .venv/.docs
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
 # The wheel and the sdist in clean environments: one of this Python. ALL=1: every Python that is found, each extra.
-test-package:
+# Then a wheel with compiled code, of what `make test` has compiled: nothing is compiled by its commands.
+test-package: .venv/.warm
 	$(PYTHON) scripts/test_package.py $(if $(ALL),--all)
+	$(PYTHON) scripts/test_wheel.py
+
+# Into dist: the pure wheel, and one with compiled code for this system and Python, for every processor of its kind.
+wheel: .venv/.ready
+	$(BIN)/pip install --quiet --disable-pip-version-check build
+	$(BIN)/python -m build --wheel --outdir dist .
+	GLYPHSPLINE_COMPILED=1 $(BIN)/python -m build --wheel --outdir dist .
 
 # Playwright drives Debian's Chromium; nothing else is downloaded.
 test-browser: .venv/.browser .venv/.warm
@@ -76,7 +84,7 @@ test-browser: .venv/.browser .venv/.warm
 		|| { echo "make test-browser needs Debian's chromium: apt-get install chromium (as root)" >&2; exit 1; }
 	$(BIN)/python -m pytest tests/browser
 
-# Also the cache of compiled code, which does not notice edits in functions that are called from another file.
+# All that was made here. Compiled code need not be cleared after edits: it is named by the sources it was made from.
 clean:
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis *.egg-info build outputs/demo docs/_build
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -112,6 +112,9 @@ class Compiled:
 if not JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as compiled code has it
 
+used: set[str] = set()
+"""Names of the files of code that this process has loaded or written."""
+
 everything: list[Compiled] = []
 """The compiled functions of the modules that are imported."""
 
@@ -154,12 +157,18 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         """The code for a signature; None if there is none."""
         nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
         target = target_context.codegen().magic_tuple()
-        for folder, made_for in ((SHIPPED, shipped_target(target)), (own_folder(), target)):
-            if folder is not None and made_for is not None:
-                with suppress(OSError):
-                    content = (folder / self._file(signature, made_for)).read_bytes()
-                    return CompileResult._rebuild(target_context, *pickle.loads(content))
-        return None
+        made_for = shipped_target(target)
+        found = made_for and self._load(SHIPPED, self._file(signature, made_for), target_context)
+        folder = None if found else own_folder()
+        return found or (folder and self._load(folder, self._file(signature, target), target_context)) or None
+
+    def _load(self, folder: Path, name: str, target_context: Any) -> CompileResult | None:
+        try:
+            content = (folder / name).read_bytes()
+        except OSError:
+            return None
+        used.add(name)
+        return CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def save_overload(self, signature: Any, code: Any) -> None:
         """Keep code, and delete that of sources of long ago."""
@@ -167,6 +176,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         if folder is None or code.library.has_dynamic_globals:
             return
         file = folder / self._file(signature, code.codegen.magic_tuple())
+        used.add(file.name)
         with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, suffix=".tmp", delete=False) as new:
             try:
                 new.write(dumps(self._reduced(code)))
@@ -182,8 +192,8 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
     def _reduced(self, code: Any) -> tuple[Any, ...]:
         """What is written of code: without all that only compiling needs, loading takes less than half the time.
 
-        That is the intermediate code for callers, where no compiled function calls this one, and environments of
-        functions without Python objects in them.
+        That is the intermediate code for callers, where no compiled function calls this one, environments of functions
+        without Python objects in them, and the listing of types, which also names folders of this machine.
         """
         (name, kind, (machine_code, bitcode)), *facts, environments = code._reduce()
         if self._role != "inner":
@@ -194,6 +204,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
             )
             declared = "".join(f'define void @"{symbol}"() {{ unreachable }}\n' for symbol in symbols)
             bitcode = llvm.parse_assembly(declared).as_bitcode()
+        facts[5] = ""
         return (name, kind, (machine_code, bitcode)), *facts, tuple(env for env in environments if env.consts)
 
     def _file(self, signature: Any, target: tuple[str, ...]) -> str:

@@ -63,18 +63,23 @@ def main() -> None:
 
 def build(place: Path) -> tuple[Path, Path]:
     """Build from a copy of the files that git knows; returns the wheel, made from the sdist, and the sdist."""
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    tree = place / "tree"
-    for name in filter(None, names.split("\0")):
-        if (ROOT / name).is_file():
-            (tree / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, tree / name)
+    tree = copy_tree(place / "tree")
     run(sys.executable, "-m", "venv", place / "builder")
     python = interpreter(place / "builder")
     run(python, *INSTALL, "build")
     run(python, "-m", "build", "--outdir", place / "dist", tree)
     (wheel,), (sdist,) = (place / "dist").glob("*.whl"), (place / "dist").glob("*.tar.gz")
     return wheel, sdist
+
+
+def copy_tree(tree: Path) -> Path:
+    """Copy the files that git knows."""
+    names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    for name in filter(None, names.split("\0")):
+        if (ROOT / name).is_file():
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, tree / name)
+    return tree
 
 
 def install(place: Path, python: str, package: Path, extras: list[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from glyphspline.types import FloatArray
 
 from .polygons import random_polygon
 
-Tangents = tuple[FloatArray | None, FloatArray | None]
+Tangents: TypeAlias = "tuple[FloatArray | None, FloatArray | None]"
 
 ENDS = ["tangents", "natural", "tangent and natural"]
 
