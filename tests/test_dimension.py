@@ -148,7 +148,7 @@ def test_the_two_roads_agree(closed: bool, d: int) -> None:
     polygons = [polygon(n, d, 2) for n in sizes]
     polygons[5][:, 1:] *= 1e-9  # almost a line, seen from the first coordinate
     polygons[6] = polygons[6].round()
-    for options in ({}, {"variant": 1}, {"variant": 3}, {"finish": "solve"}, {"margin": 0.02, "fallback": "peak"}):
+    for options in ({}, {"variant": 1}, {"variant": 3}, {"margin": 0.02, "fallback": "peak"}):
         many = gs.interpolate_many(polygons, closed=closed, max_iterations=60, **options)
         for p, found in zip(polygons, many, strict=True):
             alone = interpolate_any_degree(p, Method(closed=closed, max_iterations=60, **options))
