@@ -34,12 +34,13 @@ SPARSE = 0.75
 
 
 @compiled
-def run(k0: int, k1: int, given: Given, found: Found) -> FloatArray:
-    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end."""
-    most = LANES
-    for k in range(k0, k1):
-        most = max(most, given.offsets[k + 1] - given.offsets[k])
-    group, at = _allocated(most, given.points.shape[1])
+def run(k0: int, k1: int, given: Given, found: Found, memory: FloatArray) -> FloatArray:
+    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
+
+    Args:
+        memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
+    """
+    group, at = _allocated(memory, given.points.shape[1])
     history, residuals, used = np.empty(64), np.empty(64), 0
     slots, lane, interval = 0, 0, 0
     for k in range(k0, k1):
@@ -57,15 +58,17 @@ def run(k0: int, k1: int, given: Given, found: Found) -> FloatArray:
 
 
 @compiled
-def _allocated(most: int, d: int) -> tuple[Group, Coordinates]:
-    """Arrays for groups with up to ``most`` vertices in R^d."""
-    count = (most + LANES - 1) // LANES
+def _allocated(memory: FloatArray, d: int) -> tuple[Group, Coordinates]:
+    """Arrays for groups with up to as many vertices in R^d as the blocks in ``memory`` have lanes."""
+    size = pairs_size(d)
+    count = memory.shape[0] // (BLOCK + 3 * size)
     group = Group(
-        np.empty(count * BLOCK), np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * most + 8 * WIDTH),
+        memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
         np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
     )  # fmt: skip
-    size = count * pairs_size(d)
-    return group, Coordinates(np.empty(size), np.empty(size), np.empty(size))
+    first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
+    stop = third + count * size
+    return group, Coordinates(memory[first:second], memory[second:third], memory[third:stop])
 
 
 @compiled
