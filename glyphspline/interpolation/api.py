@@ -87,7 +87,8 @@ def interpolate(
         variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed, finish,
         diagnostics,
     )  # fmt: skip
-    (result,) = _interpolated([points], method, [knots] if own else None, [end_tangents], 1)
+    tangents = None if end_tangents is None else [end_tangents]
+    (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
     if isinstance(result, PolygonError):
         raise result
     return result

@@ -151,7 +151,7 @@ def interpolate_batch(
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, *found, joined, tolerances, closed)
+    return BatchedInterpolation(offsets, *found, residuals=joined, tolerances=tolerances, closed=closed)
 
 
 def _filled(count: int, value: float) -> FloatArray:
@@ -206,7 +206,8 @@ def _gathered(
         tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
 
     over_threads(one, range(count), threads)
-    return BatchedInterpolation(offsets, *out, np.concatenate([*residuals, np.empty(0)]), tolerances, closed)
+    joined = np.concatenate([*residuals, np.empty(0)])
+    return BatchedInterpolation(offsets, *out, residuals=joined, tolerances=tolerances, closed=closed)
 
 
 def _threads(threads: int | None) -> int:
