@@ -151,7 +151,8 @@ def interpolate_batch(
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, *found, residuals=joined, tolerances=tolerances, closed=closed)
+    u, P, parameters, bounds, kept, whole, rates = found
+    return BatchedInterpolation(offsets, u, P, parameters, bounds, kept, whole, rates, joined, tolerances, closed)
 
 
 def _filled(count: int, value: float) -> FloatArray:
@@ -207,7 +208,7 @@ def _gathered(
 
     over_threads(one, range(count), threads)
     joined = np.concatenate([*residuals, np.empty(0)])
-    return BatchedInterpolation(offsets, *out, residuals=joined, tolerances=tolerances, closed=closed)
+    return BatchedInterpolation(offsets, u, P, parameters, bounds, kept, whole, rates, joined, tolerances, closed)
 
 
 def _threads(threads: int | None) -> int:
