@@ -39,11 +39,9 @@ from glyphspline.interpolation.kernels.blocks import (
     HIGH,
     LANES,
     LOW,
-    PX,
-    PY,
-    QX,
-    QY,
+    PAIR,
     SCRATCH,
+    SECOND,
     STRIDE,
     WIDTH,
     X,
@@ -140,6 +138,7 @@ def answer_lanes(
         c: (n, 2, 2, 4) coefficients of the pieces to the left and to the right, about the knot, p as the origin.
     """
     block, S, steps = np.zeros(BLOCK), np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.ones(LANES + 8)
+    controls, vertices, following = np.zeros(PAIR), np.zeros(PAIR), np.zeros(PAIR)
     for first in range(0, P.shape[0], PER_BLOCK):
         count = min(PER_BLOCK, P.shape[0] - first)
         for k in range(count):
@@ -147,14 +146,14 @@ def answer_lanes(
             for i in range(6):
                 steps[SPACING * k + 3 + i] = h[first + k, i]
             for i in range(5):
-                block[PX + lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 0]
-                block[PY + lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 1]
-            block[QX + lane], block[QY + lane] = p[first + k, 0], p[first + k, 1]
+                controls[lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 0]
+                controls[SECOND + lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 1]
+            vertices[lane], vertices[SECOND + lane] = p[first + k, 0], p[first + k, 1]
             block[LOW + lane], block[HIGH + lane] = reach[first + k, 0], reach[first + k, 1]
             block[X + lane] = reach[first + k, 2]
         _weights(block, steps, np.uint64(0), np.uint64(LANES))
-        if seek(block, S, LANES)[0] > 0:
-            flagged(block, S, LANES)
+        if seek(block, controls, vertices, following, S, LANES)[0] > 0:
+            flagged(block, controls, following, S, LANES)
         for k in range(count):
             lane, j = np.uint64(SPACING * k + 4), first + k
             x = block[X + lane]

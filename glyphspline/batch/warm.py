@@ -113,12 +113,12 @@ def interpolations() -> None:
 
     interpolate(SQUARE.points)
     interpolate_many([SQUARE.points])
-    interpolate(SQUARE.points, closed=False, finish="solve")
+    interpolate(SQUARE.points, closed=False)
     interpolate(SQUARE.points, 4)
     interpolate(SQUARE.points, degree=4)
     interpolate(SQUARE.points, knots=np.arange(5.0))
     interpolate_vertex(SQUARE.points, 0)
-    interpolate(np.eye(4), finish="solve")
+    interpolate(np.eye(4))
 
 
 def drawings() -> None:

@@ -156,13 +156,18 @@ class Spline:
         controls = np.einsum("nkc,k->nc", self.control_points.reshape(len(self.control_points), -1, 2), given)
         return Spline(controls, self.knots, self.degree, self.closed)
 
-    def basis(self, t: ArrayLike) -> FloatArray:
-        """(len(t), control points) the collocation matrix: every basis function at every t."""
+    def basis_rows(self, t: ArrayLike) -> tuple[IntArray, FloatArray]:
+        """(len(t), degree + 1) which basis functions are not zero at t, by control point, and their values there."""
         span, x, _ = self._locate(np.asarray(t, dtype=np.float64).ravel())
         d = self.degree
         local = bezier_pieces(self.full_knots, np.broadcast_to(np.eye(d + 1), (len(self.knots) - 1, d + 1, d + 1)))
-        rows = np.zeros((len(span), len(self.control_points)))
-        np.add.at(rows, (np.arange(len(span))[:, None], self.span_controls[span]), evaluate(local[span], x))
+        return self.span_controls[span], evaluate(local[span], x)
+
+    def basis(self, t: ArrayLike) -> FloatArray:
+        """(len(t), control points) the collocation matrix: every basis function at every t."""
+        columns, values = self.basis_rows(t)
+        rows = np.zeros((len(columns), len(self.control_points)))
+        np.add.at(rows, (np.arange(len(columns))[:, None], columns), values)
         return rows
 
     def draw(self, pen: Any, tolerance: float | None = None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import accumulate
-from typing import Any, Literal, cast, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from ..curves.choices import Parametrisation
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import FloatArray
-from .any_degree import interpolate_any_degree, interpolate_any_vertex
-from .batched import explain, interpolate_batch, interpolate_one, over_threads
+from .batched import as_tangents, explain, interpolate_batch, over_threads
+from .driver import interpolate_any_degree, interpolate_any_vertex
+from .frozen import solved
 from .method import Fallback, Finish, Method, Tangents, method_of
-from .polygon import as_points, as_tangent
+from .polygon import as_points
 from .result import Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
@@ -64,10 +65,7 @@ def interpolate(
             rule; None for a natural end (no curvature there).
         finish: "iterate" is the paper's limit. "solve" freezes the footpoints once the largest error is below 3/1000 of
             the mean chord and solves for the control points: another curve through the same vertices, beside the first
-            by some 5e-4 of the mean chord. "accelerate" combines each pass with the five before it (Anderson), and
-            takes a step back for the plain one where it does not multiply the largest error by 0.95 or less. Theorem 2
-            holds from any control points, so that convergence stays certified. It takes half the passes or fewer, and
-            about the same time, to yet another curve: the limit depends on the way to it.
+            by some 5e-4 of the mean chord.
         diagnostics: also keep every iteration, and compute the norms and spectral radii of Section 3 (O(n³) a step).
 
     Raises:
@@ -89,17 +87,10 @@ def interpolate(
         variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed, finish,
         diagnostics,
     )  # fmt: skip
-    if closed and end_tangents is not None:
-        raise OptionError("end_tangents belong to an open arc (closed=False)")
-    p = as_points(points)
-    given = _as_knots(knots, p, closed) if own else None
-    if method.stepwise(p.shape[1]):
-        return interpolate_any_degree(p, method, given, end_tangents)
-    result = interpolate_one(
-        p, method, given, None if end_tangents is None else _as_tangents([end_tangents], p.shape[1])
-    )
-    if result is None:
-        raise explain(p, given if own else method.knots, closed)
+    tangents = None if end_tangents is None else [end_tangents]
+    (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
+    if isinstance(result, PolygonError):
+        raise result
     return result
 
 
@@ -201,9 +192,9 @@ def _interpolated(
         parts.append(p)
     if not good:
         return results
-    pairs = None if tangents is None else [tangents[k] for k in good]
-    found: list[Any]
-    if method.stepwise(parts[0].shape[1]):
+    pairs = None if method.closed or tangents is None else [tangents[k] for k in good]
+    found: Any
+    if method.stepwise:
 
         def one(j: int) -> Interpolation | PolygonError:
             try:
@@ -215,21 +206,20 @@ def _interpolated(
 
         found = over_threads(one, range(len(good)), threads)
     else:
-        offsets = np.array([0, *accumulate(map(len, parts))], dtype=np.int64)
-        batch = interpolate_batch(
-            parts[0] if len(parts) == 1 else np.concatenate(parts), offsets, method,
+        found = interpolate_batch(
+            parts[0] if len(parts) == 1 else np.concatenate(parts), np.array([0, *accumulate(map(len, parts))]), method,
             knots=np.concatenate(given) if given else None,
-            end_tangents=None if method.closed or pairs is None else _as_tangents(pairs, parts[0].shape[1]),
+            end_tangents=None if pairs is None else as_tangents(pairs, parts[0].shape[1]),
             threads=threads,
-        )  # fmt: skip
-        found = cast(list[Any], batch.results())
+        ).results()  # fmt: skip
         for j in range(len(found)) if None in found else ():
             if found[j] is None:
                 found[j] = explain(parts[j], given[j] if given else method.knots, method.closed)
-    if len(good) == len(polygons):
-        return found
-    for k, result in zip(good, found, strict=True):
-        results[k] = result
+    for j, k in enumerate(good):
+        results[k] = found[j]
+        if method.finish == "solve" and isinstance(found[j], Interpolation):
+            tolerance = method.tolerance_for(float(np.ptp(parts[j], axis=0).max()))
+            results[k] = solved(found[j], parts[j], pairs[j] if pairs else None, tolerance)
     return results
 
 
@@ -241,16 +231,6 @@ def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:
     if given.shape != (len(p) + closed,):
         raise explain(p, given, closed)
     return given
-
-
-def _as_tangents(tangents: Sequence[Tangents | None], d: int) -> FloatArray:
-    """(K, 2, d), NaN for natural ends."""
-    array = np.full((len(tangents), 2, d), np.nan)
-    for k, pair in enumerate(tangents):
-        for end, tangent in enumerate(pair or ()):
-            if tangent is not None:
-                array[k, end] = as_tangent(tangent, d)
-    return array
 
 
 def interpolate_vertex(

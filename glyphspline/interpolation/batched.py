@@ -18,9 +18,9 @@ from ..curves.choices import CHORD_EXPONENT
 from ..curves.parameters import vertex_parameters
 from ..errors import PolygonError
 from ..types import BoolArray, FloatArray, IntArray
-from .any_degree import interpolate_any_degree
-from .method import Method
-from .polygon import clean_polygon
+from .driver import NOTHING_MERGED, interpolate_any_degree
+from .method import SETTLED, Method, Tangents
+from .polygon import as_tangent, clean_polygon
 from .result import Interpolation
 
 GIVEN = -1.0
@@ -29,13 +29,8 @@ GIVEN = -1.0
 LEAST_VERTICES = 1024
 """Minimum work of a thread at a time, some 0.3 ms: long compared with the cost of the exchange."""
 
-LARGE = 30_000
-"""Number of vertices from which NumPy allocates the blocks (huge pages): fewer TLB misses, as passes read them all."""
-
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
-NO_BLOCKS = np.empty(0)
-NOTHING_MERGED = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +47,7 @@ class BatchedInterpolation:
         whole: (K, 6) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, the
             footpoints that took a full search, and those that are not certified.
         rates: (K,) rate bounds.
-        residuals, residual_offsets: (iterations + 1) numbers a polygon, end to end.
+        residuals: (iterations + 1) numbers a polygon, end to end.
         tolerances: (K,) residual tolerances.
         closed: of all polygons.
     """
@@ -66,7 +61,6 @@ class BatchedInterpolation:
     whole: IntArray
     rates: FloatArray
     residuals: FloatArray
-    residual_offsets: IntArray
     tolerances: FloatArray
     closed: bool
 
@@ -77,22 +71,22 @@ class BatchedInterpolation:
         """The result of polygon k; its arrays are views."""
         k = range(len(self))[k]
         start, stop = self.offsets[k : k + 2].tolist()
-        first, last = self.residual_offsets[k : k + 2].tolist()
+        first = int(self.whole[:k, 2].sum()) + k
         return self._result(
-            k, start, stop, self.whole[k].tolist(), first, last, float(self.tolerances[k]), float(self.rates[k])
+            k, start, stop, self.whole[k].tolist(), first, float(self.tolerances[k]), float(self.rates[k])
         )
 
     def results(self) -> list[Interpolation]:
         """All polygons' results; None stands for one that was refused."""
-        starts, ends = self.offsets.tolist(), self.residual_offsets.tolist()
-        rows = zip(
-            range(len(self)), starts, starts[1:], self.whole.tolist(), ends, ends[1:], self.tolerances.tolist(),
-            self.rates.tolist(), strict=False,
-        )  # fmt: skip
-        return [cast(Any, None) if row[3][0] else self._result(*row) for row in rows]
+        starts, whole, found, first = self.offsets.tolist(), self.whole.tolist(), [], 0
+        rows = zip(starts, starts[1:], whole, self.tolerances.tolist(), self.rates.tolist(), strict=False)
+        for k, (start, stop, row, tolerance, rate) in enumerate(rows):
+            found.append(cast(Any, None) if row[0] else self._result(k, start, stop, row, first, tolerance, rate))
+            first += row[2] + 1
+        return found
 
     def _result(
-        self, k: int, start: int, stop: int, whole: list[int], first: int, last: int, tolerance: float, rate: float
+        self, k: int, start: int, stop: int, whole: list[int], first: int, tolerance: float, rate: float
     ) -> Interpolation:
         _, n, iterations, fallbacks, _, uncertified = whole
         if self.closed:
@@ -102,7 +96,7 @@ class BatchedInterpolation:
         merged = NOTHING_MERGED
         if n < stop - start:
             merged = np.setdiff1d(np.arange(stop - start), self.kept[start : start + n])
-        residuals = self.residuals[first:last]
+        residuals = self.residuals[first : first + iterations + 1]
         spline, vertices = Spline.trusted(controls, knots, 3, self.closed), slice(start, start + n)
         return Interpolation(
             spline, self.parameters[vertices], self.bounds[vertices], iterations, residuals,
@@ -133,76 +127,51 @@ def interpolate_batch(
         residual_tolerances: (K,) in place of the method's.
         threads: number of threads; None for one a core. Results do not depend on it.
     """
-    count, total = len(offsets) - 1, len(points)
-    peak_shares = np.empty(count)
-    peak_shares.fill(method.peak_share)
+    (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
+    peak_shares = _filled(count, method.peak_share)
     if by_knot is not None:
         peak_shares[by_knot] = 0.0
-    closed = method.closed
-    space = points.shape[1] > 2
-    if method.stepwise(points.shape[1]):
+    if method.stepwise:
         return _gathered(points, offsets, method, peak_shares, knots, end_tangents, residual_tolerances, threads)
-    run = _compiled(space)
     tangents = NO_TANGENTS
     if not closed:
-        tangents = np.full((count, 2, points.shape[1]), np.nan) if end_tangents is None else end_tangents
-    tolerances = np.empty(count) if residual_tolerances is None else residual_tolerances.copy()
-    if residual_tolerances is None:
-        tolerances.fill(np.nan if method.residual_tolerance is None else method.residual_tolerance)
-    exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
-    out = _results(total, count, closed, points.shape[1])
+        tangents = np.full((count, 2, d), np.nan) if end_tangents is None else end_tangents
+    tolerance = np.nan if method.residual_tolerance is None else method.residual_tolerance
+    tolerances = _filled(count, tolerance) if residual_tolerances is None else residual_tolerances.copy()
+    kernels = _compiled()
+    given = kernels.Given(
+        points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant, float(method.margin),
+        GIVEN if method.knots is None else CHORD_EXPONENT[method.knots], peak_shares, tolerances,
+        method.max_iterations, SETTLED if method.finish == "solve" else 0.0,
+    )  # fmt: skip
+    found = kernels.Found(*_results(total, count, closed, d))
 
     def work(part: tuple[int, int]) -> Any:
-        return run(
-            part[0], part[1], points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
-            float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, method.finish == "solve",
-            *(() if space else (method.finish == "accelerate", _blocks(offsets, *part))), *out,
-        )  # fmt: skip
+        return kernels.run(*part, given, found, _memory(offsets, *part, d))
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
-    u, P, parameters, bounds, kept, whole, rates = out
-    residual_offsets = np.zeros(count + 1, dtype=np.int64)
-    np.add.accumulate(whole[:, 2] + 1, out=residual_offsets[1:])
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(
-        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, closed
-    )
+    u, P, parameters, bounds, kept, whole, rates = found
+    return BatchedInterpolation(offsets, u, P, parameters, bounds, kept, whole, rates, joined, tolerances, closed)
 
 
-def interpolate_one(
-    points: FloatArray, method: Method, knots: FloatArray | None = None, end_tangents: FloatArray | None = None
-) -> Interpolation | None:
-    """The result of :func:`interpolate_batch` for one polygon; None if it is refused.
+def _filled(count: int, value: float) -> FloatArray:
+    """An array of one value, in a third of the time of ``numpy.full``."""
+    array = np.empty(count)
+    array.fill(value)
+    return array
 
-    In the plane it makes the same compiled call without arrays of one row, which took 24 of 57 us for 20 vertices.
+
+def _memory(offsets: IntArray, first: int, stop: int, d: int) -> FloatArray:
+    """Memory for the blocks of the largest polygon.
+
+    NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
     """
-    if points.shape[1] > 2:
-        offsets = np.array((0, len(points)))
-        return interpolate_batch(points, offsets, method, knots=knots, end_tangents=end_tangents).results()[0]
-    n, closed, tolerance = len(points), method.closed, method.residual_tolerance
-    out = _results(n, 1, closed, 2)
-    tolerances = np.array((np.nan if tolerance is None else tolerance,))
-    tangents = NO_TANGENTS
-    if not closed:
-        tangents = np.full((1, 2, 2), np.nan) if end_tangents is None else end_tangents
-    residuals = _compiled(False)(
-        0, 1, points, np.array((0, n)), NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
-        float(method.margin), GIVEN if method.knots is None else CHORD_EXPONENT[method.knots],
-        np.array((method.peak_share,)), tolerances, method.max_iterations, method.finish == "solve",
-        method.finish == "accelerate", NO_BLOCKS if n < LARGE else _blocks(np.array((0, n)), 0, 1), *out,
-    )  # fmt: skip
-    u, P, parameters, bounds, kept, whole, rates = out
-    status, left, iterations, fallbacks, _, uncertified = whole[0].tolist()
-    if status:
-        return None
-    merged = NOTHING_MERGED
-    if left < n:
-        merged = np.setdiff1d(np.arange(n), kept[:left])
-        u, P, parameters, bounds = u[: left + closed], P[: left + 2 * (not closed)], parameters[:left], bounds[:left]
-    return Interpolation(
-        Spline.trusted(P, u, 3, closed), parameters, bounds, iterations, residuals,
-        float(residuals[-1]) < float(tolerances[0]), fallbacks, float(rates[0]), merged, uncertified,
-    )  # fmt: skip
+    most = int(offsets[stop] - offsets[first])
+    if stop > first + 1:
+        most = int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max())
+    kernels = _compiled()
+    return np.empty(-(-max(most, 1) // kernels.LANES) * (kernels.BLOCK + 3 * kernels.STRIDE * (d + d % 2)))
 
 
 def _gathered(
@@ -238,12 +207,8 @@ def _gathered(
         tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
 
     over_threads(one, range(count), threads)
-    residual_offsets = np.zeros(count + 1, dtype=np.int64)
-    np.cumsum(whole[:, 2] + 1, out=residual_offsets[1:])
     joined = np.concatenate([*residuals, np.empty(0)])
-    return BatchedInterpolation(
-        offsets, u, P, parameters, bounds, kept, whole, rates, joined, residual_offsets, tolerances, closed
-    )
+    return BatchedInterpolation(offsets, u, P, parameters, bounds, kept, whole, rates, joined, tolerances, closed)
 
 
 def _threads(threads: int | None) -> int:
@@ -267,18 +232,6 @@ def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in pairwise(ends)]
 
 
-def _blocks(offsets: IntArray, first: int, stop: int) -> FloatArray:
-    """Blocks for the largest polygon if it is large; otherwise the compiled code allocates them."""
-    most = int(offsets[stop] - offsets[first])
-    if most >= LARGE:
-        most = int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max())
-    if most < LARGE:
-        return NO_BLOCKS
-    from .kernels.blocks import BLOCK, LANES
-
-    return np.empty(-(-most // LANES) * BLOCK)
-
-
 def _results(total: int, count: int, closed: bool, d: int) -> tuple[Any, ...]:
     """Empty arrays for knots, control points, parameters, intervals, vertices kept, whole numbers and rates."""
     return (
@@ -293,15 +246,21 @@ def _results(total: int, count: int, closed: bool, d: int) -> tuple[Any, ...]:
 
 
 @cache
-def _compiled(space: bool) -> Any:
-    """The compiled kernels of the plane or of R^d, imported at the first call, as they import the compiler."""
-    if space:
-        from .kernels.space_run import run_space
+def _compiled() -> Any:
+    """The compiled driver, imported at the first call, as it imports the compiler."""
+    from .kernels import driver
 
-        return run_space
-    from .kernels.run import run
+    return driver
 
-    return run
+
+def as_tangents(tangents: Sequence[Tangents | None], d: int) -> FloatArray:
+    """End tangents of K arcs as (K, 2, d), NaN for natural ends."""
+    array = np.full((len(tangents), 2, d), np.nan)
+    for k, pair in enumerate(tangents):
+        for end, tangent in enumerate(pair or ()):
+            if tangent is not None:
+                array[k, end] = as_tangent(tangent, d)
+    return array
 
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:

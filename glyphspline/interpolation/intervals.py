@@ -152,8 +152,10 @@ def search_intervals(
     """
     support = windows[:, [0, -1]]
     inner = windows[:, [1, -2]]
-    peak = peaks(windows)
-    highest = basis_function(windows, peak)
+    peak, highest = np.empty(0), np.empty(0)
+    if variant in (2, 4):
+        peak = peaks(windows)
+        highest = basis_function(windows, peak)
     low = highest <= 0.5
     if variant == 0:
         bounds = support

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Fallback: TypeAlias = Literal["knot", "peak"]
-Finish: TypeAlias = Literal["iterate", "solve", "accelerate"]
+Finish: TypeAlias = Literal["iterate", "solve"]
 Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
 
 STEPWISE = (0, 4)
@@ -85,13 +85,11 @@ class Method:
         require_choice("diagnostics", self.diagnostics)
         if not self.closed and self.degree != 3:
             raise OptionError("an open arc is cubic (degree=3)")
-        if self.diagnostics and self.finish == "accelerate":
-            raise OptionError("diagnostics are of plain steps, not of finish='accelerate'")
 
-    def stepwise(self, d: int) -> bool:
-        """Whether each polygon (n, d) is iterated on its own, by the passes of any degree and variant."""
-        accelerated = d > 2 and self.finish == "accelerate"
-        return self.degree != 3 or self.variant in STEPWISE or self.diagnostics or accelerated
+    @property
+    def stepwise(self) -> bool:
+        """Whether each polygon is iterated on its own, by the driver of any degree and variant."""
+        return self.degree != 3 or self.variant in STEPWISE or self.diagnostics
 
     @property
     def peak_share(self) -> float:

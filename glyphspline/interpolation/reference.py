@@ -22,7 +22,7 @@ from ..curves.parameters import closed_knots, lengths, vertex_centres, vertex_pa
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .diagnostics import diagnose
-from .driver import Anderson, iterate
+from .driver import iterate
 from .intervals import Intervals, arc_ends, search_intervals
 from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Tangents
 from .polygon import clean_polygon
@@ -239,10 +239,7 @@ def interpolate_reference(
         return (_sweep if at_once else _step)(problem, disturb(free) if disturb else free)
 
     first = problem.points[problem.vertices].copy()
-    run = iterate(
-        one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics,
-        Anderson() if method.finish == "accelerate" else None,
-    )  # fmt: skip
+    run = iterate(one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics)
     free, t, residuals = run.controls, run.footpoints, run.residuals
     if method.finish == "solve" and len(free):
         free = _solve(problem, t)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.any_degree import interpolate_any_degree
 from glyphspline.interpolation.batched import BatchedInterpolation, interpolate_batch
+from glyphspline.interpolation.driver import interpolate_any_degree
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
 from glyphspline.types import FloatArray, IntArray
@@ -183,14 +183,13 @@ def many() -> list[Row]:
         for ring in rings:
             splprep(ring, s=0, per=True)
 
-    def ours(threads: int, finish: str = "iterate") -> list[gs.Interpolation]:
-        return gs.interpolate_many(contours, threads=threads, finish=finish, residual_tolerance=tolerance)
+    def ours(threads: int) -> list[gs.Interpolation]:
+        return gs.interpolate_many(contours, threads=threads, residual_tolerance=tolerance)
 
     times = interleaved(
         {
             "1": lambda: read(ours(1)),
             "2": lambda: read(ours(2)),
-            "solve": lambda: read(ours(2, "solve")),
             "splprep": library,
             "core 1": lambda: laid_out.run(1),
             "core 2": lambda: laid_out.run(2),
@@ -208,10 +207,6 @@ def many() -> list[Row]:
         Row(
             "2000 glyph contours, two threads, against a loop over `splprep`",
             times["splprep"] / times["2"], must=1.8, aim=2.5, note=f"{words['2']}, {words['splprep']}",
-        ),
-        Row(
-            'the same with `finish="solve"`',
-            times["splprep"] / times["solve"], must=2.2, aim=3, note=f"{words['solve']}, {words['splprep']}",
         ),
         Row(
             "two threads against one, same bits",

@@ -1,21 +1,24 @@
-"""``finish="accelerate"`` beside plain iteration and the frozen solve: passes, times, how far limits lie apart."""
+"""Anderson acceleration beside plain iteration and the frozen solve: passes, times, how far limits lie apart."""
 
 from __future__ import annotations
 
 import time
+from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.interpolation.driver import FALL, MEMORY
-from glyphspline.interpolation.method import Finish
+from glyphspline.interpolation.driver import Problem, interpolate_any_degree, iterate
+from glyphspline.interpolation.method import Method
 from glyphspline.types import FloatArray
 
 from .clicking import FONTS
 from .common import COLOURS, Run, random_polygons
 from .study import TOLERANCE
+
+Finish = Literal["iterate", "accelerate", "solve"]
 
 FINISHES: tuple[Finish, ...] = ("iterate", "accelerate", "solve")
 SHADES: dict[str, str] = dict(
@@ -24,7 +27,82 @@ SHADES: dict[str, str] = dict(
 FACES = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf")
 STEP = 20.0
 REPEATS = 7
+TIMED = 20
+"""Number of polygons of a group that are timed."""
+
 Results = dict[Finish, list[gs.Interpolation]]
+
+MEMORY = 5
+"""Number of earlier passes that :class:`Anderson` combines with the last one; more of them save few passes."""
+
+FALL = 0.95
+"""Largest factor of the error in an accelerated step that stands."""
+
+DAMPING = 1e-12
+"""Share of its trace added to the diagonal of the normal equations, which are singular when changes are dependent."""
+
+
+class Anderson:
+    """Anderson acceleration of the passes, with the plain step as a safeguard.
+
+    With the steps f = updated - controls of the last few passes, the affine combination of those passes is sought
+    whose combined step is shortest; the same combination of the updated control points is tried next. Where that does
+    not multiply the error by ``FALL`` or less, it is taken back for the plain step. Theorem 2 holds from any control
+    points, so that every step that stands multiplies the error by at most the larger of ``FALL`` and the certified
+    factor. The fixed points of the iteration are a family: the limit is another one than by plain steps.
+
+    Args:
+        free: the rows of free control points; others depend on them.
+    """
+
+    def __init__(self, free: slice = slice(None)) -> None:
+        self.free = free
+        self.updated: list[FloatArray] = []
+        self.steps: list[FloatArray] = []
+        self.error = np.inf
+        self.trying = False
+
+    def next(self, controls: FloatArray, updated: FloatArray, error: float) -> FloatArray:
+        """The control points of the next pass, from those of a pass, its update and its error."""
+        if self.trying and not error <= FALL * self.error:
+            self.trying, self.updated, self.steps = False, self.updated[-1:], self.steps[-1:]
+            return self.updated[-1]
+        self.updated = [*self.updated[-MEMORY:], updated]
+        self.steps = [*self.steps[-MEMORY:], (updated - controls)[self.free]]
+        changes = np.diff(self.steps, axis=0)
+        gram = np.einsum("ikc,jkc->ij", changes, changes)  # not by BLAS, whose sums may depend on the number of cores
+        size = float(np.trace(gram))
+        self.error, self.trying = error, size > 0
+        if not self.trying:
+            return updated
+        weights = np.linalg.solve(
+            gram + DAMPING * size * np.eye(len(gram)), np.einsum("ikc,kc->i", changes, self.steps[-1])
+        )
+        return updated - np.einsum("i,ikc->kc", weights, np.diff(self.updated, axis=0))
+
+
+def accelerated(points: FloatArray, variant: int = 2, **options: Any) -> gs.Interpolation:
+    """The result of accelerated passes; other options are those of :func:`glyphspline.interpolate`."""
+    end_tangents = options.pop("end_tangents", None)
+    method = Method(variant, **options)
+    problem = Problem.of(points, method, None, end_tangents)
+    anderson = Anderson(slice(problem.layout.first, problem.layout.first + len(problem.free)))
+
+    def one_pass(controls: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        footpoints, updated, error = problem.one_pass(controls)
+        done = error < problem.limit or not np.isfinite(error)
+        return footpoints, updated if done else anderson.next(controls, updated, error), error
+
+    return problem.result(iterate(one_pass, problem.P, problem.limit, method.max_iterations, variant == 4))
+
+
+def interpolated(
+    polygons: list[FloatArray], finish: Finish, variant: int = 2, **options: Any
+) -> list[gs.Interpolation]:
+    """Results for a list of polygons."""
+    if finish == "accelerate":
+        return [accelerated(p, variant, **options) for p in polygons]
+    return gs.interpolate_many(polygons, variant, finish=finish, **options)
 
 
 def acceleration(run: Run) -> None:
@@ -35,23 +113,23 @@ def acceleration(run: Run) -> None:
     groups = {n: random_polygons(n, run.size(100, 3)) for n in run.groups}
     times: dict[str, dict[str, float]] = {}
     for n, polygons in groups.items():
-        results = {f: gs.interpolate_many(polygons, finish=f, residual_tolerance=TOLERANCE) for f in FINISHES}
+        results = {f: interpolated(polygons, f, residual_tolerance=TOLERANCE) for f in FINISHES}
         for f in FINISHES:
             passes[f][str(n)] = _mean_passes(results[f])
-        backs["random polygons"] += sum(taken_back(r.residuals) for r in results["accelerate"])
+        backs["random polygons"] += sum(len(taken_back(r.residuals)) for r in results["accelerate"])
     apart["random polygons"] = _apart(results)
     times[f"random, {n} vertices"] = _times(polygons, run)
     contours: dict[str, dict[str, float]] = {}
     for face in FACES[: run.size(2, 1)]:
         polygons = contours_of(face)
         for tolerance, digits in ((None, "1e-6 of the extent"), (0.005, "0.005 units")):
-            results = {f: gs.interpolate_many(polygons, finish=f, residual_tolerance=tolerance) for f in FINISHES}
+            results = {f: interpolated(polygons, f, residual_tolerance=tolerance) for f in FINISHES}
             contours[f"{face}, {digits}"] = {
                 "contours": len(polygons),
                 **{f: _mean_passes(results[f]) for f in FINISHES},
                 "iterate / accelerate": _mean_passes(results["iterate"]) / _mean_passes(results["accelerate"]),
             }
-            backs["contours"] += sum(taken_back(r.residuals) for r in results["accelerate"])
+            backs["contours"] += sum(len(taken_back(r.residuals)) for r in results["accelerate"])
             if tolerance is None:
                 apart[face] = _apart(results)
         times[face] = _times(polygons, run)
@@ -87,14 +165,16 @@ def contours_of(face: str) -> list[FloatArray]:
     return [p for p in polygons if len(p) > 3]
 
 
-def taken_back(residuals: FloatArray) -> int:
-    """Accelerated steps that did not reduce the error enough."""
-    count, error, back = 0, residuals[0], False
+def taken_back(residuals: FloatArray) -> list[int]:
+    """Passes that did not reduce the error enough, from the error of the last pass that stands."""
+    passes, error, back = [], residuals[0], False
     for k, e in enumerate(residuals[1:], 1):
         back = not back and k > 1 and not e <= FALL * error
-        count += back
-        error = error if back else e
-    return count
+        if back:
+            passes.append(k)
+        else:
+            error = e
+    return passes
 
 
 def _mean_passes(results: list[gs.Interpolation]) -> float:
@@ -119,20 +199,22 @@ def _any_variant(polygons: list[FloatArray], variant: int) -> dict[str, float]:
     """Mean passes, and the runs that do not converge, of another variant."""
     found: dict[str, float] = {}
     for f in FINISHES[:2]:
-        results = gs.interpolate_many(polygons, variant, finish=f, residual_tolerance=TOLERANCE)
+        results = interpolated(polygons, f, variant, residual_tolerance=TOLERANCE)
         found[f] = float(np.mean([r.iterations for r in results]))
         found[f"{f}, not converged"] = sum(not r.converged for r in results)
     return found
 
 
 def _times(polygons: list[FloatArray], run: Run) -> dict[str, float]:
-    """The least of several times, taken in turns, as other work disturbs each."""
-    best: dict[str, float] = dict.fromkeys(FINISHES, np.inf)
+    """The least of several times by the driver in NumPy, taken in turns, as other work disturbs each."""
+    cases: dict[str, Any] = {"iterate": lambda p: interpolate_any_degree(p, Method()), "accelerate": accelerated}
+    best = dict.fromkeys(cases, np.inf)
     for _ in range(run.size(REPEATS, 1)):
-        for f in FINISHES:
+        for f, case in cases.items():
             start = time.perf_counter()
-            gs.interpolate_many(polygons, finish=f, threads=1)
-            best[f] = min(best[f], (time.perf_counter() - start) / len(polygons) * 1e6)
+            for p in polygons[:TIMED]:
+                case(p)
+            best[f] = min(best[f], (time.perf_counter() - start) / len(polygons[:TIMED]) * 1e6)
     return best
 
 
@@ -141,7 +223,7 @@ def _picture(passes: dict[str, dict[str, float]], polygon: FloatArray) -> Figure
     for f in FINISHES:
         series = passes[f]
         axes[0].plot([int(n) for n in series], list(series.values()), color=SHADES[f], marker="o", label=f)
-        r = gs.interpolate(polygon, finish=f, residual_tolerance=TOLERANCE)
+        (r,) = interpolated([polygon], f, residual_tolerance=TOLERANCE)
         axes[1].semilogy(np.maximum(r.residuals, 1e-16), color=SHADES[f], marker="o", ms=2.5, label=f)
     axes[0].set(xlabel="vertices", ylabel="mean passes", ylim=(0, None))
     axes[1].set(xlabel=f"pass, one polygon of {len(polygon)} vertices", ylabel="largest error")

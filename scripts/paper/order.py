@@ -13,8 +13,7 @@ from scipy.interpolate import BSpline
 import glyphspline as gs
 from glyphspline.curves.bspline import full_knots
 from glyphspline.curves.parameters import vertex_parameters
-from glyphspline.interpolation.any_degree import Scaled
-from glyphspline.interpolation.driver import iterate
+from glyphspline.interpolation.driver import Problem, iterate
 from glyphspline.interpolation.intervals import search_intervals
 from glyphspline.interpolation.method import Method
 from glyphspline.types import FloatArray
@@ -156,7 +155,7 @@ def greville_start(p: FloatArray) -> gs.Spline:
     towards = np.where(by > 0, (np.roll(p, -1, axis=0) - p) / h[:, None], (p - np.roll(p, 1, axis=0)) / before[:, None])
     windows = full_knots(u, 5, True)[3 + np.arange(len(p))[:, None] + np.arange(5)]
     method, free = Method(2), np.arange(len(p))
-    scaled = Scaled(p, u, u[:-1], free, search_intervals(windows, u[:-1], 2), method, (None, None))
+    scaled = Problem(p, u, u[:-1], free, search_intervals(windows, u[:-1], 2), method)
     first = (p + by * towards - scaled.origin) * scaled.unit
     done = iterate(scaled.one_pass, first, TOLERANCE * scaled.unit, method.max_iterations)
     return gs.Spline(scaled.points_of(done.controls), u)

@@ -13,13 +13,8 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.bspline import bezier_pieces, full_knots
 from ...types import FloatArray, IntArray
-from ..intervals import BISECTIONS
 from ..method import TIE_DISTANCE
-from .footpoint import MAX_DEGREE, WORK, reduce, search_piece
-from .one_interval import end_interval, near_end, value_at_knot
-
-KNOTS = MAX_DEGREE + 2
-"""Maximum number of knots in the support of a basis function."""
+from .footpoint import WORK, reduce, search_piece
 
 TIED = TIE_DISTANCE**2
 
@@ -175,109 +170,3 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
                 P[v.first + i, axis] += e[i, axis]
         _follow_ends(P, count, v)
     return largest, uncertified
-
-
-@compiled
-def _basis_value(w: FloatArray, spans: int, t: float, N: FloatArray) -> float:
-    """B(t) on its knots w[0] … w[spans], by Cox and de Boor; each span is closed at its left end.
-
-    The last span of positive length is closed at both. N: scratch of KNOTS numbers.
-    """
-    end = w[spans]
-    for k in range(spans):
-        u, v = w[k], w[k + 1]
-        N[k] = 1.0 if (u <= t < v) or (v > u and v == end and t == end) else 0.0
-    for width in range(1, spans):
-        for k in range(spans - width):
-            rising = w[k + width] - w[k]
-            falling = w[k + width + 1] - w[k + 1]
-            value = 0.0
-            if rising > 0.0:
-                value = (t - w[k]) / rising * N[k]
-            if falling > 0.0:
-                value += (1.0 - (t - w[k + 1]) / falling) * N[k + 1]
-            N[k] = value
-    return N[0]
-
-
-@compiled
-def _bisected(w: FloatArray, spans: int, inside: float, outside: float, level: float, N: FloatArray) -> float:
-    """The last parameter between ``inside`` and ``outside`` at which B ≥ level; with level < 0 that at which B' > 0.
-
-    B' is the difference of the two basis functions of one degree less.
-    """
-    for _ in range(BISECTIONS):
-        middle = (inside + outside) / 2
-        if middle in (inside, outside):
-            break
-        if level >= 0.0:
-            enough = _basis_value(w, spans, middle, N) >= level
-        else:
-            slope = 0.0
-            if w[spans - 1] > w[0]:
-                slope = _basis_value(w, spans - 1, middle, N) / (w[spans - 1] - w[0])
-            if w[spans] > w[1]:
-                slope -= _basis_value(w[1:], spans - 1, middle, N) / (w[spans] - w[1])
-            enough = slope > 0.0
-        if enough:
-            inside = middle
-        else:
-            outside = middle
-    return inside if level >= 0.0 else (inside + outside) / 2
-
-
-@compiled
-def search_bounds(
-    windows: FloatArray, centres: FloatArray, variant: int, margin: float, peak_share: float, h: FloatArray,
-    natural: FloatArray, bounds: FloatArray,
-) -> tuple[int, float]:  # fmt: skip
-    """Write the search interval of each footpoint to ``bounds``, by the rules and bisections of ``intervals.py``.
-
-    Returns the number of fallbacks and the least value of a B_i on its interval.
-
-    Args:
-        windows: (n, degree + 2) the knots of each basis function.
-        centres: (n,) the parameter of each vertex.
-        peak_share: of ``fallback="peak"``, else 0.
-        h: knot intervals of an arc between two of no length at either end; () of a closed curve.
-        natural: (2,) weights of an arc's natural ends, 0 for end tangents.
-    """
-    N = np.empty(KNOTS)
-    spans, n = windows.shape[1] - 1, windows.shape[0] + 2
-    fallbacks, least, share = 0, 1.0, peak_share if peak_share > 0.0 else 1.0
-    for i in range(windows.shape[0]):
-        w = windows[i]
-        if len(h) > 0 and variant > 1 and near_end(i + 1, n):
-            if variant == 3:
-                bounds[i, 0] = bounds[i, 1] = centres[i]
-                least = min(least, value_at_knot(h, i + 2, i + 1, n, natural[0], natural[1]))
-                continue
-            left, right, value, found = end_interval(h, i + 2, i + 1, n, natural[0], natural[1], margin, share)
-            if found:
-                bounds[i, 0] = w[2] + left * (w[2] - w[1] if left < 0.0 else w[3] - w[2])
-                bounds[i, 1] = w[2] + right * (w[2] - w[1] if right < 0.0 else w[3] - w[2])
-                least = min(least, value)
-                continue
-        if variant == 0:
-            low, high = w[0], w[spans]
-        elif variant == 1:
-            low, high = w[1], w[spans - 1]
-        elif variant == 3:
-            low = high = centres[i]
-        else:
-            peak = _bisected(w, spans, w[0], w[spans], -1.0, N)
-            highest = _basis_value(w, spans, peak, N)
-            fallbacks += highest <= 0.5
-            level = min(0.5 + margin, peak_share * highest if peak_share > 0.0 else highest)
-            low = high = peak
-            if peak_share == 0.0 and highest <= 0.5:
-                low = high = centres[i]
-            elif highest > level:
-                low = _bisected(w, spans, peak, w[0], level, N)
-                high = _bisected(w, spans, peak, w[spans], level, N)
-            if peak_share > 0.0 or highest > 0.5:
-                low = min(max(low, w[1]), w[spans - 1])
-                high = min(max(high, w[1]), w[spans - 1])
-        bounds[i, 0], bounds[i, 1] = low, high
-        least = min(least, _basis_value(w, spans, low, N), _basis_value(w, spans, high, N))
-    return fallbacks, least

@@ -28,36 +28,53 @@ WIDTH = 8
 SLOTS = (LANES + 2 * HALO) // (2 + 2 * HALO)
 """Maximum number of polygons in a block."""
 
-# The fields of a vertex, kept between passes: control point, vertex, rates and weights of newton_simd.py, interval and
-# footpoint (relative to its knot), error p - C(t) and its square.
-PX, PY, QX, QY, RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, EX, EY, DD = (
-    np.uint64(k * STRIDE) for k in range(16)
-)
-FIELDS = 16
-BLOCK = FIELDS * STRIDE
-SCRATCH = 21
-"""Number of fields of the scratch block, determined by ``lemma2``."""
+# The fields of a vertex, kept between passes: rates and weights of newton_simd.py, interval and footpoint (relative to
+# its knot), squared distance from the footpoint.
+RATE, LAMBDA, MOVE_A, MOVE_B, HALF, THIRD, LOW, HIGH, X, DD = (np.uint64(k * STRIDE) for k in range(10))
+BLOCK = 10 * STRIDE
+
+SECOND = np.uint64(STRIDE)
+PAIR = 2 * STRIDE
+"""Lanes of two coordinates, the second ``SECOND`` after the first."""
+
+SCRATCH = 40
+"""Number of fields of the scratch block, determined by ``gram_simd``."""
 
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
 
-POLYGON, COUNT, LANE, INTERVALS, STATE, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
+POLYGON, COUNT, LANE, INTERVALS, DONE, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
 """Columns of ``Group.table``: index of the polygon, vertices, first lane, where in ``Group.h`` its intervals begin,
-state, passes, full searches, those not certified, fallbacks, its first row; and the passes in all of the polygon that
-had this row at first.
+whether it is done, passes, full searches, those not certified, fallbacks, its first row; and the passes in all of the
+polygon that had this row at first.
 """
 
-UNIT, KNOT_UNIT, LIMIT, LEAST, LARGEST, NATURAL, BASE, END = 0, 1, 2, 3, 4, 5, 7, 11
+UNIT, KNOT_UNIT, LIMIT, LEAST, LARGEST, NATURAL = 0, 1, 2, 3, 4, 5
 """Columns of ``Group.numbers``: scales of lengths and parameters, the error to stop below, the least B_i on its
-interval, the largest squared error; of both ends of an open arc the weight of the free control point in the one beside
-the end, the rest of that one (x and y), and the end itself.
+interval, the largest squared error; for both ends of an open arc the weight of the free control point in the one beside
+the end.
+"""
+
+BESIDE, LAST = 0, 2
+"""Rows of a polygon in ``Group.ends``: for both ends of an open arc the rest of the control point beside it, and the
+end itself.
 """
 
 ONE, TWO, THREE, FOUR, EIGHT = (np.uint64(k) for k in (1, 2, 3, 4, 8))
 
 
 class Given(NamedTuple):
-    """Input; see :func:`.run.run`."""
+    """The polygons and how they are interpolated.
+
+    Attributes:
+        points, offsets: (N, d), (K + 1,) polygons end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+        knots: () or all polygons' own parameters end to end, n + 1 each if closed, n if open.
+        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (0, 2, d) if closed.
+        exponent: of the chord length in the knots; negative for own ``knots``.
+        peak_shares: (K,) of ``fallback="peak"``, 0 for "knot".
+        tolerances: (K,) residual tolerances; NaN is replaced by the one of ``RELATIVE_TOLERANCE``.
+        settled: share of the mean chord below which the error need not fall; 0 for none.
+    """
 
     points: FloatArray
     offsets: IntArray
@@ -70,12 +87,14 @@ class Given(NamedTuple):
     peak_shares: FloatArray
     tolerances: FloatArray
     max_iterations: int
-    solve: bool
-    accelerate: bool
+    settled: float
 
 
 class Found(NamedTuple):
-    """Results; see :func:`.run.run`."""
+    """Results, as :class:`..batched.BatchedInterpolation` has them.
+
+    A polygon's knots begin at its offset, plus k if closed; its control points at its offset, plus 2 k if open.
+    """
 
     knots: FloatArray
     controls: FloatArray
@@ -91,18 +110,28 @@ class Group(NamedTuple):
 
     Attributes:
         blocks, scratch: see the module. h: knot intervals of all of them, each with PAD more at either end.
-        rows: (n, ...) the frozen system. table, numbers: a row for each polygon; columns as above.
-        memory, mixing: of :mod:`.anderson`; empty if nothing is accelerated.
+        table, numbers: a row for each polygon; columns as above. ends: (4 SLOTS, d) four rows for each.
     """
 
     blocks: FloatArray
     scratch: FloatArray
     h: FloatArray
-    rows: FloatArray
     table: IntArray
     numbers: FloatArray
-    memory: FloatArray
-    mixing: FloatArray
+    ends: FloatArray
+
+
+class Coordinates(NamedTuple):
+    """The coordinates of a group: arrays with a ``PAIR`` for every two coordinates, a zero beside the last if d is odd,
+    for every block.
+
+    Attributes:
+        P, Q: control points and vertices. N: the next control points, P_i + p_i - C(t_i).
+    """
+
+    P: FloatArray
+    Q: FloatArray
+    N: FloatArray
 
 
 @inlined
@@ -121,31 +150,42 @@ def lanes_used(group: Group, slots: int, b: int) -> int:
 
 
 @compiled
-def place(given: Given, found: Found, group: Group, slots: int) -> None:
-    """Vertices, first control points, rates and weights of a group's polygons into their blocks."""
+def pairs_size(d: int) -> int:
+    """Numbers in an array of coordinates for a block."""
+    return (d + 1) // 2 * PAIR
+
+
+@compiled
+def count_of_blocks(group: Group) -> int:
+    """Number of blocks of a group."""
+    return (group.table[0, COUNT] + LANES - 1) // LANES
+
+
+@compiled
+def place(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
+    """Vertices, first control points, rates and weights of a group's polygons into their blocks; controls into N."""
+    d, size = given.points.shape[1], pairs_size(given.points.shape[1])
     clear(group)
+    for j in range(count_of_blocks(group) * size):
+        at.P[j] = at.Q[j] = at.N[j] = 0.0
     for q in range(slots):
         k, n, unit = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q, UNIT]
-        start = given.offsets[k]
-        x0, y0 = given.points[start + found.kept[start], 0], given.points[start + found.kept[start], 1]
-        for b in range((n + LANES - 1) // LANES):
-            block, inside = group.blocks[b * BLOCK : (b + 1) * BLOCK], min(LANES, n - b * LANES)
-            first = group.table[q, LANE]
-            for i in range(inside):
-                at, lane = start + found.kept[start + b * LANES + i], np.uint64(first + i + HALO)
-                x, y = (given.points[at, 0] - x0) * unit, (given.points[at, 1] - y0) * unit
-                block[QX + lane] = block[PX + lane] = x
-                block[QY + lane] = block[PY + lane] = y
-                block[EX + lane] = block[EY + lane] = 0.0
+        kept, first = found.kept[given.offsets[k] :], group.table[q, LANE] + HALO
+        points = given.points[given.offsets[k] :]
+        for i in range(n):
+            lane, p = np.uint64(i // LANES * size + first + i % LANES), points[kept[i]]
+            for axis in range(d):
+                at.N[lane] = at.Q[lane] = (p[axis] - points[kept[0], axis]) * unit
+                lane += SECOND
         place_weights(group, q)
         if not given.closed:
-            _place_ends(given, group, q)
+            _place_ends(given, found, group, q)
 
 
 @compiled
 def clear(group: Group) -> None:
     """Zeros in the first and the last block, which have lanes that no vertex uses."""
-    count = (group.table[0, COUNT] + LANES - 1) // LANES
+    count = count_of_blocks(group)
     for b in range(0, count, max(count - 1, 1)):
         for j in range(b * BLOCK, (b + 1) * BLOCK):
             group.blocks[j] = 0.0
@@ -179,57 +219,45 @@ def _weights(block: FloatArray, h: FloatArray, first: np.uint64, inside: np.uint
 
 
 @compiled
-def _place_ends(given: Given, group: Group, q: int) -> None:
+def _place_ends(given: Given, found: Found, group: Group, q: int) -> None:
     """The ends of an open arc: fixed points, and the control points beside them, by tangent or natural."""
-    k, n, first = group.table[q, POLYGON], group.table[q, COUNT], group.table[q, LANE] + HALO
-    row = group.numbers[q]
-    scale = row[UNIT] / row[KNOT_UNIT]
+    k, n, row = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q]
+    points, kept = given.points[given.offsets[k] :], found.kept[given.offsets[k] :]
     h = group.h[group.table[q, INTERVALS] + PAD :]
     for end in range(2):
         at, near, beyond, other = (0, 0, 1, 1) if end == 0 else (n - 1, n - 2, n - 3, n - 2)
         row[NATURAL + end] = 0.0
-        for axis in range(2):
-            field = QX if axis == 0 else QY
-            here = group.blocks[field + np.uint64(at // LANES * BLOCK + first + at % LANES)]
-            there = group.blocks[field + np.uint64(other // LANES * BLOCK + first + other % LANES)]
-            tau = given.tangents[k, end, axis] * scale
-            rest = here
+        if np.isnan(given.tangents[k, end, 0]) and n > 2:
+            row[NATURAL + end] = h[near] / (2.0 * h[near] + h[beyond])
+        for axis in range(points.shape[1]):
+            origin = points[kept[0], axis]
+            here = (points[kept[at], axis] - origin) * row[UNIT]
+            there = (points[kept[other], axis] - origin) * row[UNIT]
+            tau = given.tangents[k, end, axis] * row[UNIT] / row[KNOT_UNIT]
             if not np.isnan(tau):
                 rest = here + (1.0 if end == 0 else -1.0) * h[near] / 3.0 * tau
             elif n == 2:
                 rest = here + (there - here) / 3.0
             else:
-                row[NATURAL + end] = h[near] / (2.0 * h[near] + h[beyond])
                 rest = (1.0 - row[NATURAL + end]) * here
-            row[BASE + 2 * end + axis], row[END + 2 * end + axis] = rest, here
+            group.ends[4 * q + BESIDE + end, axis], group.ends[4 * q + LAST + end, axis] = rest, here
 
 
 @compiled
-def move(given: Given, group: Group, slots: int, b: int) -> None:
-    """P_i += p_i - C(t_i) for the control points of block b; those beside the ends of open arcs follow.
-
-    The values in the halos are replaced by :func:`fill_halos`.
-    """
-    block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
-    for lane in range(TWO, np.uint64(whole_vectors(lanes_used(group, slots, b))) + TWO):
-        block[PX + lane] += block[EX + lane]
-        block[PY + lane] += block[EY + lane]
-    if given.closed:
-        return
+def follow_ends(given: Given, group: Group, P: FloatArray, slots: int) -> None:
+    """The control points beside the ends of open arcs, which follow their neighbours, and those of the ends."""
+    d, size, table = given.points.shape[1], pairs_size(given.points.shape[1]), group.table
     for q in range(slots):
-        n, first, row = group.table[q, COUNT], group.table[q, LANE], group.numbers[q]
+        n, first = table[q, COUNT], table[q, LANE] + HALO
         for end in range(2):
             at, free, out = (0, 1, -1) if end == 0 else (n - 1, n - 2, 1)
-            if at // LANES != b:
-                continue
-            end_lane, next_lane = first + at % LANES + HALO, first + at % LANES + HALO + out
-            beside, outer, beyond = np.uint64(end_lane), np.uint64(next_lane), np.uint64(next_lane + out)
-            other = group.blocks[free // LANES * BLOCK : (free // LANES + 1) * BLOCK]
-            by = np.uint64(first + free % LANES + HALO)
-            block[PX + beside] = row[BASE + 2 * end] + row[NATURAL + end] * other[PX + by]
-            block[PY + beside] = row[BASE + 2 * end + 1] + row[NATURAL + end] * other[PY + by]
-            block[PX + outer], block[PY + outer] = row[END + 2 * end], row[END + 2 * end + 1]
-            block[PX + beyond], block[PY + beyond] = 0.0, 0.0
+            here, by = at // LANES * size + first + at % LANES, free // LANES * size + first + free % LANES
+            for axis in range(d):
+                step = axis * STRIDE
+                beside, weight = group.ends[4 * q + BESIDE + end, axis], group.numbers[q, NATURAL + end]
+                P[step + here] = beside + weight * P[step + by]
+                P[step + here + out] = group.ends[4 * q + LAST + end, axis]
+                P[step + here + 2 * out] = 0.0
 
 
 @compiled
@@ -244,9 +272,9 @@ def repeated(i: int, n: int, closed: bool) -> int:
 
 
 @compiled
-def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
+def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) -> None:
     """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed."""
-    block = group.blocks[b * BLOCK : (b + 1) * BLOCK]
+    d, size = given.points.shape[1], pairs_size(given.points.shape[1])
     for q in range(slots):
         n, first = group.table[q, COUNT], group.table[q, LANE]
         inside = min(LANES, n - b * LANES)
@@ -256,32 +284,43 @@ def fill_halos(given: Given, group: Group, slots: int, b: int) -> None:
             if i < 0:
                 continue
             owner = min(i, n - 1)
-            source = group.blocks
-            at = np.uint64(owner // LANES * BLOCK + first + owner % LANES + HALO + i - owner)
-            block[PX + np.uint64(to)], block[PY + np.uint64(to)] = source[PX + at], source[PY + at]
+            at = owner // LANES * size + first + owner % LANES + HALO + i - owner
+            for step in range(0, d * STRIDE, STRIDE):
+                P[b * size + to + step] = P[at + step]
 
 
 @compiled
-def close_ranks(group: Group, slots: int, done: int) -> int:
-    """Move the polygons that are not ``done`` to the front of their block, in order; returns their number."""
-    block, table, numbers = group.blocks, group.table, group.numbers
+def close_ranks(group: Group, P: FloatArray, Q: FloatArray, slots: int) -> int:
+    """Move the polygons that are not done to the front of their block, in order; returns their number."""
+    table, numbers, ends, d = group.table, group.numbers, group.ends, group.ends.shape[1]
     left, to = 0, 0
     end = table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO
     for q in range(slots):
-        if table[q, STATE] == done:
+        if table[q, DONE]:
             continue
         lane, size = table[q, LANE], table[q, COUNT] + 2 * HALO
-        for field in range(0, BLOCK, STRIDE):
-            back = np.uint64(lane - to)
-            for j in range(np.uint64(field + to), np.uint64(field + to + size)):
-                block[j] = block[j + back]
+        _move_lanes(group.blocks[:BLOCK], lane, to, size)
+        _move_lanes(P[: d * STRIDE], lane, to, size)
+        _move_lanes(Q[: d * STRIDE], lane, to, size)
         for c in range(TOTAL):
             table[left, c] = table[q, c]
         for c in range(numbers.shape[1]):
             numbers[left, c] = numbers[q, c]
+        for row in range(4):
+            for axis in range(d):
+                ends[4 * left + row, axis] = ends[4 * q + row, axis]
         table[left, LANE] = to
         left, to = left + 1, to + size
     for field in range(0, BLOCK, STRIDE):
         for j in range(np.uint64(field + to), np.uint64(field + end)):
-            block[j] = 0.0
+            group.blocks[j] = 0.0
     return left
+
+
+@compiled
+def _move_lanes(fields: FloatArray, lane: int, to: int, size: int) -> None:
+    """Copy ``size`` lanes of all fields to lanes before them."""
+    back = np.uint64(lane - to)
+    for field in range(0, fields.shape[0], STRIDE):
+        for j in range(np.uint64(field + to), np.uint64(field + to + size)):
+            fields[j] = fields[j + back]

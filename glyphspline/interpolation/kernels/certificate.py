@@ -12,11 +12,11 @@ from ...compiled import compiled, inlined
 from ...intrinsics import select
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
-from .blocks import DD, EX, EY, TWO, X
+from .blocks import DD, SECOND, TWO, X
 from .footpoint import ROUNDING, WORK, search_piece
 from .newton_simd import (
     BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein,
-    expanded, quartic, squares,
+    cubic, expanded, quartic, squares,
 )  # fmt: skip
 
 BEYOND = 1 + 1e-9
@@ -92,13 +92,16 @@ def _second_look(S: FloatArray, j: int) -> bool:
 
 @compiled
 def _search(
-    B: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float, c: FloatArray, work: FloatArray
-) -> bool:
+    B: FloatArray, P: FloatArray, N: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float,
+    c: FloatArray, work: FloatArray,
+) -> bool:  # fmt: skip
     """Search the main side, the other one, or both in full; whether the answer is certified there.
 
     D: the best so far, inf if that does not count. c, work: scratch arrays.
     """
     side, x, certified = S[SIDE + j], S[SIDE + j] * S[SY + j], True
+    ex = -cubic(S[SEX + j], S[SVX + j], S[SWX + j], S[SZX + j], S[SY + j])
+    ey = -cubic(S[SEY + j], S[SVY + j], S[SWY + j], S[SZY + j], S[SY + j])
     for turn in range(2):
         main = turn == 0
         if not (main_side if main else other_side):
@@ -114,15 +117,15 @@ def _search(
         certified &= whole
         if D_new < D or y != sign * x:
             x, D = sign * y, D_new
-            B[EX + j] = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
-            B[EY + j] = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
-    B[X + j] = x
-    B[DD + j] = B[EX + j] * B[EX + j] + B[EY + j] * B[EY + j]
+            ex = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
+            ey = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
+    B[X + j], B[DD + j] = x, ex * ex + ey * ey
+    N[j], N[SECOND + j] = P[j] + ex, P[SECOND + j] + ey
     return certified
 
 
 @compiled
-def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
+def flagged(B: FloatArray, P: FloatArray, N: FloatArray, S: FloatArray, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
     These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
@@ -142,6 +145,6 @@ def flagged(B: FloatArray, S: FloatArray, m: int) -> int:
         if not (main_side or other_side):
             continue
         searched += 1
-        certified = _search(B, S, j, main_side, other_side, np.inf if main_side else D, c, work)
+        certified = _search(B, P, N, S, j, main_side, other_side, np.inf if main_side else D, c, work)
         S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
     return searched

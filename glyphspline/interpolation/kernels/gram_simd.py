@@ -27,18 +27,11 @@ from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .blocks import (
-    DD, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, RATE, STRIDE, THIRD, THREE, TWO, X,
+    DD, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PAIR, RATE, SECOND, STRIDE, THIRD, THREE, TWO, X,
 )  # fmt: skip
 from .certificate import BEYOND, GIVEN_UP, SEARCHED, proven_in_parts
-from .footpoint import BERNSTEIN, reduce, search_piece
+from .footpoint import BERNSTEIN, WORK, reduce, search_piece
 from .newton_simd import GUARD, NEWTON_PASSES, least_quartic, least_rise, stepped
-
-PAIR = 2 * STRIDE
-"""Arrays of coordinates have a field of lanes for each: P of control points, Q of vertices, N of the next control
-points P_i + p_i - C(t_i). Coordinates are taken by twos, with one of zeros beside the last if d is odd.
-"""
-
-SECOND = np.uint64(STRIDE)
 
 # Fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and with D_{i-1} to
 # D_{i+2}; coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; the side as in
@@ -48,7 +41,6 @@ SECOND = np.uint64(STRIDE)
     G0, G1, G2, FF, FM, F0, F1, F2, H0, H1, H2, H3, H4, H5, VV, VW, WW, VZ, WZ, ROUGH, LOSS, SLO, SHI, SY, SIDE, DONE,
     OTHER, BAD, KM, K0, K1, K2, O1, O2, O3, O4, EE, ODOUBT, REACH, LEAST,
 ) = (np.uint64(k * STRIDE) for k in range(40))  # fmt: skip
-SPACE_SCRATCH = 40
 
 ROUNDINGS = 40
 """More than the number of roundings in a coefficient beside those of the sums over coordinates."""
@@ -323,16 +315,12 @@ def _proven_farther(S: FloatArray, j: int, D: float) -> bool:
 
 
 @compiled
-def flagged_space(
-    B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int, b: FloatArray,
-    c: FloatArray, work: FloatArray,
-) -> int:  # fmt: skip
+def flagged_space(B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int) -> int:
     """A second look at the vertices that were flagged, then a search in full; the number of those searched.
 
-    These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``. b, c, work: scratch arrays (4, d), (m, 4) with
-    m = min(d, 4), and ``WORK``.
+    These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
     """
-    searched = 0
+    searched, b, c, work = 0, np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(WORK)
     for j in range(TWO, np.uint64(m) + TWO):
         flag, y = S[BAD + j], S[SY + j]
         if flag == 0.0:

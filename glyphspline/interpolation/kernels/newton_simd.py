@@ -32,7 +32,7 @@ from ...compiled import compiled, inlined
 from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
-    DD, EX, EY, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PX, PY, QX, QY, RATE, STRIDE, THIRD, THREE, TWO, X,
+    DD, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, RATE, SECOND, STRIDE, THIRD, THREE, TWO, X,
 )  # fmt: skip
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
@@ -160,21 +160,21 @@ def squares(speed: float, ax: float, ay: float, c4: float, L: float) -> float:
 
 
 @compiled
-def _taylor(B: FloatArray, S: FloatArray, m: int) -> None:
+def _taylor(B: FloatArray, P: FloatArray, Q: FloatArray, S: FloatArray, m: int) -> None:
     """Derivatives at the knots from control points (see the module), main side chosen, into the scratch block."""
     wide_vectors()
     for j in range(ONE, np.uint64(m) + FOUR):
         r = B[RATE + j]
-        S[DX + j] = r * (B[PX + j] - B[PX + j - ONE])
-        S[DY + j] = r * (B[PY + j] - B[PY + j - ONE])
+        S[DX + j] = r * (P[j] - P[j - ONE])
+        S[DY + j] = r * (P[SECOND + j] - P[SECOND + j - ONE])
     for j in range(ONE, np.uint64(m) + THREE):
         s = B[HALF + j]
         S[SWX + j] = s * (S[DX + j + ONE] - S[DX + j])
         S[SWY + j] = s * (S[DY + j + ONE] - S[DY + j])
     for j in range(TWO, np.uint64(m) + TWO):
         a, b, lam = B[MOVE_A + j], B[MOVE_B + j], B[LAMBDA + j]
-        ex = fma(a, S[DX + j + ONE], fma(-b, S[DX + j], B[PX + j] - B[QX + j]))
-        ey = fma(a, S[DY + j + ONE], fma(-b, S[DY + j], B[PY + j] - B[QY + j]))
+        ex = fma(a, S[DX + j + ONE], fma(-b, S[DX + j], P[j] - Q[j]))
+        ey = fma(a, S[DY + j + ONE], fma(-b, S[DY + j], P[SECOND + j] - Q[SECOND + j]))
         vx = fma(lam, S[DX + j + ONE] - S[DX + j], S[DX + j])
         vy = fma(lam, S[DY + j + ONE] - S[DY + j], S[DY + j])
         low, high = B[LOW + j], B[HIGH + j]
@@ -226,8 +226,8 @@ def _newton(S: FloatArray, m: int) -> int:
 
 
 @compiled
-def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
-    """Write footpoints, errors p - C(t) and squared distances to the block; returns counts of flagged, not finite."""
+def _certify(B: FloatArray, P: FloatArray, N: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
+    """Write footpoints, squared distances and next control points; returns counts of flagged, not finite."""
     wide_vectors()
     bad, wild = 0, 0
     for j in range(TWO, np.uint64(m) + TWO):
@@ -254,19 +254,22 @@ def _certify(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
         S[BAD + j] = select(main, 1.0, 0.0) + select(other, 2.0, 0.0)
         bad += select(fails, 1, 0)
         wild += select(np.inf > D, 0, 1)
-        B[X + j] = S[SIDE + j] * y
-        B[EX + j], B[EY + j], B[DD + j] = -qx, -qy, D
+        B[X + j], B[DD + j] = S[SIDE + j] * y, D
+        N[j], N[SECOND + j] = P[j] - qx, P[SECOND + j] - qy
     return bad, wild
 
 
 @compiled
-def seek(B: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
-    """Write footpoints and errors to m lanes of a block; returns the numbers of flagged and of not finite ones.
+def seek(B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, m: int) -> tuple[int, int]:
+    """Write footpoints to m lanes of a block, and control points to N; returns counts of flagged and not finite ones.
 
     Where both ends of an interval are the same, the footpoint is that parameter.
+
+    Args:
+        B: the block's weights, intervals and footpoints; P, Q, N: its coordinates; S: scratch.
     """
-    _taylor(B, S, m)
+    _taylor(B, P, Q, S, m)
     for _ in range(NEWTON_PASSES):
         if _newton(S, m) == 0:
             break
-    return _certify(B, S, m)
+    return _certify(B, P, N, S, m)

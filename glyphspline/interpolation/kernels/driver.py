@@ -1,0 +1,261 @@
+"""The compiled driver of Algorithm 2: many cubic polygons in R^d in one call, variants 1 to 3, closed or open.
+
+Short polygons are iterated in groups, side by side in one block (:mod:`.blocks`). The passes over a block are
+:mod:`.newton_simd` in the plane and :mod:`.gram_simd` in space. A pass reads control points from P and writes the next
+ones to N; then P and N change places. Results do not depend on the other polygons of a group. A polygon that is done is
+stored, and the lanes of the others are compacted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import compiled
+from ...intrinsics import select
+from ...types import FloatArray
+from .blocks import (
+    BLOCK, COUNT, DD, DONE, FALLBACKS, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW,
+    NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO, UNCERTIFIED, UNIT,
+    WIDTH, Coordinates, Found, Given, Group, X, close_ranks, count_of_blocks, fill_halos, follow_ends, lanes_used,
+    pairs_size, place, whole_vectors,
+)  # fmt: skip
+from .certificate import GIVEN_UP, flagged
+from .certificate import SEARCHED as MARK
+from .gram_simd import BAD as SPACE_BAD
+from .gram_simd import flagged_space, seek_space
+from .lemma2 import fill_intervals
+from .newton_simd import BAD, seek
+from .vertices import FALLEN_BACK, ITERATIONS, OK, STATUS, knots_of, pad_intervals, prepare
+from .vertices import SEARCHED as SEARCHES
+from .vertices import UNCERTIFIED as GIVEN_UP_ON
+
+SPARSE = 0.75
+"""Share of the lanes in use below which they are compacted. Copying all fields takes a quarter of a pass."""
+
+
+@compiled
+def run(k0: int, k1: int, given: Given, found: Found, memory: FloatArray) -> FloatArray:
+    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
+
+    Args:
+        memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
+    """
+    group, at = _allocated(memory, given.points.shape[1])
+    history, residuals, used = np.empty(64), np.empty(64), 0
+    slots, lane, interval = 0, 0, 0
+    for k in range(k0, k1):
+        n, unit, knot_unit = prepare(given, found, k)
+        if n == 0:
+            continue
+        if slots > 0 and lane + n > LANES:
+            history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
+            slots, lane, interval = 0, 0, 0
+        _enter(given, found, group, slots, k, n, lane, interval, unit, knot_unit)
+        slots, lane, interval = slots + 1, lane + n + 2 * HALO, interval + n + 2 * PAD
+    if slots > 0:
+        history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
+    return residuals[:used]
+
+
+@compiled
+def _allocated(memory: FloatArray, d: int) -> tuple[Group, Coordinates]:
+    """Arrays for groups with up to as many vertices in R^d as the blocks in ``memory`` have lanes."""
+    size = pairs_size(d)
+    count = memory.shape[0] // (BLOCK + 3 * size)
+    group = Group(
+        memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
+        np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
+    )  # fmt: skip
+    first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
+    stop = third + count * size
+    return group, Coordinates(memory[first:second], memory[second:third], memory[third:stop])
+
+
+@compiled
+def _enter(
+    given: Given, found: Found, group: Group, q: int, k: int, n: int, lane: int, interval: int, unit: float,
+    knot_unit: float,
+) -> None:  # fmt: skip
+    """Make polygon k, with n vertices, number q of a group, at ``lane`` of the blocks and ``interval`` of h."""
+    row, u = group.table[q], knots_of(given, found, k, n)
+    pad_intervals(u, given.closed, knot_unit, group.h[interval:])
+    row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[DONE] = k, n, lane, interval, q, 0
+    row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
+    settled = given.settled * u[n - 1] / (n - 1) if given.settled > 0.0 else 0.0
+    numbers = group.numbers[q]
+    numbers[UNIT], numbers[KNOT_UNIT], numbers[LIMIT] = unit, knot_unit, max(given.tolerances[k], settled) * unit
+
+
+@compiled
+def _iterate(
+    given: Given, found: Found, group: Group, at: Coordinates, slots: int, history: FloatArray, residuals: FloatArray,
+    used: int,
+) -> tuple[FloatArray, FloatArray, int]:  # fmt: skip
+    """Iterate a group until all of its polygons are done, and store them.
+
+    Args:
+        history: room for errors; may be replaced by a larger array.
+        residuals: the errors of every pass go there, polygon after polygon, from ``used`` on.
+
+    Returns:
+        History, residuals, and how many of these are used now.
+    """
+    place(given, found, group, at, slots)
+    fill_intervals(given, group, slots)
+    table, every, left = group.table, slots, slots
+    while left > 0:
+        at = Coordinates(at.N, at.Q, at.P)
+        _one_pass(given, group, at, slots)
+        lanes = 0
+        for q in range(slots):
+            if table[q, DONE]:
+                continue
+            history = _grown(history, (table[q, PASSES] + 1) * every)
+            if _arrived(given, group, q, history, every):
+                _store(given, found, group, at.P, q)
+                left -= 1
+            else:
+                lanes += table[q, COUNT] + 2 * HALO
+        if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
+            slots = close_ranks(group, at.N, at.Q, slots)
+    for q in range(every):
+        count = table[q, TOTAL]
+        residuals = _grown(residuals, used + count)
+        for i in range(count):
+            residuals[used + i] = history[i * every + q]
+        used += count
+    return history, residuals, used
+
+
+@compiled
+def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
+    """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
+    S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
+    count, size, marks = count_of_blocks(group), pairs_size(d), BAD if d == 2 else SPACE_BAD
+    for q in range(slots):
+        numbers[q, LARGEST] = 0.0
+    if not given.closed:
+        follow_ends(given, group, at.P, slots)
+    for b in range(count):
+        fill_halos(given, group, at.P, slots, b)
+        block, here, stop = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * size, (b + 1) * size
+        P, Q, N = at.P[here:stop], at.Q[here:stop], at.N[here:stop]
+        m = whole_vectors(lanes_used(group, slots, b))
+        bad, wild = seek(block, P, Q, N, S, m) if d == 2 else seek_space(block, P, Q, N, S, d, m)
+        if wild > 0:
+            _pass_over(group, block, S, marks, slots, b)
+        searched = 0
+        if bad > 0:
+            searched = flagged(block, P, N, S, m) if d == 2 else flagged_space(block, P, Q, N, S, d, m)
+        _take_in(given, group, block, S, marks, slots, b, searched)
+        if count > 1 and numbers[0, LARGEST] == np.inf:
+            return
+
+
+@compiled
+def _pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int) -> None:
+    """Note which polygons have an error in block b that is not finite: they are not searched.
+
+    Args:
+        marks: where in S the flags of the vertices begin.
+    """
+    table, numbers = group.table, group.numbers
+    for q in range(slots):
+        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
+        for i in range(n):
+            if not np.inf > block[DD + np.uint64(first + i)]:
+                numbers[q, LARGEST] = np.inf
+        if numbers[q, LARGEST] == np.inf:
+            for i in range(n):
+                S[marks + np.uint64(first + i)] = 0.0
+            table[q, UNCERTIFIED] += n
+
+
+@compiled
+def _take_in(
+    given: Given, group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int, searched: int
+) -> None:
+    """Each polygon's largest squared error so far, with those of block b, and its searches if any were ``searched``."""
+    table, numbers, count = group.table, group.numbers, count_of_blocks(group)
+    for q in range(slots):
+        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
+        for i in range(n if searched > 0 else 0):
+            mark = S[marks + np.uint64(first + i)]
+            table[q, SEARCHED] += mark >= MARK
+            table[q, UNCERTIFIED] += mark == GIVEN_UP
+        open_end = 0 if given.closed else 1
+        low = open_end if b == 0 else 0
+        high = n - open_end if b + 1 == count else n
+        D = _largest(block, first + low, first + high) if high > low else 0.0
+        numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+
+
+@compiled
+def _largest(block: FloatArray, low: int, high: int) -> float:
+    """The largest squared distance in lanes low to high - 1, by four, as each comparison waits for the one before."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    start, stop = DD + np.uint64(low), DD + np.uint64(high)
+    quads = start + (stop - start) // FOUR * FOUR
+    for j in range(start, quads, FOUR):
+        w, x, y, z = block[j], block[j + ONE], block[j + TWO], block[j + THREE]
+        a, b, c, d = select(w > a, w, a), select(x > b, x, b), select(y > c, y, c), select(z > d, z, d)
+    for j in range(quads, stop):
+        a = select(block[j] > a, block[j], a)
+    a, c = select(b > a, b, a), select(d > c, d, c)
+    return select(c > a, c, a)
+
+
+@compiled
+def _arrived(given: Given, group: Group, q: int, history: FloatArray, every: int) -> bool:
+    """Record the error of polygon q; whether it is done."""
+    row, error = group.table[q], np.sqrt(group.numbers[q, LARGEST])
+    history[row[PASSES] * every + row[ORDER]] = error / group.numbers[q, UNIT]
+    row[PASSES] += 1
+    if np.inf > error and not error < group.numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
+        return False
+    row[DONE], group.table[row[ORDER], TOTAL] = 1, row[PASSES]
+    return True
+
+
+@compiled
+def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> None:
+    """Results of polygon q in the caller's units; its parameters are held from here on.
+
+    Units are powers of two: multiplying rounds no more than dividing.
+    """
+    k, n, numbers, d = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q], given.points.shape[1]
+    start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
+    kept, points, u = found.kept[start:], given.points[start:], knots_of(given, found, k, n)
+    size, lane0, unit, length = (
+        pairs_size(d),
+        group.table[q, LANE] + HALO,
+        1.0 / numbers[UNIT],
+        1.0 / numbers[KNOT_UNIT],
+    )
+    for i in range(n):
+        block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(lane0 + i % LANES)
+        for axis in range(d):
+            value = P[i // LANES * size + lane0 + i % LANES + axis * STRIDE]
+            found.controls[first + i, axis] = value * unit + points[kept[0], axis]
+        found.parameters[start + i] = u[i] + block[X + lane] * length
+        found.bounds[start + i, 0] = u[i] + block[LOW + lane] * length
+        found.bounds[start + i, 1] = u[i] + block[HIGH + lane] * length
+        block[LOW + lane] = block[HIGH + lane] = block[X + lane]
+    if not given.closed:
+        for axis in range(d):
+            found.controls[first - 1, axis] = points[kept[0], axis]
+            found.controls[first + n, axis] = points[kept[n - 1], axis]
+    row, out = group.table[q], found.whole[k]
+    out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, row[PASSES] - 1, row[FALLBACKS]
+    out[SEARCHES], out[GIVEN_UP_ON] = row[SEARCHED], row[UNCERTIFIED]
+    found.rates[k] = 2.0 * (1.0 - numbers[LEAST])
+
+
+@compiled
+def _grown(array: FloatArray, size: int) -> FloatArray:
+    """The array, or a larger one of at least ``size`` that begins with it."""
+    if array.shape[0] >= size:
+        return array
+    larger = np.empty(2 * size)
+    larger[: array.shape[0]] = array
+    return larger
