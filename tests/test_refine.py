@@ -13,8 +13,8 @@ from glyphspline.curves.curvature import comb
 from glyphspline.curves.integrals import shape
 from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.closed_curves import beziers, interpolated
-from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.faithful import faithful
+from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.smooth import steps
 from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import smooth_fits
