@@ -6,7 +6,8 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import spline_beziers
-from ..interpolation.batched import BatchedInterpolation, explain, interpolate_batch
+from ..interpolation.batched import explain, interpolate_batch
+from ..interpolation.compiled_batch import BatchedInterpolation
 from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.method import Fallback, Method, method_of
 from ..types import BoolArray, FloatArray, IntArray

@@ -196,7 +196,7 @@ class _Fits(NamedTuple):
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
         measured = [
             replace(result, new_crossings=count, collapsed=bool(lost))
-            for result, count, lost in zip(search.best, most, collapsed.any(axis=0), strict=True)
+            for result, count, lost in zip(search.best, most, np.any(collapsed, axis=0).tolist(), strict=True)
         ]
         return measured, search.kept
 
@@ -254,7 +254,7 @@ def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Ch
         for contours in ([result.source for result in results], [result.curve for result in results])
     )
     found = changes(source, written, np.arange(len(mixes) + 1) * len(results))
-    return Changes(*(values.reshape(len(mixes), -1) for values in found))
+    return Changes(found.new_crossings.reshape(len(mixes), -1), found.collapsed.reshape(len(mixes), -1))
 
 
 def check_options(options: Options) -> None:

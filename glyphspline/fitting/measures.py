@@ -13,7 +13,7 @@ from ..curves.fairness import curvature_extrema
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
-from ..interpolation.batched import BatchedInterpolation
+from ..interpolation.compiled_batch import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.sampling_limits import CORNER_ANGLE
@@ -54,7 +54,7 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
         parts: results of a batch and the indices of the chosen polygons in it, in the order of the contours.
     """
     counts, iterations, fallbacks = np.concatenate([found.whole[which, 1:4] for found, which in parts]).T
-    residuals = np.concatenate([found.residuals[found.residual_offsets[which + 1] - 1] for found, which in parts])
+    residuals = np.concatenate([found.last_residuals[which] for found, which in parts])
     tolerances = np.concatenate([found.tolerances[which] for found, which in parts])
     return {
         "vertices": counts.tolist(),

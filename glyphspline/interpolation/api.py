@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from ..curves.choices import Parametrisation
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import FloatArray
-from .batched import as_tangents, explain, interpolate_batch, over_threads
+from .batched import explain, interpolate_batch
+from .compiled_batch import as_tangents, over_threads
 from .driver import interpolate_any_degree, interpolate_any_vertex
 from .frozen import solved
 from .method import Fallback, Finish, Method, Tangents, method_of

@@ -17,17 +17,15 @@ from ..curves.bspline import Spline, full_knots, span_controls
 from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
+from .compiled_batch import as_tangents, filled, run_batch
 from .diagnostics import History, diagnose
 from .intervals import Intervals, arc_ends, search_intervals
 from .method import SETTLED, Method, Tangents
 from .polygon import as_tangent, clean_polygon
-from .result import Interpolation
+from .result import NOTHING_MERGED, Interpolation
 
 Pass = Callable[[FloatArray], tuple[FloatArray, FloatArray, float]]
 """From control points to footpoints, control points after the update, and the largest error before it."""
-
-
-NOTHING_MERGED = np.empty(0, dtype=np.int64)
 
 
 class Run(NamedTuple):
@@ -105,14 +103,13 @@ def _intervals(
 ) -> Intervals:
     """Search intervals: those of the compiled driver for cubics in the variants that it has, which is faster."""
     if method.degree == 3 and method.variant:
-        from .batched import as_tangents, interpolate_batch
-
         same = replace(
             method, variant=2 if method.variant == 4 else method.variant, knots=None,
             max_iterations=0, diagnostics=False,
         )  # fmt: skip
         ends = None if method.closed else as_tangents([tangents], p.shape[1])
-        found = interpolate_batch(p, np.array((0, len(p))), same, knots=u, end_tangents=ends)
+        shares = filled(1, method.peak_share)
+        found = run_batch(p, np.array((0, len(p))), same, peak_shares=shares, knots=u, end_tangents=ends)
         return Intervals(found.bounds[free], int(found.whole[0, 3]), float(found.rates[0]))
     first = free - ((method.degree + 1) // 2 if method.closed else 2)
     order = method.degree + 2

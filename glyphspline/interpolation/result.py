@@ -9,6 +9,8 @@ import numpy as np
 from ..curves.bspline import Spline
 from ..types import FloatArray, IntArray, counted
 
+NOTHING_MERGED = np.empty(0, dtype=np.int64)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Interpolation:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import BatchedInterpolation, interpolate_batch
+from glyphspline.interpolation.batched import interpolate_batch
+from glyphspline.interpolation.compiled_batch import BatchedInterpolation
 from glyphspline.interpolation.driver import interpolate_any_degree
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
