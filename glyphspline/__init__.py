@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .comparing.difference import Difference as Difference
     from .comparing.difference import Turn as Turn
     from .curves.bspline import Spline as Spline
-    from .dataset.dataset_run import dataset as dataset
-    from .dataset.dataset_spec import DatasetSpec as DatasetSpec
-    from .dataset.loading import Loaded as Loaded
-    from .dataset.loading import load as load
+    from .datasets.dataset_run import dataset as dataset
+    from .datasets.dataset_spec import DatasetSpec as DatasetSpec
+    from .datasets.loading import Loaded as Loaded
+    from .datasets.loading import load as load
     from .errors import FontError as FontError
     from .errors import GlyphsplineError as GlyphsplineError
     from .errors import OptionError as OptionError
@@ -68,16 +68,12 @@ if TYPE_CHECKING:
     from .writers.svg.document import to_svg as to_svg
     from .writers.ufo_folder import write_ufo as write_ufo
 
-for _room in ("dataset", "layout"):  # packages of those names, to which Python sets the attributes once
-    import_module(f".{_room}", __name__)
-    del globals()[_room]
-
 _ON_DEMAND = {
     "Apart": ".comparing.difference",
     "AxisKinks": ".checks.kinks",
     "Contour": ".outlines.outline",
     "ContourResult": ".fitting.results",
-    "DatasetSpec": ".dataset.dataset_spec",
+    "DatasetSpec": ".datasets.dataset_spec",
     "DesignAxis": ".outlines.masters",
     "Difference": ".comparing.difference",
     "Finding": ".checks.finding",
@@ -90,7 +86,7 @@ _ON_DEMAND = {
     "Kink": ".checks.kinks",
     "KinkReport": ".checks.kinks",
     "Layout": ".typesetting.placed",
-    "Loaded": ".dataset.loading",
+    "Loaded": ".datasets.loading",
     "MasterContour": ".outlines.masters",
     "Masters": ".outlines.masters",
     "MastersContourResult": ".fitting.convert_masters",
@@ -112,13 +108,13 @@ _ON_DEMAND = {
     "convert": ".fitting.convert",
     "convert_many": ".fitting.convert",
     "convert_masters": ".fitting.convert_masters",
-    "dataset": ".dataset.dataset_run",
+    "dataset": ".datasets.dataset_run",
     "interpolate": ".interpolation.api",
     "interpolate_many": ".interpolation.api",
     "interpolate_vertex": ".interpolation.api",
     "kinks": ".checks.kinks",
     "layout": ".typesetting.lay_out",
-    "load": ".dataset.loading",
+    "load": ".datasets.loading",
     "open_font": ".readers",
     "open_path": ".typesetting.path_file",
     "open_source": ".readers",

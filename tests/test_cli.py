@@ -23,7 +23,7 @@ from glyphspline.batch import RunSpec, locked
 from glyphspline.batch.summary import Facts, Summary
 from glyphspline.cli import app
 from glyphspline.cli.groups import grouped, without
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.datasets.dataset_spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.joins import share_of_corners

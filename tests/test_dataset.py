@@ -31,14 +31,14 @@ from glyphspline.batch.engine import Part, run
 from glyphspline.batch.pool import WorkerLostError
 from glyphspline.batch.spec import Limits
 from glyphspline.cli import app
-from glyphspline.dataset import plan, shards
-from glyphspline.dataset.card import command
-from glyphspline.dataset.chunk_rows import Made, RowsJob
-from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
-from glyphspline.dataset.licences import licence_of
-from glyphspline.dataset.plan import Plan, Task, plan_of
-from glyphspline.dataset.scan import SPLITS, FontFacts, split_of
-from glyphspline.dataset.shards import Shapes
+from glyphspline.datasets import plan, shards
+from glyphspline.datasets.card import command
+from glyphspline.datasets.chunk_rows import Made, RowsJob
+from glyphspline.datasets.dataset_spec import FIT, DatasetSpec
+from glyphspline.datasets.licences import licence_of
+from glyphspline.datasets.plan import Plan, Task, plan_of
+from glyphspline.datasets.scan import SPLITS, FontFacts, split_of
+from glyphspline.datasets.shards import Shapes
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 
 FONTS = Path(__file__).parent.parent / "fonts_test"
@@ -98,8 +98,8 @@ def test_the_bytes_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> Non
 MAKE = """
 import sys, time
 import glyphspline as gs
-from glyphspline.dataset import plan, shards
-from glyphspline.dataset.dataset_spec import FIT, DatasetSpec
+from glyphspline.datasets import plan, shards
+from glyphspline.datasets.dataset_spec import FIT, DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)

@@ -17,13 +17,13 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.integrals import area
-from glyphspline.dataset import loading
-from glyphspline.dataset import schema as columns
-from glyphspline.dataset.chunk_rows import empty_table
-from glyphspline.dataset.dataset_columns import ABOUT
-from glyphspline.dataset.dataset_spec import DatasetSpec
-from glyphspline.dataset.rows import fits_of, table_of
-from glyphspline.dataset.schema import contour_types, schema
+from glyphspline.datasets import loading
+from glyphspline.datasets import schema as columns
+from glyphspline.datasets.chunk_rows import empty_table
+from glyphspline.datasets.dataset_columns import ABOUT
+from glyphspline.datasets.dataset_spec import DatasetSpec
+from glyphspline.datasets.rows import fits_of, table_of
+from glyphspline.datasets.schema import contour_types, schema
 from glyphspline.fitting.results import Measures
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.outlines.resampling import resampled

@@ -42,10 +42,10 @@ PLAN = {
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
     "batch": WRITERS | {"matching", "comparing", "report"},
-    "dataset": WRITERS | {"report", "batch"},
+    "datasets": WRITERS | {"report", "batch"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"comparing", "report", "batch", "dataset", "viewer"},
+    "cli": WRITERS | {"comparing", "report", "batch", "datasets", "viewer"},
     "fontspector": WRITERS | {"batch", "cli"},
     "__main__": {"cli"},
 }

@@ -18,9 +18,9 @@ from typing import BinaryIO
 import pytest
 
 from glyphspline.batch import find_fonts, remote
-from glyphspline.dataset import plan, store
-from glyphspline.dataset.dataset_run import dataset
-from glyphspline.dataset.dataset_spec import DatasetSpec
+from glyphspline.datasets import plan, store
+from glyphspline.datasets.dataset_run import dataset
+from glyphspline.datasets.dataset_spec import DatasetSpec
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
 
 pytestmark = pytest.mark.needs("fsspec", "s3fs", "localbucket")

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..dataset.dataset_spec import ROWS, TAKEN, DatasetSpec
+from ..datasets.dataset_spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
 from . import arguments as opt
 from .groups import grouped, only, place
@@ -46,7 +46,7 @@ def dataset(
 
     Splits are by family. The same fonts and options give the same bytes, and a run that was interrupted goes on.
     """
-    from ..dataset.dataset_run import dataset as make
+    from ..datasets.dataset_run import dataset as make
 
     if not fit:
         spec = replace(spec, options=None)

@@ -60,7 +60,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
 
     Example:
         >>> from glyphspline import open_font
-        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
+        >>> from glyphspline.datasets.dataset_spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
         2

@@ -46,8 +46,8 @@ def load(row: Mapping[str, Any]) -> Loaded:
 
     Example:
         >>> from glyphspline import load, open_font
-        >>> from glyphspline.dataset.rows import table_of
-        >>> from glyphspline.dataset.dataset_spec import DatasetSpec
+        >>> from glyphspline.datasets.rows import table_of
+        >>> from glyphspline.datasets.dataset_spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> row, = table_of(outlines, None, DatasetSpec(options=None)).to_pylist()
         >>> load(row).outline

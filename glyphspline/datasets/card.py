@@ -163,7 +163,7 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
     yield "## Columns"
     yield ""
     metadata = schema.metadata or {}
-    if (version := metadata.get(b"glyphspline.dataset.schema")) is not None:
+    if (version := metadata.get(b"glyphspline.datasets.schema")) is not None:
         yield f"Schema version {version.decode()}."
         yield ""
     if spec.rows == "glyph":

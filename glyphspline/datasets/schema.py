@@ -46,7 +46,7 @@ def schema(spec: DatasetSpec) -> Any:
     if spec.raster is not None:
         kinds["raster"] = pa.list_(pa.list_(pa.uint8(), spec.raster), spec.raster)
     said = {"schema": str(SCHEMA_VERSION), "rows": spec.rows, "unit": unit}
-    metadata = {f"glyphspline.dataset.{name}": value for name, value in said.items()}
+    metadata = {f"glyphspline.datasets.{name}": value for name, value in said.items()}
     return pa.schema([field(name, kind) for name, kind in kinds.items()], metadata=metadata)
 
 
