@@ -10,6 +10,7 @@ This module is imported before the compiled code: jobs import what they need wit
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -57,7 +58,7 @@ class Part(Generic[Task, Result]):
     seconds: float = 0.0
 
 
-class Job(Generic[Task, Result]):
+class Job(ABC, Generic[Task, Result]):
     """What a run does with its tasks: a frozen dataclass of what a worker needs to know, pickled for each call.
 
     Attributes:
@@ -72,17 +73,17 @@ class Job(Generic[Task, Result]):
         """Read tasks, in a worker: an item for each, or why it cannot be read."""
         return [Item(task) for task in tasks]
 
+    @abstractmethod
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Result:
         """Do a batch of tasks, in a worker.
 
         Raises:
             OutputError: the output folder cannot be written to; every other task would fail too.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def failed(self, task: Task, error: Exception) -> Result:
         """The result of a task that could not be read or done, or whose worker was lost."""
-        raise NotImplementedError
 
     def failures(self, result: Result) -> int:
         """Number of tasks of a result that failed."""
