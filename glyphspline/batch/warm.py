@@ -84,7 +84,9 @@ def warm(
 
 def _prepare_quietly(kind: str) -> None:
     """Prepare without saying that code is being compiled, which the process for the first kind says."""
-    os.environ["GLYPHSPLINE_QUIET"] = "1"
+    from ..compiled import QUIET
+
+    os.environ[QUIET] = "1"
     prepare(kind)
 
 
