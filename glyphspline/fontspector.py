@@ -71,9 +71,9 @@ def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
     from typer.main import get_command
 
-    from .batch.check_fonts import check_fonts
     from .cli import commands
     from .cli.check_outputs import asked_of
+    from .runs.check_fonts import check_fonts
 
     command: Any = get_command(commands.app)
     check: Any = commands.check

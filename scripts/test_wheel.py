@@ -61,7 +61,7 @@ if "COMPILATIONS" in os.environ:
 INTERPOLATE = "import glyphspline as gs; print(gs.interpolate([[0, 0], [9, 1], [8, 9], [-1, 7]]).spline.control_points)"
 
 AREA = (
-    "from glyphspline.batch.warm import DISC; from glyphspline.curves.integrals import area; print(area(DISC.cubics()))"
+    "from glyphspline.runs.warm import DISC; from glyphspline.curves.integrals import area; print(area(DISC.cubics()))"
 )
 """A program that compiles little."""
 

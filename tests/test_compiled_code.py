@@ -167,7 +167,7 @@ def test_it_runs_as_plain_python_without_a_compiler(tmp_path: Path) -> None:
     """Fits of small contours, in both modes: the same numbers but for products that compiled code rounds once."""
     code = (
         "import json, sys, numpy as np, glyphspline as gs\n"
-        "from glyphspline.batch.warm import DISC, LEAF\n"
+        "from glyphspline.runs.warm import DISC, LEAF\n"
         "from glyphspline.compiled import everything\n"
         "points = np.random.default_rng(1).random((9, 2))\n"
         "spline = gs.interpolate(points, finish='solve').spline.control_points\n"
@@ -231,7 +231,7 @@ def test_warm_reaches_every_function() -> None:
     """No function is left for a later command to compile."""
     code = (
         "import importlib, pkgutil, glyphspline\n"
-        "from glyphspline.batch.warm import WORK, prepare\n"
+        "from glyphspline.runs.warm import WORK, prepare\n"
         "for kind in WORK: prepare(kind)\n"
         "for module in pkgutil.walk_packages(glyphspline.__path__, 'glyphspline.'):\n"
         "    if '__main__' not in module.name: importlib.import_module(module.name)\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import glyphspline as gs
+from tests.places import ROOT
 
-ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 PAGES = sorted({*ROOT.glob("*.md"), *DOCS.glob("*.md"), ROOT / "outputs" / "paper" / "README.md"})
 

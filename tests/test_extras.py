@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from glyphspline.extras import EXTRAS
+from tests.places import FONTS, ROOT
 
-ROOT = Path(__file__).parents[1]
-FONT = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+FONT = str(FONTS / "kouzan-gyosho.ttf")
 
 COMMANDS = {
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],

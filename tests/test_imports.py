@@ -14,7 +14,9 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parent.parent / "glyphspline"
+from tests.places import ROOT
+
+PACKAGE = ROOT / "glyphspline"
 
 BASE = {"compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
@@ -41,12 +43,12 @@ PLAN = {
     "typesetting": FITTING | {"readers"},
     "writers": WRITERS,
     "report": WRITERS | {"comparing"},
-    "batch": WRITERS | {"matching", "comparing", "report"},
-    "datasets": WRITERS | {"report", "batch"},
+    "runs": WRITERS | {"matching", "comparing", "report"},
+    "datasets": WRITERS | {"report", "runs"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"comparing", "report", "batch", "datasets", "viewer"},
-    "fontspector": WRITERS | {"batch", "cli"},
+    "cli": WRITERS | {"comparing", "report", "runs", "datasets", "viewer"},
+    "fontspector": WRITERS | {"runs", "cli"},
     "__main__": {"cli"},
 }
 """What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""
@@ -134,7 +136,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.commands, glyphspline.batch.check_run, glyphspline.batch.font_run\n"
+        "import sys, glyphspline.cli.commands, glyphspline.runs.check_run, glyphspline.runs.font_run\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )

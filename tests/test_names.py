@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import doctest
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import glyphspline as gs
+from tests.places import ROOT
 
-ROOT = Path(__file__).parent.parent
 FONT = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
 
 EXPLAINED = (

@@ -10,12 +10,12 @@ from typing import Any, get_args
 
 import typer
 
-from ..batch.check_fonts import Asked, Face, check_fonts, worst_first
-from ..batch.check_run import STEPS
 from ..checks.baseline import Baseline
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError, OutputError
 from ..files import writing
+from ..runs.check_fonts import Asked, Face, check_fonts, worst_first
+from ..runs.check_run import STEPS
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
 from .findings import as_csv, as_json, as_markdown, sentences, table
@@ -40,7 +40,7 @@ def run(
     Raises:
         GlyphsplineError: an option or a file of it is of no use.
     """
-    from ..batch import find_fonts
+    from ..runs import find_fonts
 
     piped = [path for path in (report.csv, report.ghmarkdown, report.html) if path == STDOUT]
     if len(piped) + run.as_json > 1:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .text_table import plain
 
 if TYPE_CHECKING:
-    from ..batch import Summary
+    from ..runs import Summary
 
 FAILURES = 3
 """Glyphs of a font that are named below the table."""
@@ -97,7 +97,7 @@ def outside(run: FontRun) -> int:
 
 def missing_words(missing: Sequence[str], shown: int = 10) -> str:
     """What a font does not have: code points with their characters, the first few and the number of the others."""
-    from ..batch.summary import listed
+    from ..runs.summary import listed
 
     return listed([_with_character(phrase) for phrase in missing[:shown]], len(missing))
 

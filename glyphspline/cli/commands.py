@@ -12,9 +12,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..batch.spec import RunSpec
 from ..fields import WRITTEN
 from ..fitting.options import Options
+from ..runs.spec import RunSpec
 from ..writers.settings import Maps, Settings
 from . import arguments as opt
 from . import interruption
@@ -67,7 +67,7 @@ def convert(
         call = replace(call, spec=replace(spec, masters=True))
         check_masters(call, single, each)
     with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
-        from ..batch import find_fonts
+        from ..runs import find_fonts
 
         found = find_fonts(fonts)
         if not found:
@@ -153,9 +153,9 @@ def info(
 
 def look_deep(font: Path, facts: dict[str, Any]) -> None:
     """Add what needs all outlines, with progress on a terminal."""
-    from ..batch.jobs.deep_facts import add_glyph_facts
-    from ..batch.schedule import workers
     from ..readers.open import STDIN, standard_input
+    from ..runs.jobs.deep_facts import add_glyph_facts
+    from ..runs.schedule import workers
 
     path = standard_input() if str(font) == STDIN else font
     # In processes with a time limit: counting the contours of a hostile font can take years.
@@ -172,7 +172,7 @@ def report(
 
     A run without the format gallery is named, with the command that adds it.
     """
-    from ..batch import write_gallery
+    from ..runs import write_gallery
 
     write_gallery(folder)
     typer.echo(folder / "index.html")
@@ -207,8 +207,8 @@ def atlas(
     With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
-    from ..batch import make_atlas, make_axis_atlas
     from ..readers import open_source
+    from ..runs import make_atlas, make_axis_atlas
 
     if axis is not None and (profiles is not None or maps.corner_teeth):
         stop("--profiles and --corner-teeth are of an atlas without --axis")
@@ -283,7 +283,7 @@ def diff(
     one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
     for.
     """
-    from ..batch import compare_fonts
+    from ..runs import compare_fonts
     from . import comparing_fonts as comparing
 
     sources = comparing.open_both(old, new, instance)
@@ -334,9 +334,9 @@ def demo(
     out: opt.Out = Path("outputs/demo"),
 ) -> int:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
-    from ..batch.preload import kinds_for
-    from ..batch.warm import warm as warm_up
     from ..readers import open_source
+    from ..runs.preload import kinds_for
+    from ..runs.warm import warm as warm_up
 
     failed, shown, spec = 0, [], RunSpec()
     warm_up(run.jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
@@ -362,7 +362,7 @@ def demo(
 @grouped
 def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""
-    from ..batch.warm import warm as compile_all
+    from ..runs.warm import warm as compile_all
 
     with progress(run.quiet, compiling=True) as observer:
         compile_all(run.jobs, observer)

@@ -14,9 +14,9 @@ from . import arguments as opt
 from .text_table import plain
 
 if TYPE_CHECKING:
-    from ..batch import FontDifference
-    from ..batch.font_difference import Pairs
     from ..readers import Source
+    from ..runs import FontDifference
+    from ..runs.font_difference import Pairs
 
 DRAWN = 500
 """Glyphs on a page, the worst first."""
@@ -54,7 +54,7 @@ def chosen_pairs(old: Source, new: Source, subset: opt.Subset) -> Pairs:
     Raises:
         GlyphsplineError: neither has any of them.
     """
-    from ..batch import pairs_of
+    from ..runs import pairs_of
 
     if not subset.is_given or subset.all_glyphs:
         return pairs_of(old, new)

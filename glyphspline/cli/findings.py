@@ -18,9 +18,9 @@ from .messages import printable
 from .text_table import plain
 
 if TYPE_CHECKING:
-    from ..batch.check_fonts import Face
     from ..checks.finding import Finding
     from ..checks.kinds import Thresholds
+    from ..runs.check_fonts import Face
 
 MARKDOWN_ROWS = 200
 """Findings in Markdown: GitHub takes 65,536 characters."""

@@ -40,8 +40,8 @@ def _wait(ours: socket.socket, theirs: socket.socket) -> None:
 def end() -> None:
     """Kill the worker processes, remove the copy of standard input, make the terminal usable, say so and exit."""
     with suppress(Exception):
-        if "glyphspline.batch.pool" in sys.modules:
-            from ..batch.pool import kill_all
+        if "glyphspline.runs.pool" in sys.modules:
+            from ..runs.pool import kill_all
 
             kill_all()
         if "glyphspline.readers.open" in sys.modules:

@@ -18,8 +18,8 @@ from .progress import json_lines, progress
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..batch import RunSpec, Summary
     from ..readers import Source
+    from ..runs import RunSpec, Summary
     from .closing import FontRun
 
 LOOKED_AT = 64
@@ -45,7 +45,7 @@ class Conversion:
 @contextmanager
 def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
     """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
-    from ..batch.schedule import workers
+    from ..runs.schedule import workers
 
     with workers(
         jobs, spec.limits.seconds, spec.options, spec.formats, 1, spec.masters, scheduler=scheduler
@@ -58,8 +58,8 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
-    from ..batch import OutputError, faces_of, folders_for, locked
     from ..errors import GlyphsplineError
+    from ..runs import OutputError, faces_of, folders_for, locked
     from .closing import FontRun
 
     face_index, folders = call.instance.face_index, [call.out]
@@ -119,8 +119,8 @@ def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None
 
 def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
     """Convert a variable font, or single fonts that become one, in all masters; whether a glyph failed."""
-    from ..batch import convert_font_masters
     from ..readers import open_source
+    from ..runs import convert_font_masters
 
     if len(fonts) != 1:
         stop("--masters takes one font")
@@ -148,8 +148,8 @@ def run_face(
     source: Source, names: Sequence[str], call: Conversion, executor: Executor, name: str | None = None
 ) -> Summary:
     """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
-    from ..batch import convert_font
     from ..report.gallery_files import FOLDER as GALLERY
+    from ..runs import convert_font
 
     run, out = call.run, call.out
     with json_lines() if run.json_log else progress(run.quiet) as observer:
@@ -168,10 +168,10 @@ def run_face(
 
 def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec, executor: Executor) -> bool:
     """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
-    from ..batch.jobs.glyphs import Task
-    from ..batch.jobs.survey import corners_of
-    from ..batch.places import side_of
     from ..errors import GlyphsplineError
+    from ..runs.jobs.glyphs import Task
+    from ..runs.jobs.survey import corners_of
+    from ..runs.places import side_of
 
     if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
         return False

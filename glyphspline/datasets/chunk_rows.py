@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..batch.engine import Item, Job, reason
-from ..batch.jobs.convert import ConvertJob
-from ..batch.places import Place, sources
-from ..batch.spec import Limits
 from ..errors import GlyphsplineError
 from ..extras import need
 from ..outlines.outline import FontMetrics, Outline
+from ..runs.engine import Item, Job, reason
+from ..runs.jobs.convert import ConvertJob
+from ..runs.places import Place, sources
+from ..runs.spec import Limits
 from .dataset_spec import DatasetSpec
 from .plan import Task
 from .scan import FontFacts, category_of, script_of, selected
@@ -46,7 +46,7 @@ class RowsJob(Job[Task, Made]):
 
     def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
         """Outlines; one that is too large is an error."""
-        from ..batch.worker import items
+        from ..runs.worker import items
 
         place = tasks[0].font.place
         (source,), gids = sources(place), _selected(place, self.spec)

@@ -12,12 +12,12 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from ..batch.engine import Observer, run
-from ..batch.font_search import find_fonts
-from ..batch.schedule import workers
-from ..batch.spec import Limits, differences
 from ..errors import OptionError, OutputError
 from ..extras import need
+from ..runs.engine import Observer, run
+from ..runs.font_search import find_fonts
+from ..runs.schedule import workers
+from ..runs.spec import Limits, differences
 from . import store
 from .card import card, fonts_file
 from .chunk_rows import Made, RowsJob, empty_table

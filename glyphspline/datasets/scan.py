@@ -9,9 +9,9 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..batch.engine import Job, reason
-from ..batch.places import Place
 from ..errors import GlyphsplineError
+from ..runs.engine import Job, reason
+from ..runs.places import Place
 from .dataset_spec import DatasetSpec
 from .licences import UNKNOWN, licence_of
 

@@ -9,9 +9,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
-from ..batch import remote
-from ..batch.lock import locked
 from ..files import make_folder, remove_partials, replacing, writing
+from ..runs import remote
+from ..runs.lock import locked
 
 Content: TypeAlias = bytes | Callable[[BinaryIO], None]
 """What is in a file, or what writes it."""

@@ -16,7 +16,7 @@ import numba
 from numba.core.registry import cpu_target
 
 from glyphspline import compiled
-from glyphspline.batch.warm import WORK, prepare, warm
+from glyphspline.runs.warm import WORK, prepare, warm
 
 
 def main() -> None:

@@ -14,11 +14,11 @@ import pytest
 from playwright.sync_api import expect, sync_playwright
 
 import glyphspline as gs
-from glyphspline.batch import RunSpec, convert_font, write_gallery
+from glyphspline.runs import RunSpec, convert_font, write_gallery
+from tests.places import FONTS
 
 from ..variable_fonts import WEIGHT, quadratic, variable_font
 
-FONTS = Path(__file__).parents[2] / "fonts_test"
 PATIENCE = 60_000
 """Milliseconds: a slow machine is not an error, and what never comes fails all the same."""
 

@@ -7,9 +7,9 @@ import pytest
 from typer.testing import CliRunner
 
 from glyphspline.cli import app
+from tests.places import FONTS
 
 from ..faulty_drawings import drawings, turning
-from .conftest import FONTS
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,8 @@ import pytest
 import glyphspline as gs
 from glyphspline.typesetting.along_path import along, letters_of
 from glyphspline.typesetting.path_file import open_path
+from tests.places import FONTS
 
-FONTS = Path(__file__).parents[2] / "fonts_test"
 POSITIONS = """() => {
   const text = document.querySelector("text");
   return [...Array(text.getNumberOfChars()).keys()].map(i => {

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 import glyphspline as gs
+from tests.places import GYOSHO as FONT
 
-FONT = Path(__file__).parents[2] / "fonts_test" / "kouzan-gyosho.ttf"
 RESULT = "#picture .result"
 
 

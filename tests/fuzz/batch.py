@@ -16,9 +16,10 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from tests.places import ROOT
+
 from .mutants import mutant
 
-ROOT = Path(__file__).parents[2]
 PATIENCE = 20.0
 """Seconds that a font may take on average before it counts as a hang."""
 

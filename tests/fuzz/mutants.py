@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import random
 import struct
-from pathlib import Path
 
-FONTS = Path(__file__).parents[2] / "fonts_test"
+from tests.places import FONTS
+
 SEEDS = [path for path in sorted(FONTS.iterdir()) if path.suffix in (".ttf", ".otf", ".ttc", ".woff2")]
 
 EXTREMES = [0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x8000, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF]

@@ -1,0 +1,396 @@
+"""The shell, mostly from within; a few calls as a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from itertools import chain
+from pathlib import Path
+from typing import Annotated, Any
+
+import pytest
+import typer
+from fontTools.ttLib import TTFont
+from typer.testing import CliRunner, Result
+
+import glyphspline
+from glyphspline import Outline, open_font
+from glyphspline.cli import app
+from glyphspline.cli.groups import grouped, without
+from glyphspline.datasets.dataset_spec import DatasetSpec
+from glyphspline.fields import arguments, options_of
+from glyphspline.fitting.options import Options
+from glyphspline.outlines.joins import share_of_corners
+from glyphspline.runs import RunSpec, locked
+from glyphspline.runs.summary import Facts, Summary
+from glyphspline.writers.settings import Maps, Settings
+from glyphspline.writers.svg.appearance import Appearance
+from tests.places import ROOT
+from tests.polygons import circle_contour, square_contour
+from tests.runs.test_batch import content
+
+FONTS = ROOT / "fonts_test"
+FONT = str(FONTS / "kouzan-gyosho.ttf")
+runner = CliRunner()
+
+
+def test_convert_writes_what_it_says(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    result = runner.invoke(app, ["convert", FONT, "--text", "O \n龘", "--step", "90", "--out", str(out), "--jobs", "0"])
+    assert result.exit_code == 0, result.output
+    assert result.stdout == ""
+    assert "not in the font: U+9F98" in result.stderr
+    assert re.search(r"1 glyph and 1 empty in [0-9.]+ s; open .*index.html", result.stderr)
+    assert (out / "svg" / "O.svg").exists()
+    assert (out / "index.html").exists()
+    options = json.loads((out / "run.json").read_text())["options"]
+    assert (options["step"], options["variant"], options["margin"]) == (90, 2, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--preset", "paper"], ("smooth", 0.0, "fast")),
+        (["--preset", "type", "--corners", "sharp"], ("sharp", 0.02, "best")),
+        (["--preset", "type", "--corners", "smooth"], ("smooth", 0.02, "best")),
+        (["--preset", "type", "--effort", "fast"], ("sharp", 0.02, "fast")),
+        (["--preset", "paper", "--margin", "0.02"], ("smooth", 0.02, "fast")),
+        (["--preset", "paper", "--corners", "sharp"], ("sharp", 0.0, "fast")),
+    ],
+)
+def test_presets_set_options_together_and_options_given_beside_them_win(
+    arguments: list[str], expected: tuple[object, ...], tmp_path: Path
+) -> None:
+    out = ["--format", "svg", "--out", str(tmp_path / "out"), "--jobs", "0"]
+    assert runner.invoke(app, ["convert", FONT, "--text", "O", *arguments, *out]).exit_code == 0
+    options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
+    assert (options["corners"], options["margin"], options["effort"]) == expected
+
+
+@pytest.mark.parametrize("more", [[], ["--preset", "type"]])
+def test_options_of_a_file_win_over_a_preset(more: list[str], tmp_path: Path) -> None:
+    preset = "" if more else 'preset = "type"\n'
+    (tmp_path / "mine.toml").write_text(f'{preset}corners = "smooth"\nformat = "svg"\njobs = 0\n')
+    given = ["--config", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out"), *more]
+    assert runner.invoke(app, ["convert", FONT, "--text", "O", *given]).exit_code == 0
+    options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
+    assert (options["corners"], options["effort"]) == ("smooth", "best")
+
+
+def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -> None:
+    options = Options(corners="sharp", tolerance=2.5, measure=True)
+    spec = RunSpec(options, ("svg",), Settings(Appearance(fill="red"), dxf="polyline"), maps=Maps("source"))
+    words = [*chain(*arguments(spec, RunSpec()).values())]
+    assert words == [
+        "--tolerance", "2.5", "--corners", "sharp", "--measure", "--format", "svg", "--fill", "red",
+        "--dxf", "polyline", "--comb", "source",
+    ]  # fmt: skip
+    found = []
+
+    @grouped
+    def command(made: Annotated[RunSpec, without("em")]) -> None:
+        found.append(made)
+
+    only = typer.Typer()
+    only.command()(command)
+    assert runner.invoke(only, words).exit_code == 0
+    assert found == [spec]
+
+
+@pytest.mark.parametrize("kind", [Options, RunSpec, Settings, Maps, Appearance, DatasetSpec])
+def test_help_is_a_sentence(kind: type) -> None:
+    for one in options_of(kind):
+        assert re.fullmatch(r"[A-Z][a-z]+ .*[.)]", one.about.help), one.name
+
+
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_a_hint_says_that_outlines_are_mostly_corners(corners: str, tmp_path: Path) -> None:
+    source = open_font(FONT)
+    assert share_of_corners([source.outline(name) for name in source.select(text="永")]) > 0.5
+    output = ["--out", str(tmp_path / "out"), "--jobs", "0", "--format", "svg"]
+    said = runner.invoke(app, ["convert", FONT, "--text", "永", "--corners", corners, *output]).stderr
+    assert ("--preset type" in said) == (corners == "smooth")
+
+
+def test_joints_that_are_corners_or_end_lines_are_counted() -> None:
+    square, circle = (Outline("x", contours=(contour,)) for contour in (square_contour(), circle_contour()))
+    assert share_of_corners([square]) == 1.0
+    assert share_of_corners([circle]) == 0.0
+    corners, joints = len(square.arrays.degrees), len(circle.arrays.degrees)
+    assert share_of_corners([square, circle]) == corners / (corners + joints)
+    assert share_of_corners([]) == 0.0
+
+
+def test_quiet_says_nothing(tmp_path: Path) -> None:
+    arguments = ["convert", FONT, "--gids", "1,6", "--count", "30", "--out", str(tmp_path / "o"), "--jobs", "0", "-q"]
+    result = runner.invoke(app, [*arguments, "--format", "svg"])
+    assert (result.exit_code, result.output) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([FONT], "no glyphs asked for"),
+        ([FONT, "--text", "龘"], "none of the glyphs"),
+        ([FONT, "--unicodes", "zz"], "no code point"),
+        ([FONT, "--all", "--step", "9", "--count", "9"], "one of tolerance, step and count"),
+        ([FONT, "--all", "--format", "bmp"], "no format bmp"),
+        ([FONT, "--all", "--face-index", "1"], "no face 1"),
+        ([FONT, "--all", "--location", "wght=700"], "not a variable font"),
+        ([FONT, "--all", "--location", "wght=bold"], "--location"),
+        ([FONT, "--all", "--location", "Bold"], "no named instance"),
+        ([str(ROOT / "LICENSE"), "--all"], "not a TTF"),
+        (["missing.ttf", "--all"], "missing.ttf"),
+        ([FONT, "--text-file", "missing.txt"], "missing.txt"),
+        ([FONT, "--all", "--variant", "7"], "variant"),
+        ([FONT, "--all", "--preset", "type", "--step", "9"], "give a tolerance"),
+    ],
+)
+def test_an_unusable_call_ends_with_2_and_a_reason(arguments: list[str], words: str, tmp_path: Path) -> None:
+    result = runner.invoke(app, ["convert", *arguments, "--out", str(tmp_path / "out"), "--jobs", "0"])
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert "Traceback" not in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_info_of_a_collection_and_of_a_variable_font() -> None:
+    facts = json.loads(runner.invoke(app, ["info", str(FONTS / "kouzan.ttc"), "--json"]).stdout)
+    assert (facts["format"], facts["faces"], len(facts["fonts"])) == ("collection", 2, 2)
+    assert facts["fonts"][0]["glyphs"] == 18
+    words = runner.invoke(app, ["info", str(FONTS / "variable.ttf")]).stdout
+    assert "axis wght" in words
+    assert "8 glyphs" in words
+
+
+def test_report_writes_the_index_anew(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    runner.invoke(app, ["convert", FONT, "--text", "O", "--step", "90", "--out", str(out), "--jobs", "0"])
+    before = (out / "index.html").read_bytes()
+    (out / "index.html").unlink()
+    assert runner.invoke(app, ["report", str(out)]).exit_code == 0
+    assert (out / "index.html").read_bytes() == before
+    assert runner.invoke(app, ["report", str(tmp_path)]).exit_code == 0  # a folder of runs has an index of its own
+    assert '"runs":["out"]' in (tmp_path / "index.html").read_text()
+    (tmp_path / "empty").mkdir()
+    assert runner.invoke(app, ["report", str(tmp_path / "empty")]).exit_code == 2
+
+
+def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "out"
+    options = ["--text", "O", "--step", "90", "--out", str(out), "--jobs", "0", "--format", "svg"]
+    assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
+    assert not (out / "index.html").exists()
+    result = runner.invoke(app, ["report", str(out)])
+    assert result.exit_code == 2
+    monkeypatch.chdir(FONTS)
+    command = shlex.split(result.stderr.partition("add it by: ")[2])
+    assert runner.invoke(app, [*command[1:], "--jobs", "0"]).exit_code == 0
+    assert '"source":"M' in (out / "gallery" / "O.glyph.js").read_text()
+
+
+def call(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=120)
+
+
+def test_a_process_of_its_own_with_workers(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = call("-m", "glyphspline", "convert", FONT, "--text", "O8", "--step", "90", "--out", str(out), "--jobs", "2")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert "2 glyphs in" in done.stderr
+    assert "\x1b" not in done.stderr  # no progress bar off a terminal
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = "import sys; from glyphspline.cli import app; from typer.testing import CliRunner; " \
+           "assert CliRunner().invoke(app, ['--help']).exit_code == 0; print(*sys.modules)"  # fmt: skip
+    loaded = call("-c", code).stdout.split()
+    assert "glyphspline.cli" in loaded
+    assert not {"matplotlib", "fontTools.ttLib", "numpy"} & set(loaded)
+
+
+def test_the_batch_script_gives_each_font_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "bad.ttf").write_bytes(b"no font at all")
+    inputs = [str(FONTS / "kouzan.ttc"), str(FONTS / "kouz*.otf"), str(tmp_path / "bad.ttf")]
+    options = ["--text", "8", "--count", "20", "--out", str(tmp_path / "out"), "--jobs", "0"]
+    done = call("scripts/batch_convert.py", *inputs, *options)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1] == f"failed: {tmp_path / 'bad.ttf'}: not a TTF, OTF, TTC, WOFF or WOFF2 file"
+    made = {path.parent.relative_to(tmp_path / "out").as_posix() for path in tmp_path.glob("out/**/manifest.jsonl")}
+    assert made == {"kouzan-gyosho-otf", "kouzan-ttc/face-0", "kouzan-ttc/face-1"}
+    before = content(tmp_path / "out")
+    assert {name.rpartition("/")[2] for name in before} == {
+        "run.json", "manifest.jsonl", ".sizes.txt", "index.html", "run.js", "table-00000.js", "eight.svg",
+        "eight.glyph.js",
+    }  # fmt: skip
+    options[options.index("--out") + 1] = str(tmp_path / "command")
+    result = runner.invoke(app, ["convert", *inputs, *options])
+    assert result.exit_code == 1
+    assert content(tmp_path / "command") == before
+
+
+def test_the_batch_script_converts_every_glyph_of_one_font_into_a_folder_of_it(tmp_path: Path) -> None:
+    options = ["--step", "90", "--jobs", "0", "--format", "svg"]
+    done = call("scripts/batch_convert.py", FONT, "--out", str(tmp_path / "script"), *options)
+    assert done.returncode == 0, done.stderr
+    alone = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "alone"), *options])
+    assert alone.exit_code == 0
+    assert content(tmp_path / "script" / "kouzan-gyosho-ttf") == content(tmp_path / "alone")
+
+
+def several(tmp_path: Path, *more: str) -> Result:
+    """A run over two fonts and something that is no font, by a list."""
+    (tmp_path / "bad\x1b[31m.ttf").write_bytes(b"no font at all")
+    (tmp_path / "list.txt").write_text(f"{FONTS / 'variable.ttf'}\n# no\n{tmp_path}/bad*\n", encoding="utf-8")
+    inputs = [FONT, f"@{tmp_path / 'list.txt'}"]
+    return runner.invoke(app, ["convert", *inputs, "--text", "Oo", "--out", str(tmp_path / "out"), "-j", "0", *more])
+
+
+def test_several_fonts_end_with_a_table_whose_failures_come_last(tmp_path: Path) -> None:
+    result = several(tmp_path, "--format", "svg")
+    assert (result.exit_code, result.stdout) == (1, "")
+    lines = result.stderr.splitlines()
+    assert f"{FONT}: not in the font: U+006F o" in lines
+    assert f"{FONTS / 'variable.ttf'}: not in the font: U+004F O" in lines
+    heading = next(k for k, line in enumerate(lines) if "outside tolerance" in line)
+    cells = [[cell.strip() for cell in line.split("|")] for line in lines[heading:-1] if "|" in line]
+    assert cells[0] == ["font", "glyphs", "failed", "outside tolerance", "seconds"]
+    assert [row[1:4] for row in cells[1:]] == [["1", "0", "0"], ["1", "0", "0"], ["-", "-", "-"], ["2", "0", "0"]]
+    assert lines[-1].startswith("failed: ")
+    assert "\x1b" not in result.stderr
+    run = json.loads((tmp_path / "out" / "variable-ttf" / "run.json").read_text())
+    assert run["missing"] == {"count": 1, "first": ["U+004F"]}
+    assert not list(tmp_path.glob("**/.lock"))
+
+
+def test_the_summary_as_json_is_alone_on_standard_output(tmp_path: Path) -> None:
+    result = several(tmp_path, "--json", "--quiet", "--format", "svg")
+    facts = json.loads(result.stdout)
+    assert (facts["glyphs"], facts["failed"], facts["unreadable"], facts["missing"]) == (2, 0, 1, 2)
+    assert [run["statuses"] for run in facts["fonts"] if run["error"] is None] == [{"ok": 1}, {"ok": 1}]
+    alone = ["convert", FONT, "--text", "O", "--out", str(tmp_path / "one"), "-j", "0", "--json", "--format", "svg"]
+    result = runner.invoke(app, alone)
+    (run,) = json.loads(result.stdout)["fonts"]
+    assert (run["out"], run["aim"]) == (str(tmp_path / "one"), "1.02 units")
+    assert "1 glyph in" in result.stderr
+
+
+def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
+    summary = Summary(aim="1 units", seconds=0.25, done=9)
+    for k in range(9):
+        summary.count(f"g{k}", "ok", None, Facts(outside=k > 1, deviation=k / 4, crossings=k == 3))
+    assert summary.headline() == "9 glyphs in 0.2 s, 7 not within 1 units"
+    assert list(summary.lines()) == [
+        "not within 1 units: g2, g3, g4, g5, g6 and 2 more",
+        "cross where the source does not: g3",
+    ]
+    summary = Summary(aim="1.02 units", seconds=0.4, done=2)
+    for name in "龍好":
+        summary.count(name, "ok", None, Facts(deviation=1.0))
+    assert summary.headline() == "2 glyphs in 0.4 s, all within 1.02 units"
+    assert list(summary.lines()) == []
+
+
+def test_a_run_into_a_folder_that_is_locked_is_refused(tmp_path: Path) -> None:
+    with locked(tmp_path):
+        options = ["--text", "O", "--out", str(tmp_path), "-j", "0", "--format", "svg"]
+        for inputs in ([FONT], [FONT, str(FONTS / "variable.ttf")]):
+            result = runner.invoke(app, ["convert", *inputs, *options])
+            assert result.exit_code == 2
+            assert f"another run is writing to it: process {os.getpid()}" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def old_font(path: Path) -> None:
+    """A font of which fontTools says that its time of creation is very low."""
+    font = TTFont(FONT, recalcTimestamp=False)
+    font["head"].created = 1_300_000_000
+    font.save(path)
+
+
+def test_what_fonttools_logs_is_said_once_and_not_if_quiet(tmp_path: Path) -> None:
+    old_font(tmp_path / "old.ttf")
+    options = ["--text", "O8", "--out", str(tmp_path / "out"), "-j", "1", "--format", "svg"]
+    said = call("-m", "glyphspline", "convert", str(tmp_path / "old.ttf"), *options).stderr
+    assert said.count("'created' timestamp seems very low") == 1
+    assert said.startswith("fontTools: ")
+    done = call("-m", "glyphspline", "convert", str(tmp_path / "old.ttf"), *options, "--quiet", "--restart")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_settings_come_from_files_and_the_command_line_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def converted(*more: str) -> dict[str, Any]:
+        result = runner.invoke(app, ["convert", FONT, "--text", "O", "--restart", "-j", "0", *more])
+        assert result.exit_code == 0, result.output
+        return json.loads((tmp_path / "out" / "run.json").read_text())
+
+    monkeypatch.chdir(tmp_path)
+    project = '[tool.glyphspline]\nout = "out"\nformat = ["svg"]\ntolerance = 4\ncorner-angle = 30\nmeasure = true\n'
+    (tmp_path / "pyproject.toml").write_text(project)
+    run = converted()
+    assert (run["formats"], run["options"]["tolerance"], run["options"]["corner_angle"]) == (["svg"], 4.0, 30.0)
+    assert run["options"]["measure"] is True
+    (tmp_path / "mine.toml").write_text('tolerance = 3.0\ncorners = "sharp"\nview_box = "ink"\n')
+    run = converted("--config", "mine.toml", "--corners", "smooth")
+    assert (run["options"]["tolerance"], run["options"]["corners"], run["view_box"]) == (3.0, "smooth", "ink")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("tolerence = 3", "mine.toml: no option 'tolerence'"),
+        ("config = 'x'", "mine.toml: no option 'config'"),
+        ("tolerance = ", "mine.toml: is not TOML"),
+        ("tolerance = {a = 1}", "mine.toml: tolerance cannot be"),
+        ("tolerance = 'x'", "'--tolerance': 'x' is not a number"),
+        (None, "mine.toml: cannot be read"),
+    ],
+)
+def test_settings_that_are_none_are_refused(text: str | None, words: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / "mine.toml").write_text(text)
+    given = ["--config", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]
+    result = runner.invoke(app, ["convert", FONT, "--text", "O", *given])
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--tolerance", "-1"], "--tolerance is a positive distance, not -1.0"),
+        (["--tolerance", "abc"], "'--tolerance': 'abc' is not a number"),
+        (["--tolerance", "nan"], "--tolerance is a positive distance, not nan"),
+        (["--corner-angle", "0"], "--corner-angle is an angle in degrees, above 0 and up to 180, not 0.0"),
+        (["--margin", "0.7"], "--margin is 0 to 0.5, not 0.7"),
+        (["--precision", "12"], "--precision is a whole number from 0 to 9, not 12"),
+        (["--count", "2.5"], "'--count': '2.5' is not a whole number"),
+        (["--jobs", "-1"], "-1 is below 0"),
+        (["--face-index", "x"], "'--face-index': 'x' is not a whole number"),
+        (["--out", ""], "'--out' / '-o': it is empty"),
+    ],
+)
+def test_a_bad_number_names_option_and_value(arguments: list[str], words: str, tmp_path: Path) -> None:
+    result = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "out"), *arguments])
+    assert result.exit_code == 2
+    assert words in " ".join(result.stderr.replace("│", " ").split())
+
+
+def test_short_help_version_and_completion() -> None:
+    assert runner.invoke(app, ["--version"]).stdout == f"glyphspline {glyphspline.__version__}\n"
+    said = runner.invoke(app, ["-h"]).stdout
+    assert "--show-completion" in said
+    said = " ".join(runner.invoke(app, ["convert", "-h"]).stdout.replace("│", " ").split())
+    for words in ("Which glyphs", "How close to the source", "how sharp a turn counts as a", "Lemma 2"):
+        assert words in said
+
+
+def test_files_are_called_after_characters_if_asked(tmp_path: Path) -> None:
+    options = ["--text", "龍O", "--names", "char", "--format", "svg", "--out", str(tmp_path / "out"), "-j", "0"]
+    assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
+    assert {path.name for path in (tmp_path / "out" / "svg").iterdir()} == {"龍.svg", "O.svg"}

@@ -1,0 +1,179 @@
+"""What notebooks show, drawings onto axes, the example notebook, and the atlas."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import glyphspline as gs
+from glyphspline.cli import app
+from glyphspline.outlines.joins import joins
+from glyphspline.runs import atlas_run
+from glyphspline.writers.figures.atlas import overview, profile
+from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
+from tests.places import ROOT
+
+SVG = "{http://www.w3.org/2000/svg}"
+ROUND = gs.Contour.from_segments(circle(200.0, 8, centre=(300.0, 300.0)))
+
+
+@pytest.fixture(scope="module")
+def glyph() -> gs.GlyphResult:
+    return gs.convert(gs.Outline("a<b", 7, (65,), 600.0, (ROUND,), METRICS), gs.Options(count=16))
+
+
+@pytest.fixture
+def axes() -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    return figure.add_subplot()
+
+
+def html_of(thing: Any) -> str:
+    return str(thing._repr_html_())
+
+
+def svg_of(thing: Any) -> str:
+    return str(thing._repr_svg_())
+
+
+def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> None:
+    spline = glyph.contours[0].interpolations[0].spline
+    open_arc = gs.interpolate(L_SHAPE, closed=False).spline
+    quintic = gs.interpolate(L_SHAPE, degree=5).spline
+    for thing, paths in ((glyph, 5), (glyph.outline, 1), (spline, 3), (open_arc, 3), (quintic, 3)):
+        root = ElementTree.fromstring(svg_of(thing))
+        assert len(list(root.iter(f"{SVG}path"))) >= paths
+    html = html_of(glyph)
+    assert "<td>16</td>" in html
+    assert f"<p>{glyph.options.words}</p>" in html
+    assert "a<b" not in html
+
+
+def test_a_spline_shows_its_knots_where_the_curve_passes(glyph: gs.GlyphResult) -> None:
+    spline = glyph.contours[0].interpolations[0].spline
+    dots = list(ElementTree.fromstring(svg_of(spline)).iter(f"{SVG}path"))[-1].attrib["d"]
+    moves = np.array(re.findall(r"[Mm](-?[\d.]+) ?(-?[\d.]+)h0", dots), dtype=float)
+    np.testing.assert_allclose(np.cumsum(moves, axis=0) * (1, -1), spline(spline.knots), atol=0.01)
+
+
+def test_plot_draws_onto_the_axes_given(axes: Any, glyph: gs.GlyphResult) -> None:
+    assert gs.plot(glyph, axes, comb=True, polygon=True, control_polygon=True, source=True) is axes
+    curve = axes.patches[-1].get_path()
+    np.testing.assert_array_equal(np.asarray(curve.vertices)[0], glyph.contours[0].curve.points[0])
+    assert len(axes.lines) == 2
+    np.testing.assert_array_equal(np.asarray(axes.lines[0].get_xydata())[:-1], glyph.contours[0].polygon)
+    assert axes.get_aspect() == 1.0
+
+
+def test_plot_does_not_close_an_open_arc(axes: Any) -> None:
+    spline = gs.interpolate(L_SHAPE, closed=False).spline
+    gs.plot(spline, axes, comb=True, edgecolor="red")
+    curve = axes.patches[-1].get_path()
+    np.testing.assert_allclose(np.asarray(curve.vertices)[[0, -1]], L_SHAPE[[0, -1]])
+    assert len(curve.vertices) == 1 + 3 * (len(L_SHAPE) - 1)
+
+
+def test_joins_are_told_apart() -> None:
+    corners = joins(polygon_contour(L_SHAPE))
+    np.testing.assert_allclose(np.abs(np.degrees(corners.turns)), 90)
+    assert corners.of("corner", 0.001).all()
+    assert corners.turns.sum() == pytest.approx(2 * np.pi)
+    smooth = joins(ROUND)
+    assert not any(smooth.of(kind, 0.001).any() for kind in ("corner", "G1", "G2"))
+    # A stadium: straight sides of 100 and half circles of radius 50 meet with a jump of 1/50 in curvature.
+    half = circle(50.0, 32)[:16]
+    sides = [np.array([[-50.0, 0], [-50, -100]]), np.array([[50.0, -100], [50, 0]])]
+    stadium = joins(gs.Contour.from_segments([*half, sides[0], *(-half - (0, 100)), sides[1]]))
+    jumps = stadium.of("G2", 0.01)
+    assert jumps.sum() == 4
+    np.testing.assert_allclose(np.abs(stadium.jumps[jumps]), 1 / 50, rtol=1e-4)
+    assert stadium.of("G2", 0.03).sum() == 0
+
+
+def test_the_atlas_has_a_page_for_twelve_glyphs_and_one_for_each_profile(tmp_path: Path) -> None:
+    font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+    for name in ("a.pdf", "b.pdf"):
+        run = CliRunner().invoke(
+            app, ["atlas", font, "--gids", "2-14", "--count", "24", "--profiles", "g", "--out", str(tmp_path / name)]
+        )
+        assert run.exit_code == 0, run.output
+        assert "3 pages" in run.output
+    pdf = (tmp_path / "a.pdf").read_bytes()
+    assert pdf.count(b"/Type /Page ") == 3
+    assert pdf == (tmp_path / "b.pdf").read_bytes()
+    assert {path.name for path in tmp_path.iterdir()} == {"a.pdf", "b.pdf"}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["--preset", "type"], "corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
+        (["--corners", "sharp", "--continuity", "g1", "--tolerance", "3"], "corners sharp, continuity g1, tolerance 3"),
+    ],
+)
+def test_the_atlas_is_made_and_captioned_by_the_options(
+    given: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[gs.GlyphResult] = []
+    monkeypatch.setattr(atlas_run, "write_atlas", lambda path, glyphs, scale, **_: len(drawn.__iadd__(glyphs)))
+    font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+    run = CliRunner().invoke(app, ["atlas", font, "--text", "O", *given, "--out", str(tmp_path / "a.pdf")])
+    assert run.exit_code == 0, run.output
+    (glyph,) = drawn
+    for figure in (overview([("broken", "no outline"), glyph], 0.01, "Font"), profile(glyph, 0.01)):
+        assert any(words in text.get_text() for text in figure.texts)
+
+
+def test_the_profile_draws_curvature_over_arc_length(glyph: gs.GlyphResult) -> None:
+    figure = profile(glyph, 1 / 200)
+    curves = {line.get_label(): line.get_xydata() for axes in figure.axes for line in axes.lines}
+    for name in ("source", "result"):
+        np.testing.assert_allclose(curves[name][:, 1], 1000 / 200, rtol=0.05)
+        assert curves[name][-1, 0] == pytest.approx(2 * np.pi * 0.2, rel=0.03)
+
+
+def test_the_atlas_says_whose_comb_it_draws(glyph: gs.GlyphResult) -> None:
+    for whose in ("source", "result"):
+        figure = overview([glyph], 0.01, "Font", whose)
+        assert f"curvature of the {whose} in 1/em, convex positive" in [axes.get_xlabel() for axes in figure.axes]
+
+
+def test_a_glyph_that_failed_is_named_in_the_atlas() -> None:
+    figure = overview([("broken", "no outline")], 0.01, "Font")
+    assert "broken: no outline" in [text.get_text() for axes in figure.axes for text in axes.texts]
+
+
+@pytest.mark.needs("nbclient", "nbformat", "ipykernel")
+def test_the_example_notebook_runs_and_keeps_no_outputs() -> None:
+    import nbclient
+    import nbformat
+
+    path = ROOT / "scripts" / "notebooks" / "example.ipynb"
+    notebook: Any = nbformat.read(path, as_version=4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs or cell.execution_count for cell in code)
+    os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
+    nbclient.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(ROOT)}}).execute()
+    shown = [kind for cell in code for output in cell.outputs for kind in output.get("data", {})]
+    assert shown.count("image/svg+xml") >= 3
+    assert "text/html" in shown
+    assert "image/png" in shown
+
+
+def test_showing_costs_nothing_until_something_is_shown() -> None:
+    code = "import sys, glyphspline; print('matplotlib' in sys.modules, 'glyphspline.writers' in sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["False", "False"]

@@ -1,0 +1,182 @@
+"""Crossings and overshoot against plain NumPy and SciPy, which look at every pair of many chords."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+import glyphspline as gs
+from glyphspline.curves.crossings import crossings
+from glyphspline.curves.cubics import bernstein
+from glyphspline.curves.overshoot import chords
+from glyphspline.outlines.contour_arrays import joined
+from glyphspline.outlines.segments import all_cubics
+from glyphspline.types import FloatArray
+from tests.places import GYOSHO as FONT
+from tests.polygons import overshoot
+
+
+def chains_at_random() -> list[FloatArray]:
+    rng = np.random.default_rng(11)
+    found = []
+    for n in [2, 3, 4, 6, 9, 15] * 8:
+        joints, handles = rng.normal(0, 100, (n, 2)), rng.normal(0, 100 / n, (n, 2, 2))
+        ends = np.roll(joints, -1, axis=0)
+        found.append(np.stack([joints, joints + handles[:, 0], ends - handles[:, 1], ends], axis=1))
+    return found
+
+
+def lines(points: list[tuple[float, float]]) -> FloatArray:
+    """The straight segments of a closed polygon as cubics."""
+    p = np.array(points, dtype=np.float64)
+    return np.stack([p + w / 3 * (np.roll(p, -1, axis=0) - p) for w in range(4)], axis=1)
+
+
+def crossings_of(*contours: FloatArray) -> list[tuple[tuple[int, int], tuple[float, float]]]:
+    """The pair of contours, and the places on them, of each crossing of one glyph."""
+    offsets = np.cumsum([0, *map(len, contours)])
+    found, complete = crossings(np.concatenate(contours).astype(float), offsets, np.array([0, len(contours)]))
+    assert complete.all()
+    return [((int(c), int(d)), (x, y)) for c, d, x, y in found.tolist()]
+
+
+def sampled(cubics: FloatArray, steps: int) -> FloatArray:
+    """Points at even parameters of each segment."""
+    return np.einsum("kt,mkc->mtc", bernstein(steps)[:, :-1], cubics).reshape(-1, 2)
+
+
+def at(cubics: FloatArray, place: float) -> FloatArray:
+    """The point at a place of a chain."""
+    s = min(int(place), len(cubics) - 1)
+    x = place - s
+    weights = np.array([(1 - x) ** 3, 3 * (1 - x) ** 2 * x, 3 * (1 - x) * x * x, x**3])
+    return weights @ cubics[s]
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def crossings_of_all_pairs(p: FloatArray) -> int:
+    """Chords of a closed polyline that cross properly, neighbours apart."""
+    n, q = len(p), np.roll(p, -1, axis=0)
+    after = cross((q - p)[:, None], p[None] - p[:, None]) >= 0  # [i, j]: whether point j is left of chord i
+    apart = after != np.roll(after, -1, axis=1)
+    i, j = np.triu_indices(n, 2)
+    return int((apart & apart.T)[i, j][(i > 0) | (j < n - 1)].sum())
+
+
+def farthest_from_hull(points: FloatArray, polygon: FloatArray) -> float:
+    """Largest distance of points from the convex hull of a polygon."""
+    a = polygon[ConvexHull(polygon).vertices]
+    side = np.roll(a, -1, axis=0) - a
+    away = points[:, None] - a
+    along = np.clip((away * side).sum(-1) / (side**2).sum(-1), 0, 1)
+    inside = (cross(side, away) >= 0).all(axis=1)
+    return float(np.where(inside, 0, np.hypot(*(away - along[..., None] * side).T).min(axis=0)).max())
+
+
+def test_crossings_are_those_of_many_chords() -> None:
+    counted = 0
+    for cubics in chains_at_random():
+        found, _ = crossings(cubics, np.array([0, len(cubics)]), np.array([0, 1]))
+        counted += len(found)
+        if len(found) != crossings_of_all_pairs(sampled(cubics, 100)):  # too coarse for some
+            tiny = np.abs(found[:, 2] - found[:, 3]) < 1e-3  # loops of neighbouring chords
+            assert len(found) - tiny.sum() == crossings_of_all_pairs(sampled(cubics, 600))
+        for x, y in found[:, 2:]:
+            np.testing.assert_allclose(at(cubics, x), at(cubics, y), atol=1e-5)
+    assert counted > 200
+
+
+@pytest.mark.parametrize(
+    ("contours", "expected"),
+    [
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)]], []),
+        ([[(0, 0), (10, 10), (10, 0), (0, 10)]], [(0, 0)]),
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)], [(5, 5), (15, 5), (15, 15), (5, 15)]], [(0, 1), (0, 1)]),
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)], [(2, 2), (8, 2), (8, 8), (2, 8)]], []),
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)]] * 2, []),  # on each other
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)], [(10, 2), (20, 2), (20, 8), (10, 8)]], []),  # side by side
+        ([[(0, 0), (10, 0), (5, 0), (5, 5), (5, 0)]], []),  # there and back
+        ([[(0, 0), (10, 0), (10, 10), (0, 10)], [(10, 5), (20, 0), (20, 10), (0, 5.1)]], [(0, 1), (0, 1)]),
+    ],
+)
+def test_crossings_of_polygons(contours: list[list[tuple[float, float]]], expected: list[tuple[int, int]]) -> None:
+    assert [pair for pair, _ in crossings_of(*map(lines, contours))] == expected
+
+
+@pytest.mark.parametrize(("depth", "expected"), [(-1, 0), (-1e-4, 0), (1e-4, 2), (0.01, 2), (1, 2)])
+def test_shallow_crossings_of_two_contours_are_found(depth: float, expected: int) -> None:
+    """An arc 600 units long that dips below the upper side of a box."""
+    low = (100 - 8 * depth) / 6
+    above = np.array([[(0, 50), (200, low), (400, low), (600, 50)], [(600, 50), (400, 90), (200, 90), (0, 50)]])
+    found = crossings_of(above, lines([(-10, -100), (610, -100), (610, 25), (-10, 25)]))
+    assert [pair for pair, _ in found] == [(0, 1)] * expected
+
+
+@pytest.mark.parametrize(("handle", "expected"), [(0.3, 1), (-0.3, 0)])
+def test_a_small_loop_at_a_fold_is_found(handle: float, expected: int) -> None:
+    """A stroke that comes back above itself; with the one handle it arrives at its tip from above."""
+    there, back = [(0, -1), (100, -1), (299, handle), (300, 0)], [(300, 0), (299, -handle), (100, 1), (0, 1)]
+    cap = [(0, 1), (0, 1 / 3), (0, -1 / 3), (0, -1)]
+    assert len(crossings_of(np.array([there, back, cap]))) == expected
+
+
+def test_a_loop_within_a_segment_is_found() -> None:
+    loop = np.array([[(0, 0), (30, 30), (-20, 30), (10, 0)], [(10, 0), (7, -5), (3, -5), (0, 0)]])
+    ((pair, (x, y)),) = crossings_of(loop)
+    assert pair == (0, 0)
+    np.testing.assert_allclose(at(loop, x), at(loop, y), atol=1e-6)
+    assert crossings_of(np.array([[(0, 0), (30, 30), (-20, 30), (0, 0)]])) == []  # a drop of one segment
+
+
+def test_crossings_are_those_of_each_glyph_alone() -> None:
+    font = gs.open_font(FONT)
+    outlines = [font.outline(name) for name in font.select(text="いの好8")]
+    arrays = joined([outline.arrays for outline in outlines])
+    glyphs = np.cumsum([0, *(len(outline.contours) for outline in outlines)])
+    found, complete = crossings(all_cubics(arrays), arrays.offsets, glyphs)
+    assert complete.all()
+    alone = []
+    for outline, first in zip(outlines, glyphs, strict=False):
+        own, _ = crossings(all_cubics(outline.arrays), outline.arrays.offsets, np.array([0, len(outline.contours)]))
+        alone.append(own + np.array([first, first, 0, 0]))
+    np.testing.assert_array_equal(found, np.concatenate(alone))
+    assert len(found) > 5
+
+
+def test_strands_that_lie_on_each_other_by_thousands_end_in_time() -> None:
+    """Every pair of these curves would be halved down to its chords."""
+    rng = np.random.default_rng(3)
+    strands = []
+    for _ in range(400):
+        a, b = np.sort(rng.uniform(0, 1, 2))
+        x = np.linspace(a, b, 4)
+        parabola = np.stack([x, [x[0] ** 2, x[0] * (2 * x[1] - x[0]), x[3] * (2 * x[2] - x[3]), x[3] ** 2]], axis=1)
+        strands.append(np.stack([parabola * 600, parabola[::-1] * 600]))
+    offsets = np.arange(0, 2 * len(strands) + 1, 2)
+    _, complete = crossings(np.concatenate(strands), offsets, np.array([0, len(strands)]))
+    assert not complete.any()
+
+
+def test_overshoot_is_that_of_every_chord() -> None:
+    font = gs.open_font(FONT)
+    outlines = [font.outline(name) for name in font.select(text="龍好g")]
+    for cubics in [*chains_at_random(), *(c.cubics() for o in outlines for c in o.contours)]:
+        points, _ = chords(cubics)
+        polygon = np.ascontiguousarray(cubics[::2, 0])
+        if len(polygon) >= 3:
+            assert overshoot(cubics, polygon) == pytest.approx(farthest_from_hull(points, polygon), abs=1e-9)
+
+
+def test_a_point_in_line_with_a_far_side_of_the_hull_is_not_outside() -> None:
+    """Vertices on straight sides lie outside of the lines of others by rounding alone."""
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        corners = rng.normal(0, 300, (3, 2))
+        share = np.linspace(0, 1, 60, endpoint=False)[:, None]
+        polygon = np.concatenate([(1 - share) * corners[k] + share * corners[(k + 1) % 3] for k in range(3)])
+        lines = np.stack([polygon + w / 3 * (np.roll(polygon, -1, axis=0) - polygon) for w in range(4)], axis=1)
+        assert overshoot(lines, polygon) < 1e-9

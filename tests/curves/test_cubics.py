@@ -1,0 +1,102 @@
+"""The compiled toolbox of cubics against plain NumPy and closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.compiled import compiled
+from glyphspline.curves.bezier import evaluate, split
+from glyphspline.curves.cubics import bernstein, length_table, nearest_place, section, spline_beziers, turns
+from glyphspline.curves.cubics import split as cut
+from glyphspline.curves.sorting import ascending
+from glyphspline.types import FloatArray, IntArray
+from tests.polygons import circle_contour, random_polygon, square_contour
+
+CUBICS = np.random.default_rng(4).uniform(-100, 100, (5, 4, 2))
+
+
+@compiled
+def form(controls: FloatArray, knots: FloatArray, closed: bool) -> FloatArray:
+    cubics = np.empty((len(knots) - 1, 4, 2))
+    spline_beziers(controls, knots, closed, cubics)
+    return cubics
+
+
+@compiled
+def parts(cubic: FloatArray, x: float, y: float) -> FloatArray:
+    """Both parts at x, and the section from x to y."""
+    found = np.empty((3, 4, 2))
+    for k in range(4):
+        found[1, k, 0], found[1, k, 1] = cubic[k, 0], cubic[k, 1]
+    cut(found[1], x, found[0])
+    section(cubic, x, y, found[2])
+    return found
+
+
+@compiled
+def place_of(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
+    return nearest_place(cubics, low, high, x, y)
+
+
+@compiled
+def order_of(keys: FloatArray) -> IntArray:
+    return ascending(keys)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("n", [3, 4, 11])
+def test_the_bezier_form_is_that_of_the_spline(closed: bool, n: int) -> None:
+    spline = gs.interpolate(random_polygon(n, n), closed=closed).spline
+    np.testing.assert_allclose(form(spline.control_points, spline.knots, closed), spline.to_bezier(), atol=1e-11)
+
+
+@pytest.mark.parametrize("x", [0.0, 0.3, 1.0])
+def test_parts_and_sections_are_pieces_of_the_cubic(x: float) -> None:
+    for cubic in CUBICS:
+        first, second, middle = parts(cubic, x, 0.8)
+        expected = split(cubic, x)
+        np.testing.assert_allclose([first, second], expected, atol=1e-12)
+        t = np.linspace(0, 1, 5)
+        there = evaluate(np.broadcast_to(cubic, (5, 4, 2)), x + (0.8 - x) * t)
+        np.testing.assert_allclose(evaluate(np.broadcast_to(middle, (5, 4, 2)), t), there, atol=1e-11)
+
+
+def test_the_nearest_place_is_as_near_as_any_within_its_segment() -> None:
+    circle = circle_contour(100).cubics()
+    places = np.linspace(0, 4, 4001)[:-1]
+    points = evaluate(circle[places.astype(int)], places % 1)
+    compared = 0
+    for x, y in np.random.default_rng(1).uniform(-150, 150, (60, 2)):
+        at = place_of(circle, 0.0, 4.0, x, y)
+        own = np.hypot(*(evaluate(circle[[int(at) % 4]], np.array([at % 1]))[0] - (x, y)))
+        distances = np.hypot(*(points - (x, y)).T)
+        assert own <= distances[::125].min()  # coarse places
+        if 0.1 < places[distances.argmin()] % 1 < 0.9:
+            assert own <= distances.min()
+            compared += 1
+    assert compared > 30
+
+
+def test_turns_are_those_of_the_tangents_whatever_handles_have_no_length() -> None:
+    np.testing.assert_allclose(turns(square_contour(10).cubics(), 0.0), np.pi / 2)
+    np.testing.assert_allclose(turns(circle_contour(10).cubics(), 0.0), 0, atol=1e-12)
+    np.testing.assert_allclose(turns(circle_contour(10).reversed().cubics(), 0.0), 0, atol=1e-12)
+    bent = square_contour(10).cubics()
+    bent[:, 1], bent[:, 2] = bent[:, 0], bent[:, 3]
+    np.testing.assert_allclose(turns(bent, 0.0), np.pi / 2)
+    np.testing.assert_allclose(turns(bent[::-1, ::-1].copy(), 0.0), -np.pi / 2)
+
+
+def test_lengths_add_up_to_the_circumference() -> None:
+    table = length_table(circle_contour(100).cubics(), bernstein(64))
+    assert len(table) == 4 * 64 + 1
+    assert table[-1] == pytest.approx(200 * np.pi, rel=1e-3)
+    assert (np.diff(table) > 0).all()
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 50, 1000])
+def test_sorting_is_stable(n: int) -> None:
+    keys = np.random.default_rng(n).integers(0, 1 + n // 3, n).astype(float)
+    np.testing.assert_array_equal(order_of(keys), np.argsort(keys, kind="stable"))

@@ -1,0 +1,214 @@
+"""The smooth fit's compiled steps against the plain ones: distances, measures, first places, curves run backwards."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.curves.curvature import comb
+from glyphspline.curves.integrals import shape
+from glyphspline.fitting.certified_distance import sharpen_spans
+from glyphspline.fitting.closed_curves import beziers, interpolated
+from glyphspline.fitting.faithful import faithful
+from glyphspline.fitting.measures import geometry
+from glyphspline.fitting.smooth import steps
+from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
+from glyphspline.fitting.smooth.smooth_fit import smooth_fits
+from glyphspline.interpolation.result import turned
+from glyphspline.outlines.contour_arrays import polylines
+from glyphspline.outlines.outline import Contours
+from tests.fitting.test_distance import true_distance
+from tests.polygons import circle_contour, overshoot, random_polygon, square_contour
+
+NONE = np.empty((0, 2))
+
+
+def wobbly(radius: float, seed: int) -> gs.Contour:
+    """A circle with its control points moved at random."""
+    circle = circle_contour(radius)
+    points = circle.points + np.random.default_rng(seed).normal(0, radius / 15, circle.points.shape)
+    return gs.Contour(points, circle.degrees)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
+    contour = wobbly(100, seed)
+    canonical = canonical_contours(Contours([contour]).arrays)
+    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    places = np.linspace(0, len(canonical.cubics), 7)[:-1]
+    offsets = np.array([0, len(places)])
+    found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
+    pieces, written = beziers(found.controls, found.knots, offsets, 100.0)
+    np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
+    np.testing.assert_array_equal(written, np.round(pieces, 2))
+    measured = steps.measured(canonical, which, places, offsets, found.controls, written, near)
+    bounds = measured.bounds
+    bound, gap = sharpen_spans(written, canonical.cubics, bounds, measured.gaps, measured.ends, 0.01)
+    truth = true_distance(gs.Contour.from_segments(written), contour)
+    assert truth - 0.06 <= bound
+    assert gap <= bound <= gap + 0.011
+    assert bound <= bounds.max() + 1e-9
+
+
+def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
+    pieces = np.array(circle_contour(100).cubics(), dtype=np.float64)
+    parts = []
+    for c in pieces:
+        a = c[:-1] + 0.1 * np.diff(c, axis=0)
+        b = a[:-1] + 0.1 * np.diff(a, axis=0)
+        cut = b[0] + 0.1 * (b[1] - b[0])
+        parts += [np.array([c[0], a[0], b[0], cut]), np.array([cut, b[1], a[2], c[3]])]
+    outline = np.array(parts, dtype=np.float64)
+    ends, none = np.array([0, 8]), np.zeros(8)
+    canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros((8, 17)))
+    places = np.array([1.02, 3.02, 5.02, 7.02])  # in the second part of each quarter; the spans begin with the first
+    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    trial = steps.measured(canonical, which, places, np.array([0, 4]), outline[::2, 0].copy(), pieces, near)
+    assert trial.bounds.max() < 1
+    np.testing.assert_allclose(trial.ends, np.arange(0, 10, 2), atol=0.05)
+
+
+def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
+    arrays = Contours(contours).arrays
+    each = np.arange(len(contours) + 1)  # a glyph each
+    return faithful(arrays, each, smooth_fits(options, tolerance), options, tolerance).contour_results()
+
+
+def test_measures_are_those_that_look_at_every_piece() -> None:
+    polygons = [random_polygon(n, seed) for n in (5, 12, 40) for seed in range(3)]
+    curves = [gs.Contour.from_segments(gs.interpolate(p, fallback="peak").spline.to_bezier()) for p in polygons]
+    source = [circle_contour(10) for _ in curves]
+    drawn, vertices = Contours(curves).arrays, polylines(polygons, [True] * len(polygons))
+    measured = geometry(drawn, drawn.rounded(9), Contours(source).arrays, vertices.points, vertices.offsets)
+    found = measured._asdict()
+    for k, (curve, polygon) in enumerate(zip(curves, polygons, strict=True)):
+        whole = shape(curve.cubics())
+        assert found["length"][k] == pytest.approx(whole.length)
+        assert found["bending_energy"][k] == pytest.approx(whole.bending_energy)
+        assert found["max_curvature"][k] == pytest.approx(whole.max_curvature)
+        assert found["area_change"][k] == pytest.approx(whole.area - shape(source[k].cubics()).area, abs=1e-8)
+        assert found["overshoot"][k] == pytest.approx(overshoot(curve.cubics(), polygon), abs=1e-8)
+
+
+def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
+    """A contour of LXGW WenKai's u45C1, whose spans were within the tolerance before rounding was added."""
+    points = """797,-99 782,-99 762,-86 701,-52 642,-5 619,16 619,25 619,32 626,32 637,32 655,24 721,-5 781,-22 779,396
+        458,377 433,377 423,385 415,394 410,406 400,425 400,432 400,436 404,436 411,435 430,430 452,430 462,430 886,455
+        904,456 921,465 925,467 930,467 944,467 961,450 982,430 982,421 982,410 962,407 838,399 841,-25 842,-32 842,-46
+        842,-68 826.5,-83.5 811,-99"""
+    degrees = [2, 2, 2, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 2, 2, 2, 2, 2, 2, 2, 1, 2, 1, 2, 2]
+    contour = gs.Contour(np.array([p.split(",") for p in points.split()], dtype=float), np.array(degrees))
+    measures = smoothed([contour], gs.Options(), 1.0)[0].measures
+    assert measures.within_tolerance
+    assert measures.deviation_bound is not None
+    assert measures.deviation_bound <= 1
+
+
+def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
+    canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
+    near = np.ones(2)
+    _, places, offsets = steps.first_places(canonical, np.arange(2), np.radians(12), 4.0, near, 2)
+    points = steps.polygons(canonical, np.arange(2), places, offsets)
+    square = points[: offsets[1]]
+    h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)
+    assert max((h / np.roll(h, 1)).max(), (np.roll(h, 1) / h).max()) <= 4 * (1 + 1e-9)
+    assert h.min() < 20
+    assert h.max() > 200
+    for corner in square_contour(900).points:
+        assert (square == corner).all(axis=1).any()
+    assert 4 <= len(points) - len(square) <= 12
+
+
+def round_letter(width: float, height: float, fullness: float) -> gs.Contour:
+    """An o as TrueType fonts draw it: eight quadratics, joined at the sides and halfway between these.
+
+    Args:
+        width, height: half of those of the letter. fullness: 0.414 makes an ellipse, more fills its corners.
+    """
+    middle = (1 + fullness) / 2
+    quarter = np.array([[1, 0], [1, fullness], [middle, middle], [fullness, 1]]) * [width, height]
+    other = quarter[:, ::-1] / [height, width] * [-width, height]  # from the top to the left
+    return gs.Contour(np.concatenate([quarter, other, -quarter, -other]), np.full(8, 2))
+
+
+def extrema(curve: gs.Contour) -> int:
+    """The extrema of a closed curve's curvature from which it comes back on both sides, by a tenth or 1/length."""
+    found = comb(curve.cubics(), 1.0)
+    kappa, length, count = found.curvature, found.weights.sum(), 0
+    for i in range(len(kappa)):
+        least = max(abs(kappa[i]) / 10, 1 / length)
+        both = np.roll(kappa, -i)[1:], np.roll(kappa, -i - 1)[::-1][1:]
+        for sign in (1, -1):
+            falls = []
+            for k, side in enumerate(both):
+                beyond = np.flatnonzero(sign * (side - kappa[i]) > 0 if k else sign * (side - kappa[i]) >= 0)
+                until = side[: beyond[0]] if len(beyond) else side
+                falls.append(len(until) > 0 and (sign * (kappa[i] - until)).max() >= least)
+            count += all(falls)
+    return count
+
+
+@pytest.mark.parametrize("effort", ["fast", "best"])
+@pytest.mark.parametrize("form", [(200, 300, 0.5), (200, 300, 0.52), (250, 290, 0.45), (250, 290, 0.5)])
+def test_a_round_letter_of_quadratics_has_even_chords_and_no_extrema_of_its_own(
+    form: tuple[float, float, float], effort: Literal["fast", "best"]
+) -> None:
+    letter = round_letter(*form)
+    (result,) = smoothed([letter], gs.Options(effort=effort), 1.0)
+    h = np.hypot(*(np.roll(result.polygon, -1, axis=0) - result.polygon).T)
+    assert result.measures.within_tolerance
+    assert len(h) <= 13
+    assert max((h / np.roll(h, 1)).max(), (np.roll(h, 1) / h).max()) < 1.9
+    assert extrema(result.curve) <= 8
+
+
+def test_what_is_laid_anew_keeps_its_corners() -> None:
+    bowl = round_letter(250, 290, 0.5).cubics()[:4]  # the upper half, closed by a line
+    half = gs.Contour.from_segments([*bowl, np.array([bowl[-1][3], bowl[0][0]])])
+    (result,) = smoothed([half], gs.Options(), 1.0)
+    assert result.measures.within_tolerance
+    for corner in (bowl[0][0], bowl[-1][3]):
+        assert (result.polygon == corner).all(axis=1).any()
+    assert result.measures.vertices <= 24
+
+
+def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon() -> None:
+    flips = set()
+    for seed in range(6):
+        contour = wobbly(100, seed)
+        flips.add(bool(canonical_contours(Contours([contour]).arrays).flipped[0]))
+        result = smoothed([contour], gs.Options(), 1.0)[0]
+        (arc,) = result.interpolations
+        plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)
+        np.testing.assert_allclose(arc.spline.control_points, plain.spline.control_points, atol=1e-6)
+        np.testing.assert_allclose(arc.spline.knots, plain.spline.knots, atol=1e-6)
+        np.testing.assert_allclose(arc.parameters, plain.parameters, atol=1e-4)
+        np.testing.assert_allclose(arc.intervals, plain.intervals, atol=1e-6)
+        np.testing.assert_allclose(result.curve.cubics(), arc.spline.to_bezier(), atol=1e-6)
+    assert flips == {False, True}
+
+
+def test_turned_begins_with_the_same_vertex() -> None:
+    np.testing.assert_array_equal(turned(np.arange(5.0)), [0, 4, 3, 2, 1])
+
+
+def test_segments_of_no_length_and_all_variants_are_taken() -> None:
+    circle = circle_contour(100)
+    doubled = gs.Contour(np.concatenate([circle.points[:1], circle.points]), np.array([1, 3, 3, 3, 3]))
+    for variant in range(5):
+        measures = smoothed([doubled], gs.Options(variant=variant), 1.0)[0].measures
+        assert measures.within_tolerance
+        assert measures.vertices < 16
+
+
+def test_best_takes_no_more_vertices_than_fast() -> None:
+    contours = [wobbly(200, seed) for seed in range(4)]
+    fast, best = (
+        sum(r.measures.vertices for r in smoothed(contours, gs.Options(effort=effort), 0.5))
+        for effort in ("fast", "best")
+    )
+    assert best <= fast

@@ -1,0 +1,53 @@
+"""What went wrong with the topology of a written glyph is in its measures: counted apart from the package."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+from fontTools.ttLib import TTFont
+
+import glyphspline as gs
+from tests.places import FONTS
+from tests.topology import Drawing, defects, font_contours, path_contours, unflagged
+
+WAYS: list[tuple[Any, Any]] = list(product(("smooth", "sharp"), ("fast", "best")))
+TEARDROP = path_contours("M0 0C150 .1 300 .15 450 .15S750 .1 900 0C750-.1 600-.15 450-.15S150-.1 0 0Z")
+"""900 units long and 0.3 high: a straight line there and back is within a quarter of a unit of it."""
+
+
+@cache
+def sources() -> dict[str, tuple[gs.Outline, Drawing]]:
+    """Glyphs spread over two brush faces."""
+    found = {}
+    for name in ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf"):
+        path = FONTS / name
+        font, tables = gs.open_font(path), TTFont(path)
+        glyphs = [glyph for glyph in tables.getGlyphOrder() if tables["glyf"][glyph].numberOfContours]
+        for glyph in glyphs[:: max(1, len(glyphs) // 15)][:15]:
+            found[f"{name} {glyph}"] = font.outline(glyph), font_contours(tables.getGlyphSet(), glyph)
+    return found
+
+
+@pytest.mark.parametrize(("corners", "effort"), WAYS)
+def test_new_crossings_and_collapses_are_in_the_measures(corners: Any, effort: Any) -> None:
+    options = gs.Options(corners=corners, effort=effort)
+    silent = {}
+    for name, (outline, source) in sources().items():
+        result = gs.convert(outline, options)
+        words = unflagged(*defects(gs.to_svg(result), source), [c.measures for c in result.contours])
+        if words:
+            silent[name] = words
+    assert silent == {}
+    assert len(sources()) == 30
+
+
+@pytest.mark.parametrize("effort", ["fast", "best"])
+def test_a_contour_that_becomes_a_line_is_in_the_measures(effort: Any) -> None:
+    points = np.array([point for piece in TEARDROP.contours[0] for point in piece[:3]]) / TEARDROP.unit
+    outline = gs.Outline("teardrop", contours=(gs.Contour(points, np.array([3, 3, 3, 3])),))
+    result = gs.convert(outline, gs.Options(corners="sharp", effort=effort, tolerance=0.25))
+    assert unflagged(*defects(gs.to_svg(result), TEARDROP), [c.measures for c in result.contours]) == []

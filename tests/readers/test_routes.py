@@ -1,0 +1,112 @@
+"""HarfBuzz and fontTools give the same outlines, over whole fonts; and what only one of them can read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables._g_l_y_f import GlyphComponent
+
+from glyphspline.errors import GlyphsplineError
+from glyphspline.outlines.outline import Contour
+from glyphspline.readers import open_font
+from glyphspline.readers.opentype.containers import unpacked
+from glyphspline.readers.opentype.fonttools import FontTools
+from glyphspline.types import FloatArray
+from tests.places import FONTS
+
+DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"
+
+CASES: list[tuple[str | Path, int, dict[str, float]]] = [
+    ("kouzan-gyosho.ttf", 0, {}),
+    ("kouzan-gyosho.otf", 0, {}),
+    ("kouzan-gyosho.woff2", 0, {}),
+    ("kouzan.ttc", 1, {}),
+    ("edge-cases.ttf", 0, {}),
+    ("variable.ttf", 0, {}),
+    ("variable.ttf", 0, {"wght": 777}),
+    ("variable-cff2.otf", 0, {}),
+    ("variable-cff2.otf", 0, {"wght": 777, "wdth": 90}),
+    (DEJAVU, 0, {}),
+]
+
+
+def from_leftmost(contour: Contour) -> FloatArray:
+    """All segments as cubics, begun at the lowest of the leftmost ends: the routes may begin a contour elsewhere."""
+    cubics = contour.cubics()
+    starts = cubics[:, 0].round(2)
+    first = int(np.lexsort(starts.T[::-1])[0])
+    return np.roll(cubics, -first, axis=0)
+
+
+@pytest.mark.parametrize(("file", "face_index", "location"), CASES)
+def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, location: dict[str, float]) -> None:
+    font = open_font(FONTS / file, face_index, location)
+    fonttools = FontTools(unpacked((FONTS / file).read_bytes()), face_index, font._hb.normalized)
+    for outline in font.outlines(font.glyph_names):
+        other, advance = fonttools.draw(outline.name)
+        assert outline.advance == advance
+        assert outline.notes == other.notes
+        assert len(outline.contours) == len(other.contours)
+        for a, b in zip(outline.contours, other.contours, strict=True):
+            assert sorted(a.degrees) == sorted(b.degrees)
+            np.testing.assert_allclose(from_leftmost(a), from_leftmost(b), atol=2e-3 if location else 0)
+
+
+def test_normalised_coordinates_are_rounded_as_the_format_has_them() -> None:
+    font = open_font(FONTS / "variable.ttf", location={"wght": 777})
+    assert font._hb.normalized == {"wght": round(0.754 * 16384) / 16384}
+
+
+def test_a_component_attached_by_point_matching_is_in_its_place(tmp_path: Path) -> None:
+    font = with_matched_point()
+    font.save(tmp_path / "matched.ttf")
+    square, mark = open_font(tmp_path / "matched.ttf").outline("both").contours
+    assert square.points.max(axis=0).tolist() == [600, 500]
+    assert mark.points.min(axis=0).tolist() == [600, 500]
+
+
+def with_matched_point() -> TTFont:
+    """A glyph "both": a square, and a smaller one whose first point is put on the square's upper right corner."""
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder([".notdef", "square", "mark", "both"])
+    glyphs = {name: pen.glyph() for name, pen in ((n, TTGlyphPen(None)) for n in (".notdef",))}
+    for name, side in (("square", 500), ("mark", 100)):
+        pen = TTGlyphPen(None)
+        pen.moveTo((100, 0))
+        for point in ((100, side), (100 + side, side), (100 + side, 0)):
+            pen.lineTo(point)
+        pen.closePath()
+        glyphs[name] = pen.glyph()
+    pen = TTGlyphPen(dict.fromkeys(glyphs))
+    pen.addComponent("square", (1, 0, 0, 1, 0, 0))
+    both = pen.glyph()
+    component = GlyphComponent()
+    component.glyphName, component.flags, component.firstPt, component.secondPt = "mark", 0, 2, 0
+    both.components.append(component)
+    glyphs["both"] = both
+    builder.setupGlyf(glyphs, calcGlyphBounds=False)
+    for glyph in glyphs.values():
+        glyph.recalcBounds(builder.font["glyf"])
+    builder.setupHorizontalMetrics({name: (700, getattr(glyph, "xMin", 0)) for name, glyph in glyphs.items()})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupCharacterMap({})
+    builder.setupPost()
+    return builder.font
+
+
+def test_a_broken_char_string_is_an_error_and_other_glyphs_still_read(tmp_path: Path) -> None:
+    data = (FONTS / "kouzan-gyosho.otf").read_bytes()
+    string = TTFont(FONTS / "kouzan-gyosho.otf")["CFF "].cff[0].CharStrings["A"].bytecode
+    assert data.count(string) == 1
+    half = len(string) // 2
+    (tmp_path / "cut.otf").write_bytes(data.replace(string, string[:half] + bytes([10]) * (len(string) - half)))
+    font = open_font(tmp_path / "cut.otf")
+    assert font.outline("uni9F8D").contours
+    with pytest.raises(GlyphsplineError, match="glyph 'A'"):
+        font.outline("A")

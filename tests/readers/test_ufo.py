@@ -1,0 +1,144 @@
+"""UFO sources as outlines, against the font they were made of."""
+
+from __future__ import annotations
+
+import pickle
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fontTools.ufoLib import UFOWriter
+
+from glyphspline.errors import FontError, GlyphsplineError
+from glyphspline.readers import Source, open_font, open_source
+from glyphspline.readers.ufo import Ufo, open_ufo
+from tests.places import FONTS
+
+
+class Drawn:
+    """What ufoLib's writer takes: a width, code points, and a drawing."""
+
+    def __init__(self, width: float, unicodes: tuple[int, ...] = ()) -> None:
+        self.width, self.unicodes = width, list(unicodes)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A UFO of two glyphs of their own, a composite, and a part that is not exported."""
+    path = tmp_path / "Small.ufo"
+    writer = UFOWriter(path)
+
+    class Info:
+        familyName, styleName, unitsPerEm, ascender, descender = "Small", "Light", 2000, 1500, -500  # noqa: N815
+
+    writer.writeInfo(Info())
+    glyphs = writer.getGlyphSet()
+
+    def square(pen: object, side: int = 400) -> None:
+        pen.beginPath()  # type: ignore[attr-defined]
+        for point in ((0, 0), (side, 0), (side, side), (0, side)):
+            pen.addPoint(point, "line")  # type: ignore[attr-defined]
+        pen.endPath()  # type: ignore[attr-defined]
+
+    def composite(pen: object) -> None:
+        pen.addComponent("_part", (2, 0, 0, 1, 100, 50))  # type: ignore[attr-defined]
+        pen.addComponent("square", (1, 0, 0, 1, 0, 0))  # type: ignore[attr-defined]
+
+    def curve(pen: object) -> None:
+        pen.beginPath()  # type: ignore[attr-defined]
+        pen.addPoint((0, 0), "curve", True)  # type: ignore[attr-defined]
+        pen.addPoint((300, 0))  # type: ignore[attr-defined]
+        pen.addPoint((300, 300))  # type: ignore[attr-defined]
+        pen.addPoint((600, 300), "curve")  # type: ignore[attr-defined]
+        pen.addPoint((900, 600), "qcurve")  # type: ignore[attr-defined]
+        pen.endPath()  # type: ignore[attr-defined]
+
+    glyphs.writeGlyph("square", Drawn(500, (0x41,)), square)
+    glyphs.writeGlyph("_part", Drawn(300), lambda pen: square(pen, 100))
+    glyphs.writeGlyph("pair", Drawn(700.5, (0x42, 0x43)), composite)
+    glyphs.writeGlyph("alone", Drawn(0), composite)
+    glyphs.writeGlyph("loop", Drawn(0), lambda pen: pen.addComponent("loop", (1, 0, 0, 1, 0, 0)))
+    glyphs.writeGlyph("lost", Drawn(0), lambda pen: pen.addComponent("nowhere", (1, 0, 0, 1, 0, 0)))
+    glyphs.writeGlyph("curves", Drawn(900), curve)
+    glyphs.writeContents()
+    writer.writeLib({"public.glyphOrder": ["pair", "gone", "square"], "public.skipExportGlyphs": ["_part", "alone"]})
+    writer.writeLayerContents()
+    return path
+
+
+def test_a_ufo_is_a_source(folder: Path) -> None:
+    ufo: Source = open_source(folder)
+    assert isinstance(ufo, Ufo)
+    assert (ufo.family, ufo.style) == ("Small", "Light")
+    assert (ufo.metrics.units_per_em, ufo.metrics.ascender, ufo.metrics.descender) == (2000, 1500, -500)
+    assert ufo.glyph_names == ("pair", "square", "curves", "loop", "lost")
+    assert ufo.cmap == {0x41: "square", 0x42: "pair", 0x43: "pair"}
+    assert ufo.select(text="BAX") == ("pair", "square")
+    assert ufo.select(text="X").missing == ("U+0058",)
+    again = pickle.loads(pickle.dumps(ufo))
+    assert again.sha256 == ufo.sha256
+    (folder / "glyphs" / "square.glif").write_text((folder / "glyphs" / "square.glif").read_text() + "\n")
+    assert open_ufo(folder).sha256 != ufo.sha256
+
+
+def test_components_are_decomposed_those_of_skipped_glyphs_too(folder: Path) -> None:
+    ufo = open_ufo(folder)
+    pair = ufo.outline("pair")
+    assert (pair.gid, pair.advance, pair.unicodes) == (0, 700.5, (0x42, 0x43))
+    part, square = pair.contours
+    assert sorted(map(tuple, part.points.tolist())) == [(100, 50), (100, 150), (300, 50), (300, 150)]
+    np.testing.assert_array_equal(square.points, ufo.outline("square").contours[0].points)
+    with pytest.raises(FontError, match="no such glyph"):
+        ufo.outline("_part")
+
+
+def test_cubics_and_quadratics_of_one_contour_are_kept_apart(folder: Path) -> None:
+    (contour,) = open_ufo(folder).outline("curves").contours
+    assert sorted(contour.degrees.tolist()) == [1, 1, 3]  # a qcurve without points off the curve is a line
+
+
+def test_what_is_broken_is_named(folder: Path) -> None:
+    ufo = open_ufo(folder)
+    with pytest.raises(GlyphsplineError, match=r"Small\.ufo, glyph 'loop': components in a loop"):
+        ufo.outline("loop")
+    with pytest.raises(GlyphsplineError, match="'nowhere' does not exist"):
+        ufo.outline("lost")
+    (folder / "glyphs" / "square.glif").write_text("<glyph")
+    with pytest.raises(GlyphsplineError, match="not well-formed"):
+        open_ufo(folder)
+
+
+@pytest.mark.parametrize("file", ["glyphs/curves.glif", "fontinfo.plist", "glyphs/contents.plist"])
+def test_entities_are_refused(folder: Path, file: str) -> None:
+    text = (folder / file).read_text()
+    declared = '<!DOCTYPE x [<!ENTITY laugh "ha">]>'
+    head, _, body = text.partition("?>")
+    (folder / file).write_text(
+        head + "?>" + declared + body[body.index("<glyph") if "glif" in file else body.index("<plist") :]
+    )
+    with pytest.raises(GlyphsplineError, match="entities"):
+        open_ufo(folder).outline("curves")
+
+
+def test_a_glyph_outside_the_folder_is_refused(folder: Path) -> None:
+    shutil.copy(folder / "glyphs" / "curves.glif", folder / "curves.glif")
+    contents = folder / "glyphs" / "contents.plist"
+    contents.write_text(contents.read_text().replace("curves.glif", "../curves.glif"))
+    with pytest.raises(FontError, match="outside"):
+        open_ufo(folder)
+
+
+def test_folders_that_are_no_ufo(tmp_path: Path) -> None:
+    with pytest.raises(FontError, match="no UFO"):
+        open_source(tmp_path)
+    (tmp_path / "metainfo.plist").write_text("nonsense")
+    with pytest.raises(FontError, match="well-formed"):
+        open_source(tmp_path)
+
+
+def test_a_font_opened_through_open_source_is_the_font(tmp_path: Path) -> None:
+    shutil.copy(FONTS / "variable.ttf", tmp_path / "font.svg")  # the name does not decide
+    font = open_source(tmp_path / "font.svg", 0, {"wght": 700})
+    assert font.location == {"wght": 700}
+    assert font.glyph_names == open_font(FONTS / "variable.ttf").glyph_names

@@ -1,0 +1,201 @@
+"""The reproduction of the paper, in its small version: what it claims, and that it is the same twice."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import glyphspline as gs
+from glyphspline.interpolation.intervals import basis_function
+from scripts.paper.certified import certify, enclose, family, peak_values, threshold, windows_of, worst_corner
+from scripts.paper.clicking import CHARACTERS, DATA, FONTS, clicked_character
+from scripts.paper.common import Run, is_verdict, random_polygons
+from scripts.paper.fairness import curves_of, quality, self_crossings
+from scripts.paper.report import numbers_missing, show
+from scripts.paper.steps import STEPS, reproduce
+from tests.places import ROOT
+
+OUTPUTS = ROOT / "outputs" / "paper"
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the small version, which one process makes for all that run tests beside each other."""
+    place = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        place = place.parent  # of this run of pytest
+    out, made = place / "quick-paper", place / "quick-paper-made"
+    try:
+        out.mkdir()
+    except FileExistsError:
+        until = time.monotonic() + 600
+        while not made.exists():
+            assert time.monotonic() < until, "the process that makes the paper has failed"
+            time.sleep(0.2)
+    else:
+        reproduce(Run(out, quick=True))
+        made.touch()
+    return out
+
+
+def claims_of(folder: Path) -> dict[str, Any]:
+    content = json.loads((folder / "claims.json").read_text(encoding="utf-8"))
+    return {c["id"]: c for c in content["claims"]}
+
+
+def test_every_claim_has_the_schema(quick: Path) -> None:
+    claims = claims_of(quick)
+    assert {"corollary-1", "fig-1-failures", "fig-2-variant-0-share", "fig-3-mean-iterations"} <= set(claims)
+    for c in claims.values():
+        assert set(c) == {"id", "source", "claim", "paper", "measured", "verdict", "note", "command"}
+        assert is_verdict(c["verdict"])
+        assert c["command"].rsplit(" ", 1)[1] in STEPS
+        for number in _numbers(c["measured"]):
+            assert math.isfinite(number), c["id"]
+
+
+def _numbers(value: Any) -> list[float]:
+    if isinstance(value, dict | list):
+        return [x for v in (value.values() if isinstance(value, dict) else value) for x in _numbers(v)]
+    return [value] if isinstance(value, int | float) else []
+
+
+def test_what_the_paper_proves_holds(quick: Path) -> None:
+    claims = claims_of(quick)
+    # x³/2 - x² + 1/6 = 0 by bisection, not by the program's own intervals.
+    low, high = 0.4, 0.5
+    for _ in range(60):
+        x = (low + high) / 2
+        low, high = (x, high) if x**3 / 2 - x**2 + 1 / 6 > 0 else (low, x)
+    assert claims["corollary-1"]["measured"] == pytest.approx(low, abs=1e-8)
+    assert claims["remark-1"]["measured"]["bound"] == pytest.approx(5 / 6, abs=1e-5)
+    assert claims["remark-1"]["measured"]["largest factor, uniform knots"] <= 5 / 6
+    assert claims["theorem-1"]["measured"]["not converged"] == 0
+    assert claims["remark-2"]["measured"]["not converged"] > 0
+    assert claims["theorem-2"]["measured"]["steps above the bound"] == 0
+    assert claims["beyond-margin-zero"]["measured"]["largest factor of two steps"] < 1
+    assert claims["beyond-algorithm-3"]["measured"]["c = 0.05"]["steps above the bound"] == 0
+
+
+def test_iterations_and_shares_are_in_the_range_of_the_paper(quick: Path) -> None:
+    claims = claims_of(quick)
+    shares = claims["fig-2-variant-0-share"]["measured"]
+    assert shares["variant 0"]["20"] < 100
+    assert all(shares[f"variant {v}"][n] == 100 for v in (1, 2, 3, 4) for n in ("5", "20"))
+    means = claims["fig-3-mean-iterations"]["measured"]
+    for n in ("5", "20"):
+        assert means["variant 4"][n] < means["variant 2"][n] < means["variant 3"][n]
+        assert 15 < means["variant 2"][n] < 50
+    radius = claims["fig-5-composite-radius"]["measured"]
+    assert all(radius[f"variant {v}"]["largest of all"] < 1 for v in (1, 2, 3))
+
+
+def test_the_readme_has_no_number_that_the_claims_lack(quick: Path) -> None:
+    for folder in [quick, *([OUTPUTS] if (OUTPUTS / "README.md").exists() else [])]:
+        readme = (folder / "README.md").read_text(encoding="utf-8")
+        assert numbers_missing(readme, (folder / "claims.json").read_text(encoding="utf-8")) == []
+        assert "{{" not in readme
+        for picture in re.findall(r"\]\(([^)#]+\.png)\)", readme):
+            assert (folder / picture).exists(), picture
+    assert numbers_missing("about 47.11 of them", '{"a": 4, "b": 0.11}') == ["47.11"]
+
+
+def test_a_second_run_says_the_same(quick: Path, tmp_path: Path) -> None:
+    reproduce(Run(tmp_path, quick=True), [s for s in STEPS if s not in ("fig4", "quality", "fig8", "degrees")])
+    first = claims_of(quick)
+    for id, claim in claims_of(tmp_path).items():
+        assert claim == first[id]
+    for picture in ("fig-1.png", "fig-3.svg", "fig-5.png", "fig-6.png", "thresholds.svg"):
+        assert (tmp_path / picture).read_bytes() == (quick / picture).read_bytes(), picture
+
+
+def test_running_one_step_keeps_the_claims_of_the_others(quick: Path, tmp_path: Path) -> None:
+    (tmp_path / "claims.json").write_bytes((quick / "claims.json").read_bytes())
+    reproduce(Run(tmp_path, quick=True), ["fig1"])
+    assert list(claims_of(tmp_path)) == list(claims_of(quick))
+
+
+@pytest.mark.parametrize("degree", [3, 4, 5])
+def test_no_random_knot_vector_beats_the_certified_least_peak(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    h = np.exp(rng.uniform(0, np.log(3), (20_000, degree + 1)))
+    least, _ = worst_corner(degree, 3, "box")
+    assert certify(degree, 3, "box", least - 1e-6) is not None
+    assert peak_values(h).min() > least - 1e-6
+
+
+def test_enclosures_hold_values_and_slopes() -> None:
+    rng = np.random.default_rng(1)
+    middle = rng.uniform(1, 4, (200, 4))
+    x = rng.uniform(0, 1, 200)
+    box = enclose(middle * 0.9, middle * 1.1, 1, x)
+    h = middle * rng.uniform(0.9, 1.1, middle.shape)
+
+    def value(h: np.ndarray) -> np.ndarray:
+        return basis_function(windows_of(h), h[:, 0] + x * h[:, 1])
+
+    assert ((box.low <= value(h)) & (value(h) <= box.high)).all()
+    for k in range(4):
+        up, down = h.copy(), h.copy()
+        up[:, k] *= 1 + 1e-6
+        down[:, k] *= 1 - 1e-6
+        slope = (value(up) - value(down)) / 2e-6
+        assert (box.slope_low[:, k] - 1e-8 <= slope).all()
+        assert (slope <= box.slope_high[:, k] + 1e-8).all()
+
+
+def test_quadratic_peaks_have_the_closed_form_and_no_threshold() -> None:
+    b = np.array([1.0, 10.0, 1e4])
+    h = np.stack([np.ones(3), b, np.ones(3)], axis=1)
+    assert peak_values(h) == pytest.approx(1 - b / (2 * (1 + b)), rel=1e-12)
+    assert threshold(2, "box") is None
+    assert len(family(2, 4, "adjacent").low) == 0
+
+
+def test_scipy_with_chord_lengths_is_variant_3() -> None:
+    polygon = random_polygons(12, 1)[0]
+    curves = curves_of(polygon, 1e-12)
+    np.testing.assert_allclose(curves["variant 3"][0], curves["SciPy chord"][0], atol=1e-9)
+
+
+def test_measures_of_a_circle() -> None:
+    angle = 2 * np.pi * np.arange(40) / 40
+    polygon = 2 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    r = gs.interpolate(polygon, 2, residual_tolerance=1e-12)
+    q = quality(r.spline.to_bezier(), np.arange(40.0), polygon)
+    assert q["∫κ² ds"] == pytest.approx(np.pi, rel=1e-4)
+    # The second derivative of a cubic spline is off by h²/12 at the knots, h being the angle of a span, and is
+    # linear between them, so that the slope of the curvature runs from h/8 to -h/8 along each span.
+    h = np.pi / 20
+    assert q["max |κ|"] == pytest.approx(0.5 * (1 + h**2 / 12), rel=1e-4)
+    assert q["∫(dκ/ds)² ds"] == pytest.approx(4 * np.pi * (h / 8) ** 2 / 3, rel=0.02)
+    assert q["bulge"] == pytest.approx(2 * (1 - np.cos(np.pi / 40)), rel=1e-3)
+    assert q["self-crossings"] == 0
+
+
+def test_crossings_are_counted() -> None:
+    t = np.linspace(0, 2 * np.pi, 60, endpoint=False) + 0.01
+    assert self_crossings(np.stack([np.sin(2 * t), np.sin(t)], axis=1)) == 1
+    assert self_crossings(np.stack([np.cos(t), np.sin(t)], axis=1)) == 0
+
+
+@pytest.mark.parametrize("stem", sorted(CHARACTERS))
+def test_the_clicked_polygons_come_from_the_bundled_faces(stem: str) -> None:
+    character, file = CHARACTERS[stem]
+    stored = json.loads((DATA / f"{stem}.json").read_text(encoding="utf-8"))
+    assert clicked_character(FONTS / file, character) == stored
+
+
+def test_tables_of_nested_claims() -> None:
+    text = show({"all": 3, "a": {"x": 1, "y": 2.5}, "b": {"x": 3, "y": 4}})
+    assert text.splitlines()[0] == "| all |"
+    assert "| a | 1 | 2.5 |" in text
+    assert "| b | 3 | 4 |" in text

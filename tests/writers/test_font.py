@@ -1,0 +1,261 @@
+"""Fonts written with interpolated outlines: opened again, every glyph within tolerance of its source, the rest kept."""
+
+from __future__ import annotations
+
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import uharfbuzz as hb
+from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
+from fontTools.pens.boundsPen import BoundsPen, ControlBoundsPen
+from fontTools.ttLib import TTFont, newTable
+from fontTools.ttLib.tables.ttProgram import Program
+
+import glyphspline as gs
+from glyphspline.curves.integrals import area
+from glyphspline.errors import GlyphsplineError
+from glyphspline.outlines.outline import Outline
+from glyphspline.readers import AnySource, open_font, open_source
+from glyphspline.writers.font.font_file import FontSummary, to_font, write_font
+from glyphspline.writers.font.font_glyphs import Flavour, fitting_tolerance, oriented
+from tests.drawings import L_SHAPE, circle, polygon_contour, result
+from tests.places import FONTS
+from tests.readers.test_fonts import two_sided_distance
+
+TOLERANCE = 4.0
+FLAVOURS: list[Flavour] = ["otf", "ttf"]
+SOURCES: list[tuple[str, dict[str, float]]] = [
+    ("kouzan-gyosho.ttf", {}),
+    ("kouzan-gyosho.otf", {}),
+    ("variable.ttf", {"wght": 700}),
+    ("variable-cff2.otf", {"wght": 777, "wdth": 90}),
+]
+
+
+@cache
+def converted(file: str, location: tuple[tuple[str, float], ...], flavour: Flavour) -> tuple[Any, ...]:
+    """The source, every second of its glyphs converted, and the font written of them."""
+    source = open_font(FONTS / file, location=dict(location))
+    options = gs.Options(tolerance=fitting_tolerance(TOLERANCE, flavour))
+    results = [gs.convert(source.outline(name), options) for name in source.glyph_names[1::2][:5]]
+    data, summary = to_font(source, results, flavour, tolerance=TOLERANCE)
+    return source, results, data, summary
+
+
+def reopened(data: bytes, tmp_path: Path, suffix: str = "otf") -> AnySource:
+    (tmp_path / f"written.{suffix}").write_bytes(data)
+    return open_source(tmp_path / f"written.{suffix}")
+
+
+def largest_distance(one: Outline, other: Outline) -> float:
+    """Contours are compared each with each: both files have them in the same order."""
+    assert len(one.contours) == len(other.contours)
+    return max((two_sided_distance(a, b) for a, b in zip(one.contours, other.contours, strict=True)), default=0.0)
+
+
+def total_area(outline: Outline) -> float:
+    return sum(area(contour.cubics()) for contour in outline.contours)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize(("file", "location"), SOURCES)
+def test_every_glyph_is_within_tolerance_of_its_source(
+    file: str, location: dict[str, float], flavour: Flavour, tmp_path: Path
+) -> None:
+    source, results, data, summary = converted(file, tuple(location.items()), flavour)
+    written = reopened(data, tmp_path)
+    assert summary.replaced == len(results) > 1
+    assert summary.beyond == ()
+    assert 0 < summary.largest_error <= TOLERANCE
+    replaced = {glyph.outline.name for glyph in results}
+    for name, new_name in zip(source.glyph_names, written.glyph_names, strict=True):
+        old, new = source.outline(name), written.outline(new_name)
+        assert new.advance == old.advance
+        assert new.unicodes == old.unicodes
+        distance = largest_distance(old, new)
+        assert distance <= (summary.largest_error if name in replaced else 1.25)
+        if name in replaced and old.contours and name != "space":
+            assert distance > 0
+        if abs(total_area(old)) > 1:
+            assert (total_area(new) > 0) == (flavour == "otf")
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize(("file", "location"), SOURCES)
+def test_both_libraries_read_the_written_font_alike(
+    file: str, location: dict[str, float], flavour: Flavour, tmp_path: Path
+) -> None:
+    _, results, data, _ = converted(file, tuple(location.items()), flavour)
+    new = {glyph.outline.gid for glyph in results}
+    font, face = TTFont(BytesIO(data)), hb.Face(data)
+    assert font.sfntVersion == ("OTTO" if flavour == "otf" else "\0\1\0\0")
+    assert face.glyph_count == len(font.getGlyphOrder())
+    assert all(font[tag] is not None for tag in font.keys())  # noqa: SIM118 - reads every table
+    head = font["head"]
+    boxes = []
+    for gid in range(face.glyph_count):
+        pen = BoundsPen(None) if flavour == "otf" else ControlBoundsPen(None)  # TrueType counts points off the curve
+        hb.Font(face).draw_glyph_with_pen(gid, pen)
+        if pen.bounds is not None:
+            boxes.append(pen.bounds)
+            if gid in new:
+                assert font["hmtx"][font.getGlyphName(gid)][1] == pytest.approx(pen.bounds[0], abs=1)
+    found = np.array(boxes, dtype=float)
+    assert head.xMin == pytest.approx(found[:, 0].min(), abs=1)
+    assert head.yMax == pytest.approx(found[:, 3].max(), abs=1)
+    assert not {"fpgm", "prep", "cvt ", "fvar", "gvar", "CFF2", "STAT"} & set(font.keys())
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_the_same_input_gives_the_same_bytes(flavour: Flavour) -> None:
+    source, results, data, _ = converted("kouzan-gyosho.ttf", (), flavour)
+    assert to_font(source, iter(results), flavour, tolerance=TOLERANCE)[0] == data
+
+
+def test_kept_glyphs_of_the_same_format_are_the_very_same(tmp_path: Path) -> None:
+    for flavour in FLAVOURS:
+        file = f"kouzan-gyosho.{flavour}"
+        source, results, data, _ = converted(file, (), flavour)
+        written = reopened(data, tmp_path)
+        kept = set(source.glyph_names) - {glyph.outline.name for glyph in results}
+        assert len(kept) > 5
+        for name in kept:
+            for a, b in zip(source.outline(name).contours, written.outline(name).contours, strict=True):
+                np.testing.assert_array_equal(a.points, b.points)
+
+
+def test_composites_of_replaced_glyphs_look_as_before(tmp_path: Path) -> None:
+    source = open_font(FONTS / "edge-cases.ttf")
+    data, _ = to_font(source, [gs.convert(source.outline("a"), gs.Options(count=12))], "ttf")
+    written = reopened(data, tmp_path)
+    assert largest_distance(source.outline("a"), written.outline("a")) > 0.5
+    assert largest_distance(source.outline("twice"), written.outline("twice")) == 0
+    assert not TTFont(BytesIO(data))["glyf"]["twice"].isComposite()
+    data, _ = to_font(source, [gs.convert(source.outline("A"), gs.Options(count=12))], "ttf")
+    assert TTFont(BytesIO(data))["glyf"]["twice"].isComposite()
+
+
+def test_a_composite_that_is_replaced_leaves_its_parts(tmp_path: Path) -> None:
+    source = open_font(FONTS / "variable.ttf", location={"wght": 500})
+    data, summary = to_font(source, [gs.convert(source.outline("i"), gs.Options(tolerance=2.0))], "ttf")
+    written = reopened(data, tmp_path)
+    assert summary.replaced == 1
+    assert 0 < largest_distance(source.outline("i"), written.outline("i")) < 3
+    for name in ("stem", "dot", "ii", "mirror"):
+        assert largest_distance(source.outline(name), written.outline(name)) < 1
+
+
+def with_layout(tmp_path: Path) -> Path:
+    """The brush font with kerning, a substitution, instructions and a date that must not change."""
+    font = TTFont(FONTS / "kouzan-gyosho.ttf", recalcTimestamp=False)
+    addOpenTypeFeaturesFromString(
+        font, "feature kern { pos A O -77; } kern; feature salt { sub A by B; } salt;", tables=["GSUB", "GPOS"]
+    )
+    font["fpgm"] = newTable("fpgm")
+    font["fpgm"].program = Program()
+    font["fpgm"].program.fromAssembly(["PUSHB[ ] 0", "POP[ ]"])
+    font.save(tmp_path / "layout.ttf")
+    return tmp_path / "layout.ttf"
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_kerning_and_features_work_in_the_written_font(flavour: Flavour, tmp_path: Path) -> None:
+    source = open_font(with_layout(tmp_path))
+    data, _ = to_font(source, [gs.convert(source.outline("A"), gs.Options(tolerance=4.0))], flavour)
+    for features, expected in (({}, ("A", -77)), ({"salt": True, "kern": False}, ("B", 0))):
+        shaped = []
+        for content in (Path(source.path).read_bytes(), data):
+            font, buffer = hb.Font(hb.Face(content)), hb.Buffer()
+            buffer.add_str("AO")
+            buffer.guess_segment_properties()
+            hb.shape(font, buffer, features)
+            advances = [position.x_advance for position in buffer.glyph_positions]
+            shaped.append(([info.codepoint for info in buffer.glyph_infos], advances))
+        assert shaped[0] == shaped[1]
+        name, kern = expected
+        assert source.glyph_names[shaped[1][0][0]] == name
+        assert shaped[1][1][0] == source.outline(name).advance + kern
+
+
+def test_a_written_font_does_not_pass_for_its_source() -> None:
+    source, _, data, summary = converted("kouzan-gyosho.otf", (), "otf")
+    font = TTFont(BytesIO(data))
+    old = TTFont(FONTS / "kouzan-gyosho.otf")
+    assert summary.family == font["name"].getBestFamilyName() == f"{source.family} Spline"
+    assert font["name"].getDebugName(0) == old["name"].getDebugName(0)
+    for name_id in (1, 3, 4, 6):
+        assert font["name"].getDebugName(name_id) != old["name"].getDebugName(name_id)
+    assert font["CFF "].cff.fontNames == [font["name"].getDebugName(6)] == ["KouzanGyoshoSubsetSpline-Regular"]
+    data, _ = to_font(source, [], "otf", family="Other & 名")
+    font = TTFont(BytesIO(data))
+    assert font["name"].getBestFamilyName() == "Other & 名"
+    assert font["name"].getDebugName(6).isascii()
+
+
+def test_without_room_for_whole_units_cff_has_fractions_and_truetype_says_so() -> None:
+    source = open_font(FONTS / "kouzan-gyosho.otf")
+    glyph = gs.convert(source.outline("O"), gs.Options(tolerance=fitting_tolerance(0.5, "otf")))
+    data, summary = to_font(source, [glyph], "otf", tolerance=0.5)
+    assert summary.beyond == ()
+    assert summary.largest_error is not None
+    assert summary.largest_error <= 0.5
+    fractional = hb.Font(hb.Face(data))
+    points: list[float] = []
+    functions = hb.DrawFuncs()
+    functions.set_move_to_func(lambda x, y, user: points.extend((x, y)))
+    fractional.draw_glyph(source.glyph_names.index("O"), functions)
+    assert any(value % 1 for value in points)
+    _, summary = to_font(source, [glyph], "ttf", tolerance=0.5)
+    assert summary.beyond == ("O",)
+
+
+def test_glyphs_without_measured_deviation_make_no_promise() -> None:
+    source = open_font(FONTS / "kouzan-gyosho.otf")
+    _, summary = to_font(source, [gs.convert(source.outline("O"), gs.Options(count=40))], "otf")
+    assert summary == FontSummary(f"{source.family} Spline", 1, None, (), summary.extrema)
+
+
+def test_outer_contours_run_as_each_format_has_them() -> None:
+    ring = [gs.Contour.from_segments(circle(200, 8, centre=(300, 300), turn=turn)) for turn in (1, -1)]
+    for turn in (0, 1):
+        contours = [ring[turn], polygon_contour(L_SHAPE / 10)]
+        assert sum(area(c.cubics()) for c in oriented(contours, "otf")) > 0
+        assert sum(area(c.cubics()) for c in oriented(contours, "ttf")) < 0
+
+
+def test_coordinates_that_no_font_can_hold_are_an_error_with_a_name() -> None:
+    source = open_font(FONTS / "edge-cases.ttf")
+    glyph = result(polygon_contour(L_SHAPE * 100), name="A", gid=source.glyph_names.index("A"))
+    for flavour in FLAVOURS:
+        with pytest.raises(GlyphsplineError, match=r"glyph 'A': coordinates beyond"):
+            to_font(source, [glyph], flavour)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_drawings_become_a_font(flavour: Flavour, tmp_path: Path) -> None:
+    for name, code in (("a", 0x61), ("b", 0x62)):
+        glyph = result(polygon_contour(L_SHAPE), name=name, gid=code, unicodes=(code,))
+        (tmp_path / f"{name}.svg").write_text(gs.to_svg(glyph), encoding="utf-8")
+    source = open_source(tmp_path)
+    summary = write_font(
+        source, [gs.convert(source.outline("a"), gs.Options(tolerance=2.0))], tmp_path / f"new.{flavour}"
+    )
+    assert summary.replaced == 1
+    font = open_font(tmp_path / f"new.{flavour}")
+    assert font.cmap == {0x61: "a", 0x62: "b"}
+    assert font.glyph_names == (".notdef", "a", "b")
+    assert font.family == f"{tmp_path.name} Spline"
+    assert font.metrics == source.metrics
+    assert largest_distance(source.outline("b"), font.outline("b")) < 1e-9
+    assert 0 < largest_distance(source.outline("a"), font.outline("a")) < 3
+    assert font.outline("b").advance == 600
+
+
+def test_the_suffix_says_which_format(tmp_path: Path) -> None:
+    source = open_font(FONTS / "variable.ttf")
+    with pytest.raises(GlyphsplineError, match=r"\.otf or \.ttf"):
+        write_font(source, [], tmp_path / "font.woff")

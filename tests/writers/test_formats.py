@@ -1,0 +1,596 @@
+"""Formats by name, ours and a plug-in's; outlines as the font has them; results as JSON and as polygons."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from io import StringIO
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from fontTools.svgLib.path import parse_path
+from fontTools.ttLib import TTFont
+from jsonschema import Draft202012Validator
+from typer.testing import CliRunner
+
+import glyphspline as gs
+from glyphspline.cli import app
+from glyphspline.curves.bezier import evaluate
+from glyphspline.errors import GlyphsplineError, OptionError
+from glyphspline.fitting.results import as_glyph
+from glyphspline.outlines.flattening import flattened
+from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
+from glyphspline.outlines.uncrossing import uncrossed
+from glyphspline.runs import OutputError, RunSpec, convert_font, entries_of
+from glyphspline.runs import worker as batch_worker
+from glyphspline.types import FloatArray
+from glyphspline.writers import formats as registry
+from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
+from glyphspline.writers.json_file import json_text
+from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
+from glyphspline.writers.settings import Settings
+from glyphspline.writers.svg.appearance import Appearance
+from tests.places import FONTS, ROOT
+
+TTF, OTF = FONTS / "kouzan-gyosho.ttf", FONTS / "kouzan-gyosho.otf"
+WRITERS = ROOT / "glyphspline" / "writers"
+POLYLINES = ("polyline", "polyline-csv", "polyline-scad")
+
+runner = CliRunner()
+
+
+@pytest.fixture(scope="module")
+def font() -> gs.Font:
+    return gs.open_font(TTF)
+
+
+@pytest.fixture(scope="module", params=["smooth", "sharp"])
+def glyph(request: pytest.FixtureRequest, font: gs.Font) -> gs.GlyphResult:
+    return gs.convert(font.outline("uni9F8D"), gs.Options(corners=request.param))
+
+
+# The registry.
+
+
+def test_formats_are_found_by_name() -> None:
+    assert [format_named(name).name for name in OURS] == list(OURS)
+    assert set(OURS) <= set(format_names())
+    assert {each.name for each in formats()} == set(format_names())
+    with pytest.raises(OptionError, match=r"no format bmp: there are source, svg, .*polyline-scad"):
+        format_named("bmp")
+
+
+def test_every_format_writes_a_result_by_itself(font: gs.Font) -> None:
+    glyph = gs.convert(font.outline("O"), gs.Options(step=60))
+    for each in OURS.values():
+        found = [each.write(glyph, Settings(Appearance(size="20mm"))) for _ in range(2)]
+        assert found[0] == found[1]
+        assert len(found[0]) > 300
+
+
+def test_the_run_writes_what_the_format_does(font: gs.Font, tmp_path: Path) -> None:
+    shared = ("source", "svg", "png", *POLYLINES, "json")
+    look = Appearance("ink", "20mm", "red", "blue")
+    spec = RunSpec(gs.Options(step=60), shared, Settings(look, flatness=2.0))
+    convert_font(font, ["O"], tmp_path, spec, jobs=0)
+    glyph = gs.convert(font.outline("O"), gs.Options(step=60))
+    settings = Settings(look, flatness=2.0).scaled(font.metrics)
+    (entry,) = entries_of(tmp_path)
+    assert tuple(entry["files"]) == tuple(name for name in OURS if name in shared)
+    for name, path in entry["files"].items():
+        text = format_named(name).write(glyph, settings)
+        assert (tmp_path / path).read_bytes() == (text.encode() if isinstance(text, str) else text), name
+
+
+@pytest.mark.parametrize(
+    ("name", "suffix", "extra"),
+    [
+        ("../x", ".x", None),
+        ("X", ".x", None),
+        ("x", "x", None),
+        ("x", ".x/y", None),
+        ("x", ".x", "none"),
+        ("", ".x", None),
+    ],
+)
+def test_a_format_has_a_name_and_a_suffix_that_are_safe(name: str, suffix: str, extra: str | None) -> None:
+    with pytest.raises(OptionError):
+        Format(name, suffix, lambda result, settings: "", extra)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"flatness": 0.0}, {"flatness": float("nan")}, {"flatness": -1}, {"dxf": "line"}, {"scale": 0.0}]
+)
+def test_settings_are_checked(wrong: dict[str, Any]) -> None:
+    with pytest.raises(OptionError):
+        Settings(**wrong)
+
+
+def test_a_size_is_the_height_from_descender_to_ascender() -> None:
+    settings = Settings(Appearance(size="20mm")).scaled(FontMetrics(1000, 750, -250))
+    assert (settings.scale, settings.unit) == (0.02, "mm")
+    assert Settings(Appearance(size="1in")).scaled(FontMetrics(1000, 0, 0)).scale == 1 / 1000
+    plain = Settings().scaled(FontMetrics())
+    assert (plain.scale, plain.unit) == (1, None)
+
+
+def test_a_missing_extra_is_said_before_the_run_starts(font: gs.Font, tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setitem(OURS, "needy", Format("needy", ".x", lambda result, settings: "x", "parquet"))
+    with pytest.raises(GlyphsplineError, match=r"glyphspline\[parquet\]"):
+        convert_font(font, ["O"], tmp_path / "out", RunSpec(formats=("needy",)), jobs=0)
+    assert not (tmp_path / "out").exists()
+
+
+# Plug-ins.
+
+PLUG_IN = """
+from glyphspline.writers.formats import Format
+
+def write(result, settings):
+    return f"{result.outline.name} {len(result.contours)} {settings.scale:.6f} {settings.unit}\\n"
+
+count = Format("count", ".count.txt", write)
+svg = Format("svg", ".txt", write)
+bare = Format("bare", ".txt", lambda result, settings: str(len(result.arrays.arcs)), fitted=False)
+"""
+
+METADATA = "Metadata-Version: 2.1\nName: counting\nVersion: 1.0\n"
+
+ENTRIES = """[glyphspline.formats]
+count = counting:count
+svg = counting:svg
+bare = counting:bare
+broken = counting:missing
+other = counting:count
+"""
+
+
+@pytest.fixture(scope="module")
+def plug_in(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The environment of a process for which a package with formats is installed."""
+    folder = tmp_path_factory.mktemp("site")
+    (folder / "counting.py").write_text(PLUG_IN)
+    facts = folder / "counting-1.0.dist-info"
+    facts.mkdir()
+    (facts / "METADATA").write_text(METADATA)
+    (facts / "entry_points.txt").write_text(ENTRIES)
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(folder)])}
+
+
+def convert(environment: dict[str, str], out: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "glyphspline", "convert", str(TTF), "--out", str(out), *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("jobs", ["0", "2"])
+def test_an_installed_plug_in_writes_files(plug_in: dict[str, str], tmp_path: Path, jobs: str) -> None:
+    call = ["--text", "龍O", "--step", "60", "--size", "2cm", "--format", "svg,count", "--jobs", jobs]
+    done = convert(plug_in, tmp_path, *call)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "count" / "O.count.txt").read_text() == f"O 2 {2 / 1024:.6f} cm\n"
+    assert (tmp_path / "svg" / "O.svg").read_text().startswith("<svg ")  # ours, and not the plug-in's
+    files = [entry["files"] for entry in entries_of(tmp_path)]
+    assert files[0] == {"svg": "svg/O.svg", "count": "count/O.count.txt"}
+    run = json.loads((tmp_path / "run.json").read_text())
+    assert run["formats"] == ["svg", "count"]
+    assert "--format svg,count" in run["command"]
+    before = (tmp_path / "count" / "O.count.txt").stat().st_mtime_ns
+    (tmp_path / "count" / "uni9F8D.count.txt").unlink()
+    assert convert(plug_in, tmp_path, *call).returncode == 0  # goes on: one file is missing
+    assert (tmp_path / "count" / "uni9F8D.count.txt").exists()
+    assert (tmp_path / "count" / "O.count.txt").stat().st_mtime_ns == before
+    assert convert(plug_in, tmp_path, "--text", "O", "--format", "svg", "--restart").returncode == 0
+    assert list((tmp_path / "count").iterdir()) == []
+
+
+def test_a_plug_in_that_shows_outlines_as_they_are_fits_nothing(plug_in: dict[str, str], tmp_path: Path) -> None:
+    assert convert(plug_in, tmp_path, "--text", "O", "--format", "bare", "--jobs", "0").returncode == 0
+    assert (tmp_path / "bare" / "O.txt").read_text() == "0"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("broken", "the plug-in for format 'broken' of counting cannot be loaded: AttributeError"),
+        ("other", "the plug-in for format 'other' of counting is no such format"),
+        ("counting", "no format counting: there are source, svg, "),
+    ],
+)
+def test_a_plug_in_that_does_not_load_is_named(plug_in: dict[str, str], tmp_path: Path, name: str, words: str) -> None:
+    done = convert(plug_in, tmp_path / "out", "--text", "O", "--format", f"svg,{name}")
+    assert done.returncode == 2
+    assert words in done.stderr
+    if name == "counting":
+        assert "bare, broken, count, other, gallery, ufo" in done.stderr
+
+
+def test_our_formats_are_found_without_scanning_packages(font: gs.Font, tmp_path: Path, monkeypatch: Any) -> None:
+    def scanned(group: str = "") -> tuple[()]:
+        assert group != registry.GROUP
+        return ()  # Numba looks for extensions of its own
+
+    registry._plug_ins.cache_clear()
+    monkeypatch.setattr("importlib.metadata.entry_points", scanned)
+    convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=90), ("svg", "gallery", "json")), jobs=0)
+    convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=90), ("svg", "json")), jobs=0, restart=True)
+
+
+# The outline as it is.
+
+
+def test_source_fits_nothing(font: gs.Font, tmp_path: Path, monkeypatch: Any) -> None:
+    def fitted(*_: Any, **__: Any) -> Any:
+        raise AssertionError
+
+    monkeypatch.setattr(batch_worker, "convert_many", fitted)
+    summary = convert_font(font, font.glyph_names, tmp_path, RunSpec(formats=("source",)), jobs=0)
+    assert not summary.failed
+    for entry in entries_of(tmp_path):
+        assert entry["contours"] is None
+        assert entry["deviation"] is None
+        assert list(entry["files"]) == (["source"] if entry["status"] == "ok" else [])
+
+
+@pytest.mark.parametrize("path", [TTF, OTF])
+def test_source_is_what_the_font_draws(path: Path, tmp_path: Path) -> None:
+    """Another reader of the font, fontTools, and another of the drawing see the same points."""
+    source = gs.open_font(path)
+    convert_font(source, source.glyph_names, tmp_path, RunSpec(formats=("source",)), jobs=0)
+    glyphs = TTFont(path).getGlyphSet()
+    seen = set()
+    for entry in entries_of(tmp_path):
+        if entry["status"] == "ok":
+            root = ElementTree.parse(tmp_path / entry["files"]["source"]).getroot()
+            data = next(root.iter("{http://www.w3.org/2000/svg}path")).attrib["d"]
+            found, expected = Segments(), Segments()
+            parse_path(data, found)
+            glyphs[entry["glyph"]].draw(expected)
+            assert len(found.segments) == len(expected.segments)
+            for a, b in zip(found.segments, expected.segments, strict=True):
+                np.testing.assert_allclose(np.array(a) * (1, -1), b, atol=1e-9)
+            seen |= set(re.findall("[QqCc]", data))
+    assert seen <= ({"q", "Q"} if path == TTF else {"c", "C"})
+    assert seen
+
+
+class Segments:
+    """Segments of contours, each as its points; a pen."""
+
+    def __init__(self) -> None:
+        from fontTools.pens.recordingPen import DecomposingRecordingPen
+
+        self._pen = DecomposingRecordingPen(None)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._pen, name)
+
+    @property
+    def segments(self) -> list[list[tuple[float, float]]]:
+        from fontTools.pens.basePen import decomposeQuadraticSegment
+
+        found: list[list[tuple[float, float]]] = []
+        start = at = (0.0, 0.0)
+        for operation, points in self._pen.value:
+            if operation == "moveTo":
+                start = at = points[0]
+                continue
+            if operation == "qCurveTo":
+                parts = decomposeQuadraticSegment(points) if points[-1] is not None else []
+            else:
+                parts = [points] if points else [(start,)]
+            for part in parts:
+                if len(part) > 1 or tuple(part[0]) != tuple(at):
+                    found.append([at, *part])
+                at = part[-1]
+        return found
+
+
+def test_source_with_a_gallery_has_no_polygon(font: gs.Font, tmp_path: Path) -> None:
+    options = gs.Options(step=60)
+    convert_font(font, ["O"], tmp_path / "with", RunSpec(options, ("source", "gallery")), jobs=0)
+    convert_font(font, ["O"], tmp_path / "alone", RunSpec(options, ("source",)), jobs=0)
+    drawings = [(tmp_path / which / "source" / "O.svg").read_bytes() for which in ("with", "alone")]
+    assert drawings[0] == drawings[1]
+    assert b"-polygon" in (tmp_path / "with" / "polygon" / "O.svg").read_bytes()
+
+
+def test_source_looks_as_drawings_do(font: gs.Font, tmp_path: Path) -> None:
+    call = ["convert", str(TTF), "--text", "龍", "--out", str(tmp_path), "--format", "source", "--jobs", "0"]
+    look = ["--view-box", "ink", "--size", "20mm", "--fill", "none", "--stroke", "red", "--names", "char"]
+    result = runner.invoke(app, [*call, *look])
+    assert result.exit_code == 0, result.output
+    assert "corners" not in result.stderr
+    svg = (tmp_path / "source" / "龍.svg").read_text()
+    assert re.search(r'viewBox="\d+ -\d+ \d+ \d+" width="[\d.]+mm" height="20mm"', svg)
+    assert 'fill="none" stroke="red"' in svg
+
+
+def test_source_with_overlaps_removed(tmp_path: Path) -> None:
+    pytest.importorskip("pathops")
+    source = gs.open_font(FONTS / "edge-cases.ttf")
+    spec = RunSpec(gs.Options(remove_overlaps=True), ("source",))
+    assert not convert_font(source, source.glyph_names, tmp_path, spec, jobs=0).failed
+
+
+# JSON.
+
+
+def schema(name: str) -> Draft202012Validator:
+    data = json.loads((WRITERS / f"{name}.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator.check_schema(data)
+    return Draft202012Validator(data)
+
+
+def strict(text: str) -> Any:
+    def refuse(constant: str) -> Any:
+        raise AssertionError(constant)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_json_is_by_the_schema_and_splines_come_back_exactly(glyph: gs.GlyphResult) -> None:
+    data = strict(gs.to_json(glyph))
+    schema("glyph").validate(data)
+    assert len(data["contours"]) == len(glyph.contours)
+    for read, contour in zip(data["contours"], glyph.contours, strict=True):
+        for spline, arc in zip(read["splines"], contour.interpolations, strict=True):
+            again = gs.Spline(**{**spline, "control_points": np.array(spline["control_points"])})
+            assert (again.control_points == arc.spline.control_points).all()
+            assert (again.knots == arc.spline.knots).all()
+            assert (again.degree, again.closed) == (arc.spline.degree, arc.spline.closed)
+        for name in ("beziers", "source"):
+            curve = contour.curve if name == "beziers" else contour.source
+            for a, b in zip(read[name], curve.segments(), strict=True):
+                assert (np.array(a) == b).all()
+        assert read["measures"]["deviation_bound"] == contour.measures.deviation_bound
+        assert set(read["measures"]) == set(gs.Measures.__dataclass_fields__)
+
+
+def test_the_schema_refuses_what_is_not_there(font: gs.Font) -> None:
+    data = strict(gs.to_json(gs.convert(font.outline("O"), gs.Options(step=60))))
+    data["contours"][0]["splines"][0]["knots"][0] = None
+    assert not schema("glyph").is_valid(data)
+    assert not schema("polyline").is_valid(data)
+
+
+def test_what_is_not_a_number_is_null(font: gs.Font) -> None:
+    glyph = gs.convert(font.outline("O"), gs.Options(step=60))
+    (first, *_) = glyph.contours
+    odd = gs.Measures(1, 1, 1, max_curvature=float("inf"), residual=float("nan"), fallbacks=np.int64(3))  # type: ignore[arg-type]
+    contour = gs.ContourResult(first.source, first.polygon, first.interpolations, first.curve, odd)
+    data = strict(gs.to_json(gs.GlyphResult(glyph.outline, glyph.options, (contour,))))
+    schema("glyph").validate(data)
+    measures = data["contours"][0]["measures"]
+    assert (measures["max_curvature"], measures["residual"], measures["fallbacks"]) == (None, None, 3)
+
+
+def test_sizes_scale_coordinates_and_not_knots(font: gs.Font) -> None:
+    glyph = gs.convert(font.outline("O"), gs.Options(step=60))
+    plain, scaled = (strict(json_text(glyph, Settings(scale=s, unit=u))) for s, u in ((1.0, None), (0.5, "mm")))
+    schema("glyph").validate(scaled)
+    assert (scaled["unit"], scaled["scale"], scaled["advance"]) == ("mm", 0.5, plain["advance"] / 2)
+    a, b = (each["contours"][0] for each in (plain, scaled))
+    assert a["splines"][0]["knots"] == b["splines"][0]["knots"]
+    assert a["measures"] == b["measures"]
+    for name in ("points", "beziers", "source"):
+        for whole, half in zip(a[name], b[name], strict=True):
+            np.testing.assert_array_equal(np.array(whole) / 2, half)
+
+
+# Polygons.
+
+
+@pytest.mark.parametrize("flatness", [20.0, 0.5, 0.01])
+def test_the_bound_of_polygons_holds(glyph: gs.GlyphResult, flatness: float) -> None:
+    """Dense samples of each piece are within the bound of its chords, and the bound is not idle."""
+    found = gs.to_polylines(glyph, flatness)
+    assert found.bound <= flatness
+    worst = 0.0
+    for polygon, contour in zip(found.polygons, glyph.contours, strict=True):
+        samples = evaluate(
+            np.repeat(contour.curve.cubics(), 60, axis=0), np.tile(np.arange(60) / 60, len(contour.curve))
+        )
+        worst = max(worst, float(distances(samples, polygon).max()))
+    assert worst <= found.bound
+    assert worst > found.bound / 20
+
+
+def distances(points: FloatArray, polygon: FloatArray) -> FloatArray:
+    """Distance of each point (k, 2) from the sides of a polygon."""
+    a, sides = polygon, np.roll(polygon, -1, axis=0) - polygon
+    lengths = np.maximum((sides**2).sum(axis=1), 1e-30)
+    found = []
+    for part in np.array_split(points, 1 + len(points) // 200):
+        along = np.clip(((part[:, None] - a) * sides).sum(axis=2) / lengths, 0, 1)
+        found.append(np.hypot(*np.moveaxis(part[:, None] - a - along[..., None] * sides, 2, 0)).min(axis=1))
+    return np.concatenate(found)
+
+
+def test_the_bound_is_reached_by_a_parabola() -> None:
+    """A quadratic in one chord is exactly a quarter of its second difference away."""
+    hump = Contour(np.array([[0.0, 0.0], [50.0, 40.0], [100.0, 0.0], [50.0, -10.0]]), np.array([2, 1, 1]))
+    lines, bound = flattened(Contours([hump]).arrays, 20.0 + 1e-9)
+    assert len(lines.points) == 3
+    assert bound == pytest.approx(20.0, rel=1e-9)
+    assert len(flattened(Contours([hump]).arrays, 19.9)[0].points) == 4
+
+
+def test_lines_stay_as_they_are() -> None:
+    square = Contour(np.array([[0.0, 0.0], [90.0, 0.0], [90.0, 90.0], [0.0, 90.0]]), np.ones(4, dtype=np.int64))
+    found = gs.to_polylines(Outline("square", contours=(square, square)))
+    assert found.bound == 0.0
+    assert [polygon.tolist() for polygon in found.polygons] == [square.points.tolist()] * 2
+    assert gs.to_polylines(Outline("space")).polygons == ()
+
+
+@pytest.mark.parametrize("flatness", [0.0, -1.0, float("nan"), float("inf"), 1e-15, 1e-300, "x"])
+def test_a_flatness_that_cannot_be_is_refused(font: gs.Font, flatness: Any) -> None:
+    with pytest.raises(OptionError, match="flatness"):
+        gs.to_polylines(font.outline("O"), flatness)
+
+
+def test_files_of_polygons_agree_and_say_their_bound(glyph: gs.GlyphResult) -> None:
+    settings = Settings(Appearance(size="20mm"), flatness=2.0).scaled(glyph.outline.metrics)
+    data = strict(polyline_json(glyph, settings))
+    schema("polyline").validate(data)
+    assert 0 < data["bound"] <= data["flatness"] == 2.0 * settings.scale
+    rows = list(csv.DictReader(StringIO(polyline_csv(glyph, settings))))
+    for c, contour in enumerate(data["contours"]):
+        own = [row for row in rows if row["contour"] == str(c)]
+        assert [int(row["index"]) for row in own] == list(range(len(contour)))
+        assert [[float(row["x"]), float(row["y"])] for row in own] == contour
+        curve = glyph.contours[c].curve
+        samples = evaluate(np.repeat(curve.cubics(), 30, axis=0), np.tile(np.arange(30) / 30, len(curve)))
+        assert distances(samples * settings.scale, np.array(contour)).max() <= data["bound"]
+
+
+# OpenSCAD.
+
+
+def parts_of(scad: str) -> list[list[FloatArray]]:
+    """Of each ``polygon()`` its paths: what OpenSCAD reads, in a few lines."""
+    found = []
+    for points, paths in re.findall(r"polygon\(points = (\[.*?\]), paths = \[(.*)\]\);", scad):
+        values = np.array(json.loads(points))
+        ranges = re.findall(r"\[for \(i = \[(\d+):(\d+)\]\) i\]", paths)
+        found.append([values[int(a) : int(b) + 1] for a, b in ranges])
+    return found
+
+
+def windings(polygon: FloatArray, points: FloatArray) -> Any:
+    """How often a polygon runs around each of the points, from the angles of its sides."""
+    a = polygon[:, None] - points
+    b = np.roll(a, -1, axis=0)
+    turns = np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], (a * b).sum(axis=2))
+    return np.rint(turns.sum(axis=0) / (2 * np.pi)).astype(int)
+
+
+def ink_of(scad: str, points: FloatArray) -> Any:
+    """Where OpenSCAD has ink: paths of a polygon by the even-odd rule, and the union of polygons."""
+    ink = np.zeros(len(points), dtype=bool)
+    for paths in parts_of(scad):
+        ink |= sum(windings(path, points) for path in paths) % 2 == 1
+    return ink
+
+
+def ring(radius: float, x: float = 0.0, turn: int = 1) -> Contour:
+    angles = turn * np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    return Contour(
+        np.stack([x + radius * np.cos(angles), radius * np.sin(angles)], axis=1), np.ones(24, dtype=np.int64)
+    )
+
+
+def star(points: int, step: int) -> Contour:
+    angles = 2 * np.pi * np.arange(points) * step / points
+    return Contour(100 * np.stack([np.cos(angles), np.sin(angles)], axis=1), np.ones(points, dtype=np.int64))
+
+
+def square(x: float, y: float, size: float, turn: int = 1) -> Contour:
+    corners = np.array([[x, y], [x + size, y], [x + size, y + size], [x, y + size]])
+    return Contour(corners[::turn], np.ones(4, dtype=np.int64))
+
+
+DRAWINGS = {
+    "a hole": [ring(100), ring(50, turn=-1)],
+    "an island in a hole": [ring(100), ring(80, turn=-1), ring(50), ring(20, turn=-1)],
+    "overlapping outer contours": [ring(60), ring(60, 70)],
+    "overlapping, with holes": [ring(60), ring(20, turn=-1), ring(60, 90), ring(20, 90, turn=-1)],
+    "a hole in one, inked by the other": [ring(100), ring(30, 60, turn=-1), ring(90, 100)],
+    "an outer contour in another": [ring(100), ring(50)],
+    "all the other way round": [ring(100, turn=-1), ring(50)],
+    "a contour that crosses itself": [star(5, 2)],
+    "one that goes round itself three times": [star(7, 3)],
+    "a figure of eight": [Contour(np.array([[0.0, 0], [90, 80], [90, 0], [0, 80]]), np.ones(4, dtype=np.int64))],
+    "a hole through two outer contours": [ring(60), ring(60, 70), ring(20, 35, turn=-1)],
+    "sides on sides": [square(0, 0, 60), square(60, 0, 60), square(30, 0, 60), square(10, 10, 20, turn=-1)],
+    "twice around, and out again": [ring(100), ring(90), ring(60, turn=-1), ring(50, turn=-1)],
+    "the same twice": [ring(60), ring(60), ring(30, turn=-1)],
+    "apart": [ring(20), ring(20, 60), ring(20, 120, turn=-1)],
+}
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+@pytest.mark.parametrize("backwards", [False, True])
+def test_openscad_has_the_ink_of_the_nonzero_rule(name: str, backwards: bool) -> None:
+    contours = DRAWINGS[name][:: -1 if backwards else 1]
+    glyph = as_glyph(Outline(name, contours=contours))
+    points = np.random.default_rng(0).uniform((-110, -110), (210, 110), (4000, 2))
+    nonzero = sum(windings(contour.points, points) for contour in contours) != 0
+    assert 0.02 < nonzero.mean() < 0.98
+    np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings()), points), nonzero)
+
+
+def test_polygons_are_uncrossed_with_the_same_winding() -> None:
+    random = np.random.default_rng(1)
+    for count in (5, 12, 40):
+        polygons = [random.uniform(0, 100, (count, 2)) for _ in range(3)]
+        found = uncrossed(polygons)
+        points = random.uniform(0, 100, (500, 2))
+        before, after = (sum(windings(polygon, points) for polygon in some) for some in (polygons, found))
+        np.testing.assert_array_equal(before, after)
+        assert len(found) > len(polygons)
+        glyph = as_glyph(Outline("", contours=[Contour(each, np.ones(count, dtype=np.int64)) for each in polygons]))
+        np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings(flatness=1e-3)), points), before != 0)
+
+
+def test_openscad_has_the_ink_of_real_glyphs(glyph: gs.GlyphResult) -> None:
+    scad = polyline_scad(glyph, Settings())
+    polygons = gs.to_polylines(glyph, 0.01).polygons
+    points = np.random.default_rng(0).uniform((0, -144), (1024, 880), (3000, 2))
+    away = np.min([distances(points, polygon) for polygon in polygons], axis=0) > 1.0
+    nonzero = sum(windings(polygon, points) for polygon in polygons) != 0
+    assert away.mean() > 0.8
+    np.testing.assert_array_equal(ink_of(scad, points)[away], nonzero[away])
+    assert len(outers_and_holes(uncrossed(polygons))) > 1
+
+
+def test_the_module_of_openscad_has_a_name_that_it_can_read() -> None:
+    scad = polyline_scad(as_glyph(Outline('a.alt"\n;cube(9);//', contours=[ring(9)])), Settings())
+    assert re.search(r"^module glyph_a_alt___cube_9____\(\) \{$", scad, re.MULTILINE)
+    assert all(
+        line.startswith(("//", "function glyph_", "module glyph_", "  ", "}", "glyph_")) for line in scad.splitlines()
+    )
+
+
+def test_openscad_itself_reads_it(font: gs.Font, tmp_path: Path) -> None:
+    openscad = shutil.which("openscad")
+    if openscad is None:
+        pytest.skip("OpenSCAD is not installed")
+    glyph = gs.convert(font.outline("O"))
+    (tmp_path / "O.scad").write_text(polyline_scad(glyph, Settings()))
+    (tmp_path / "solid.scad").write_text("use <O.scad>\nlinear_extrude(10) glyph_O();\n")
+    for name in ("O.svg", "solid.stl"):
+        source = tmp_path / name.replace(".svg", ".scad").replace(".stl", ".scad")
+        done = subprocess.run([openscad, "-o", tmp_path / name, source], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert "WARNING" not in done.stderr
+    paths = "".join(re.findall(r'd="([^"]*)"', (tmp_path / "O.svg").read_text(), re.DOTALL))
+    assert paths.count("M") == 2
+
+
+# The command line.
+
+
+def test_flatness_is_in_the_command_and_another_one_is_another_run(font: gs.Font, tmp_path: Path) -> None:
+    call = ["convert", str(TTF), "--text", "O", "--out", str(tmp_path), "--step", "60", "--jobs", "0"]
+    result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "3", "--dxf", "polyline"])
+    assert result.exit_code == 0, result.output
+    run = json.loads((tmp_path / "run.json").read_text())
+    assert (run["flatness"], run["dxf"]) == (3.0, "polyline")
+    assert "--flatness 3.0 --dxf polyline" in run["command"]
+    with pytest.raises(OutputError, match=r"flatness: 3\.0 in the folder, null now"):
+        convert_font(
+            font, ["O"], tmp_path, RunSpec(gs.Options(step=60), ("polyline",), Settings(dxf="polyline")), jobs=0
+        )
+    result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "0", "--restart"])
+    assert result.exit_code == 2
+    assert "flatness is a positive distance" in result.stderr
