@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import lzma
 import math
 import subprocess
 import sys
@@ -25,8 +26,8 @@ from glyphspline.typesetting.scripts import scripts_of, upright_in_columns
 from tests.places import ROOT
 from tests.text_fonts import advance, text_font
 
-BIDI_TEST = Path("/usr/share/unicode/BidiCharacterTest.txt")
-VERTICAL_TABLE = BIDI_TEST.with_name("VerticalOrientation.txt")
+UNICODE = Path(__file__).with_name("unicode")
+"""Files of the Unicode Character Database, compressed."""
 
 
 @pytest.fixture(scope="module")
@@ -154,11 +155,16 @@ def test_embedding_levels(text: str, base: int | None, levels: str) -> None:
     assert "".join(map(str, found)) == levels
 
 
-@pytest.mark.skipif(not BIDI_TEST.exists(), reason="Unicode's test file is not installed (Debian: unicode-data)")
+def lines_of(name: str) -> list[str]:
+    """The lines of a file of Unicode's, without comments."""
+    text = lzma.decompress((UNICODE / f"{name}.txt.xz").read_bytes()).decode()
+    return [line for line in text.splitlines() if line and line[0] != "#"]
+
+
 def test_levels_and_order_conform_to_unicode() -> None:
-    cases = [line for line in BIDI_TEST.read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
-    assert len(cases) > 90_000
-    for line in cases[::7]:
+    cases = lines_of("BidiCharacterTest")
+    assert len(cases) == 91_707
+    for line in cases:
         codes, direction, level, levels, order = line.split(";")
         text = "".join(chr(int(code, 16)) for code in codes.split())
         base, found = embedding_levels(text, {"0": 0, "1": 1, "2": None}[direction])
@@ -178,17 +184,18 @@ def test_scripts_of_neighbours() -> None:
     assert scripts_of("a\u0301\u03b1") == ["Latn", "Latn", "Grek"]
 
 
-@pytest.mark.skipif(not VERTICAL_TABLE.exists(), reason="Unicode's table is not installed (Debian: unicode-data)")
 def test_characters_stand_in_columns_as_unicode_says() -> None:
     from unicodedata import category
 
-    for line in VERTICAL_TABLE.read_text(encoding="utf-8").splitlines():
-        if line and line[0] != "#":
-            codes, value = (part.strip() for part in line.split("#")[0].split(";"))
-            first, _, last = codes.partition("..")
-            span = [chr(code) for code in range(int(first, 16), int(last or first, 16) + 1)]
-            text = "".join(character for character in span if category(character) not in ("Cn", "Cs"))
-            assert set(upright_in_columns(text, range(len(text) + 1))) <= {value != "R"}, line
+    checked = 0
+    for line in lines_of("VerticalOrientation"):
+        codes, value = (part.strip() for part in line.split("#")[0].split(";"))
+        first, _, last = codes.partition("..")
+        span = [chr(code) for code in range(int(first, 16), int(last or first, 16) + 1)]
+        text = "".join(character for character in span if category(character) not in ("Cn", "Cs"))
+        assert set(upright_in_columns(text, range(len(text) + 1))) <= {value != "R"}, line
+        checked += len(text)
+    assert checked > 280_000
 
 
 # --- several fonts
