@@ -33,8 +33,8 @@ NARROW = 2.0**-16
 CLOSE = 1e-6
 """Share of an interval by which the last step to an extremum inside moves."""
 
-ROUNDS = 40
-"""Maximum number of those steps; mostly it takes seven."""
+ROUNDS = 60
+"""Maximum number of those steps; mostly it takes eight."""
 
 MOST = 64
 """Maximum number of places of a piece: its ends, five extrema, and where intervals with several of them are halved."""
@@ -225,12 +225,14 @@ def _places(q: Coefficients, places: FloatArray) -> int:
             for _ in range(ROUNDS if alone else 0):  # regula falsi with the Illinois rule
                 before, x = x, x1 - f1 * (x1 - x0) / (f1 - f0)
                 f = p0 + x * (p1 + x * (p2 + x * (p3 + x * (p4 + x * p5))))
-                if (f > 0.0) != (f1 > 0.0):
+                passed = (f > 0.0) != (f1 > 0.0)
+                if passed:
                     x0, f0 = x1, f1
                 else:
                     f0 /= 2
                 x1, f1 = x, f
-                if abs(x - before) < CLOSE or f == 0.0:
+                # A small step alone proves no root: beside a near-cusp an end is nearly one, and steps there are small.
+                if (passed and abs(x - before) < CLOSE) or f == 0.0:
                     break
             places[n] = t + width * x
             n += 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -170,6 +170,7 @@ numbers = st.lists(st.integers(0, 12), min_size=5, max_size=24)
 
 
 @settings(max_examples=200, deadline=None)
+@example([1, 8, 0, 8, 1, 12], 0, 0.0, 0.0, False)  # a spike whose end is nearly an extremum
 @given(numbers, st.integers(0, 23), st.floats(-3, 3), st.floats(0, 6.3), st.booleans())
 def test_start_direction_side_angle_place_scale_and_cuts_do_not_matter(
     radii: list[int], start: int, power: float, angle: float, cornered: bool
