@@ -37,6 +37,7 @@ from numba.core.compiler import CompileResult
 from numba.core.runtime import nrt
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
+from numba.extending import models, register_model
 
 numba_jit: Any = njit
 
@@ -94,7 +95,7 @@ class Compiled:
     @property
     def _numba_type_(self) -> Any:
         """What Numba takes the function for."""
-        return types.Dispatcher(self.inner)
+        return _Callee(self.inner)
 
     def _dispatcher(self, role: str, **options: bool) -> Any:
         made: Any = numba_jit(**OPTIONS, **options)(self.py_func)
@@ -107,6 +108,21 @@ class Compiled:
 
     def __reduce__(self) -> str:
         return self.py_func.__qualname__
+
+
+class _Callee(types.Dispatcher):  # type: ignore[misc, unused-ignore]
+    """A compiled function in a call by another one: a literal argument is any value of its type.
+
+    Numba would compile the function, and those that it hands the literal on to, once more for it.
+    """
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """The types of a call."""
+        args, kws = map(types.unliteral, args), {name: types.unliteral(kind) for name, kind in kws.items()}
+        return super().get_call_type(context, tuple(args), kws)
+
+
+register_model(_Callee)(models.OpaqueModel)
 
 
 if not JIT:
