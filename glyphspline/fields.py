@@ -89,14 +89,16 @@ def options_of(value: Any) -> tuple[Described, ...]:
 @cache
 def _options_of(kind: Any) -> tuple[Described, ...]:
     hints = get_type_hints(kind)
-    found = []
-    for one in fields(kind):
-        if "about" in one.metadata:
-            hint = hints[one.name]
-            if get_origin(hint) in (Union, UnionType):
-                (hint,) = (part for part in get_args(hint) if part is not NoneType)
-            found.append(Described(one.name, hint, one.metadata["about"]))
-    return tuple(found)
+    return tuple(
+        described(one.name, hints[one.name], one.metadata["about"]) for one in fields(kind) if "about" in one.metadata
+    )
+
+
+def described(name: str, hint: Any, about: About) -> Described:
+    """An option from its annotation."""
+    if get_origin(hint) in (Union, UnionType):
+        (hint,) = (part for part in get_args(hint) if part is not NoneType)
+    return Described(name, hint, about)
 
 
 def check(value: Any) -> None:

@@ -59,49 +59,44 @@ def outlines(font: Path) -> Iterator[Any]:
     found, failed = found_in(font)
     for kind, same in groupby(sorted(found, key=severity), key=lambda finding: finding.kind):
         findings = list(same)
-        yield findings[0].level, api.Message(kind, message_of(findings), [problem(item) for item in findings])
+        words = [
+            "{0.glyph}, contour {0.contour}, segment {0.segment}, at ({1:.0f}, {2:.0f}): {0.sentence}".format(
+                item, *item.point
+            )
+            for item in findings
+        ]
+        message = listed("Found in these places:", words)
+        yield findings[0].level, api.Message(kind, message, [problem(item) for item in findings])
     if failed:
-        lines = [f"* {glyph}: {error}" for glyph, error in failed]
-        yield "WARN", api.Message("not-checked", "\n".join(["Glyphs that cannot be checked:", "", *cut(lines)]))
+        words = [f"{glyph}: {error}" for glyph, error in failed]
+        yield "WARN", api.Message("not-checked", listed("Glyphs that cannot be checked:", words))
     if not (found or failed):
         yield "PASS"
 
 
 def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
-    from typer.main import get_command
-
-    from .cli import commands
-    from .cli.check_outputs import asked_of
+    from .cli.check_command import project_settings
     from .runs.check_fonts import check_fonts
 
-    command: Any = get_command(commands.app)
-    check: Any = commands.check
-    given = check.values(command.commands["check"].make_context("check", ["--jobs", "0", "--quiet", "--", str(font)]))
-    asked = replace(asked_of(given["options"], given["report"]), kept="INFO")
-    chosen, face = given["subset"].of if given["subset"].is_given else None, given["instance"].face_index
-    faces = list(check_fonts([font], asked, chosen=chosen, face_index=face, location=given["instance"].place, jobs=0))
+    asked, subset, instance = project_settings()
+    chosen = subset.of if subset.is_given else None
+    faces = list(
+        check_fonts(
+            [font], replace(asked, kept="INFO"), chosen=chosen, face_index=instance.face_index,
+            location=instance.place, jobs=0,
+        )
+    )  # fmt: skip
     for face in faces:
         if face.error is not None:
             raise GlyphsplineError(face.error)
     return [item for face in faces for item in face.findings], [pair for face in faces for pair in face.failed]
 
 
-def message_of(findings: list[Finding]) -> str:
-    """The findings of a kind, the worst first, as a Markdown list."""
-    lines = [f"* {item.glyph}, {place_of(item)}: {item.sentence}" for item in findings]
-    return "\n".join(["Found in these places:", "", *cut(lines)])
-
-
-def place_of(finding: Finding) -> str:
-    """Where a finding is in its glyph."""
-    x, y = finding.point
-    return f"contour {finding.contour}, segment {finding.segment}, at ({x:.0f}, {y:.0f})"
-
-
-def cut(lines: list[str]) -> list[str]:
-    """The first lines of a list, and how many are left out."""
-    return lines if len(lines) <= LISTED else [*lines[:LISTED], f"* and {len(lines) - LISTED} more"]
+def listed(heading: str, items: list[str]) -> str:
+    """A heading, the first items of a list, and how many are left out, in Markdown."""
+    more = [f"* and {len(items) - LISTED} more"] * (len(items) > LISTED)
+    return "\n".join([heading, "", *(f"* {item}" for item in items[:LISTED]), *more])
 
 
 def problem(finding: Finding) -> dict[str, Any]:

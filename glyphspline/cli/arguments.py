@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..errors import GlyphsplineError
-from ..fields import WRITTEN, option
+from ..fields import WRITTEN, About, option
 from ..typesetting.setting import Align, Direction, Side
+from .config import names_of, settings
 from .groups import natural, place
 
 if TYPE_CHECKING:
@@ -36,11 +37,10 @@ FONTS_HELP = (
 
 def configured(context: typer.Context, path: Path | None) -> Path | None:
     """Take defaults from a file of settings, before the other options are read."""
-    from .config import settings
-
     if not context.resilient_parsing:
+        named = ((one.opts, str(one.name)) for one in context.command.params)
         try:
-            context.default_map = settings(path, context.command.params, context.command.name)
+            context.default_map = settings(path, names_of(named), context.command.name)
         except GlyphsplineError as error:
             typer.echo(f"glyphspline: {error}", err=True)
             raise typer.Exit(2) from None
@@ -60,18 +60,15 @@ def more_thresholds(context: typer.Context, text: str | None) -> str | None:
     return text if text == before else ",".join(filter(None, [before, text]))
 
 
-def file_option(*flags: str, help: str, **more: Any) -> Any:
-    """An option for a file or folder to write."""
-    settings: dict[str, Any] = {"parser": place, "metavar": "FILE", "show_default": False}
-    return typer.Option(*flags, help=help, **settings | more)
-
-
 Version = Annotated[
     bool, typer.Option("--version", callback=print_version, is_eager=True, help="Print the version and exit.")
 ]
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
 FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]
-Out = Annotated[Path, file_option("--out", "-o", metavar="DIR", help="Write to this folder.", rich_help_panel=WRITTEN)]
+Out = Annotated[
+    Path,
+    About("Write to this folder.", WRITTEN, "DIR", ("--out", "-o"), more={"parser": place, "show_default": False}),
+]
 
 
 @dataclass(frozen=True)
@@ -88,8 +85,7 @@ class Subset:
     @property
     def is_given(self) -> bool:
         """Whether any glyphs are asked for."""
-        asked = (self.text, self.text_file, self.unicodes, self.glyphs, self.gids)
-        return self.all_glyphs or any(value is not None for value in asked)
+        return self != Subset()
 
     def of(self, source: Source) -> Selection:
         """The glyphs in a font.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import json
 import os
 import sys
 from dataclasses import replace
@@ -12,17 +11,17 @@ from typing import Annotated, Any
 
 import typer
 
-from ..fields import WRITTEN
+from ..fields import WRITTEN, About
 from ..fitting.options import Options
 from ..runs.spec import RunSpec
 from ..writers.settings import Maps, Settings
 from . import arguments as opt
 from . import interruption
 from .dataset_command import dataset
-from .groups import grouped, number, only, without
-from .messages import listen, printable, say, stop
-from .progress import progress
+from .groups import grouped, only, without
+from .messages import listen, print_json, printable, progress, say, stop
 from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, workplace
+from .tables import difference_lines, differences_table, font_lines, runs_facts, runs_table
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
@@ -52,9 +51,7 @@ def convert(
     instance: opt.Instance,
     single: opt.SingleFonts,
     run: opt.RunOptions,
-    each: Annotated[
-        bool, typer.Option("--each", help="Write a folder in DIR for one font too.", rich_help_panel=WRITTEN)
-    ] = False,
+    each: Annotated[bool, About("Write a folder in DIR for one font too.", WRITTEN)] = False,
 ) -> int:
     """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
 
@@ -76,13 +73,11 @@ def convert(
             return convert_masters(found, call, single, executor)
         alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
         runs = convert_fonts(found, call, executor, alone)
-    from . import closing
-
     if not (run.quiet or run.json_log or alone):
         say(f"written to {out}")
-        say(closing.table(runs))
+        say(runs_table(runs))
     if run.as_json:
-        typer.echo(json.dumps(closing.totals(runs), indent=1, ensure_ascii=False))
+        print_json(runs_facts(runs))
     return any(one.failed for one in runs)
 
 
@@ -95,13 +90,12 @@ def text(
     font: opt.FontFile,
     out: Annotated[
         list[Path],
-        typer.Option(
-            "--out",
-            "-o",
-            metavar="FILE",
-            show_default=False,
-            rich_help_panel=WRITTEN,
-            help="Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+        About(
+            "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+            WRITTEN,
+            "FILE",
+            ("--out", "-o"),
+            more={"show_default": False},
         ),
     ],
     lines: opt.TextOptions,
@@ -132,23 +126,19 @@ def info(
     instance: opt.Instance,
     run: Annotated[opt.RunOptions, only("as_json")],
     deep: Annotated[
-        bool,
-        typer.Option(
-            "--deep", help="Read every glyph: count contours, find overlaps and what is broken. Takes minutes."
-        ),
+        bool, About("Read every glyph: count contours, find overlaps and what is broken. Takes minutes.")
     ] = False,
 ) -> None:
     """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
     from ..readers.facts import file_facts
-    from .describe import lines_of
 
     facts = file_facts(font, instance.face_index, instance.place)
     if deep:
         look_deep(font, facts)
     if run.as_json:
-        typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
+        print_json(facts)
     else:
-        typer.echo(printable("\n".join(lines_of(facts))))
+        typer.echo(printable("\n".join(font_lines(facts))))
 
 
 def look_deep(font: Path, facts: dict[str, Any]) -> None:
@@ -186,19 +176,17 @@ def atlas(
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     maps: Maps,
     run: Annotated[opt.RunOptions, only("quiet")],
-    out: Annotated[Path, opt.file_option("--out", "-o", help="Write this PDF.", show_default=True)] = Path("atlas.pdf"),
+    out: Annotated[Path, About("Write this PDF.", None, "FILE", ("--out", "-o"), more=opt.PLACE)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
-        typer.Option(
-            "--axis",
+        About(
+            "Draw each glyph along this axis of a variable font instead, its source and the curve for all masters. "
+            "Corners are sharp.",
             metavar="TAG",
-            help="Draw each glyph along this axis of a variable font instead, its source and the curve for all "
-            "masters. Corners are sharp.",
         ),
     ] = None,
     profiles: Annotated[
-        str | None,
-        typer.Option("--profiles", help="Add a page with κ(s) for these characters; for up to 12 glyphs, for all."),
+        str | None, About("Add a page with κ(s) for these characters; for up to 12 glyphs, for all.")
     ] = None,
     instance: opt.Instance = opt.FIRST,
 ) -> int:
@@ -246,7 +234,7 @@ def check(
     those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
     for it, and 2 if a font cannot be read.
     """
-    from .check_outputs import run as run_check
+    from .check_command import run_check
 
     faces = run_check(fonts, options, report, subset, instance, run)
     if any(face.error is not None for face in faces):
@@ -267,15 +255,10 @@ def diff(
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     tolerance: Annotated[
         float | None,
-        typer.Option(
-            "--tolerance",
-            parser=number,
-            metavar="UNITS",
-            help="Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.",
-        ),
+        About("Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.", metavar="UNITS"),
     ] = None,
     instance: opt.Instance = opt.FIRST,
-    html: Annotated[Path | None, opt.file_option("--html", help="Draw both over each other, on a page.")] = None,
+    html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
 ) -> int:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
 
@@ -284,21 +267,21 @@ def diff(
     for.
     """
     from ..runs import compare_fonts
-    from . import comparing_fonts as comparing
+    from .diff_command import chosen_pairs, open_both, write_page
 
-    sources = comparing.open_both(old, new, instance)
-    pairs = comparing.chosen_pairs(*sources, subset)
+    sources = open_both(old, new, instance)
+    pairs = chosen_pairs(*sources, subset)
     with progress(run.quiet) as observer:
         found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
     if html is not None:
-        comparing.write_page(html, *sources, found)
+        write_page(html, *sources, found)
     worst, rows = found.worst_first(), report.rows
     if run.as_json:
-        typer.echo(json.dumps(found.facts(), indent=1, ensure_ascii=False))
+        print_json(found.facts())
     elif worst and rows:
-        typer.echo(comparing.table(worst, rows, found.tolerance))
+        typer.echo(differences_table(worst, rows, found.tolerance))
     if not run.quiet:
-        for line in comparing.sentences(found, 0 if run.as_json else rows):
+        for line in difference_lines(found, 0 if run.as_json else rows):
             say(line)
     return found.is_beyond
 
@@ -309,9 +292,10 @@ def view(
     font: opt.FontFile,
     instance: Annotated[opt.Instance, only("face_index")] = opt.FIRST,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Listen on this port; 0 takes any that is free.")
+        int,
+        About("Listen on this port; 0 takes any that is free.", more={"min": 0, "max": 65535, "parser": None}),
     ] = 0,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
+    browser: Annotated[bool, About("Open the page in a browser.", flags=("--browser/--no-browser",))] = True,
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
     from ..extras import need

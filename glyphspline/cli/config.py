@@ -6,7 +6,7 @@ Those of ``check`` are in the table ``check`` therein, its thresholds beside the
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -18,61 +18,57 @@ PROJECT = "pyproject.toml"
 
 NOT_IN_FILES = ("config", "help", "thresholds")
 
-TABLES = ("check",)
-"""Commands with a table of their own, which no other command reads."""
+CHECK = "check"
+"""The command with a table of its own, which no other command reads."""
 
 
-def settings(path: Path | None, parameters: Iterable[Any], command: str | None = None) -> dict[str, Any]:
+def names_of(options: Iterable[tuple[Iterable[str], str]]) -> dict[str, str]:
+    """The keys that options have in files, their long names without hyphens, and the names of their parameters."""
+    return {
+        flag.removeprefix("--"): name
+        for flags, name in options
+        for flag in flags
+        if flag.startswith("--") and name not in NOT_IN_FILES
+    }
+
+
+def settings(path: Path | None, names: Mapping[str, str], command: str | None = None) -> dict[str, Any]:
     """Values for a command's parameters: those of the working folder's project, and over them those of ``path``.
 
     Args:
         path: a file of settings; a ``pyproject.toml`` has them in ``[tool.glyphspline]``.
-        parameters: of the command; a key is the long name of an option, without its hyphens.
-        command: its name.
+        names: parameters of the command by their keys, see :func:`names_of`. command: its name.
 
     Raises:
         GlyphsplineError: a file cannot be read, has a key that is no option, or a value that no option can have.
     """
-    names = {
-        option.removeprefix("--"): parameter.name
-        for parameter in parameters
-        for option in parameter.opts
-        if option.startswith("--") and parameter.name not in NOT_IN_FILES
-    }
     found: dict[str, Any] = {}
     limits: dict[str, float] = {}
-    own = [field.name for field in fields(Thresholds) if field.name not in names.values()] if command in TABLES else []
+    own = {each.name for each in fields(Thresholds)} - set(names.values()) if command == CHECK else set()
     for file in (Path(PROJECT), path):
         if file is None or (file is not path and not file.is_file()):
             continue
         table = _read(file)
-        if command in TABLES:
-            if file is path and command not in table:
-                raise GlyphsplineError(f"has no table of settings for {command!r}", font=str(file))
-            table = _table(table.get(str(command), {}), str(command), file)
-        else:
-            table = {key: value for key, value in table.items() if key not in TABLES}
-        limits |= _limits(table, own, file)
+        if command == CHECK:
+            if file is path and CHECK not in table:
+                raise GlyphsplineError(f"has no table of settings for {CHECK!r}", font=str(file))
+            table = _table(table.get(CHECK, {}), CHECK, file)
         for key, value in table.items():
-            if key.replace("-", "_") in own:
-                continue
-            if key.replace("_", "-") not in names:
+            threshold, flag = key.replace("-", "_"), key.replace("_", "-")
+            if threshold in own:
+                limits[threshold] = value
+            elif flag in names:
+                found[names[flag]] = _value(key, value, file)
+            elif key != CHECK or command == CHECK:
                 raise GlyphsplineError(
                     f"no option {key!r}: there are {', '.join(sorted([*names, *own]))}", font=str(file)
                 )
-            found[names[key.replace("_", "-")]] = _value(key, value, file)
+        try:
+            Thresholds(**limits)
+        except GlyphsplineError as error:
+            raise error.locate(font=str(file)) from None
     if limits:
         found["thresholds"] = ",".join([f"{name}={value!r}" for name, value in limits.items()])
-    return found
-
-
-def _limits(table: Mapping[str, Any], names: Collection[str], file: Path) -> dict[str, float]:
-    """The thresholds of a table."""
-    found = {key.replace("-", "_"): value for key, value in table.items() if key.replace("-", "_") in names}
-    try:
-        Thresholds(**found)
-    except GlyphsplineError as error:
-        raise GlyphsplineError(error.message, font=str(file)) from None
     return found
 
 

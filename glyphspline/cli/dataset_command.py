@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from ..datasets.dataset_spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
+from ..fields import About
 from . import arguments as opt
 from .groups import grouped, only, place
-from .messages import say
-from .progress import progress
+from .messages import print_json, progress, say
 
 
 def place_or_url(text: Any) -> str:
@@ -28,19 +25,18 @@ def dataset(
     fonts: opt.FontFiles,
     out: Annotated[
         str,
-        opt.file_option(
-            "--out", "-o", metavar="DIR|URL", help="Write to this folder, or s3://bucket/folder.", parser=place_or_url
+        About(
+            "Write to this folder, or s3://bucket/folder.",
+            None,
+            "DIR|URL",
+            ("--out", "-o"),
+            more={"parser": place_or_url, "show_default": False},
         ),
     ],
     spec: DatasetSpec,
     run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
-    fit: Annotated[
-        bool, typer.Option("--fit/--no-fit", help="Fit splines and measure them.", rich_help_panel=ROWS)
-    ] = True,
-    text_file: Annotated[
-        Path | None,
-        typer.Option("--text-file", help="Take only glyphs of a UTF-8 file's characters.", rich_help_panel=TAKEN),
-    ] = None,
+    fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
+    text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
 ) -> int:
     """Make a data set of the glyphs of fonts: Parquet files that datasets, pandas, DuckDB and Arrow open.
 
@@ -64,5 +60,5 @@ def dataset(
             say(line)
         say(f"written to {out}: read {out.rstrip('/')}/README.md")
     if run.as_json:
-        typer.echo(json.dumps(summary.facts(), indent=1, ensure_ascii=False))
+        print_json(summary.facts())
     return bool(summary.failed or summary.fonts["failed"])

@@ -6,16 +6,16 @@ import csv
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from io import StringIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..checks.finding import place_on_axes
 from ..checks.kinds import KINDS, Level
 from ..types import counted
 from .messages import printable
-from .text_table import plain
+from .tables import plain
 
 if TYPE_CHECKING:
     from ..checks.finding import Finding
@@ -25,28 +25,35 @@ if TYPE_CHECKING:
 MARKDOWN_ROWS = 200
 """Findings in Markdown: GitHub takes 65,536 characters."""
 
-FAILURES = 3
-"""Glyphs and fonts that are named below the table."""
-
 COLUMNS = (
     "font", "glyph", "gid", "level", "kind", "contour", "segment", "parameter", "x", "y", "value", "unit", "detail",
     "other", "location", "between", "sentence",
 )  # fmt: skip
 """Of CSV."""
 
+NUMBERS = ("contour", "segment", "point")
+"""Columns of tables that are aligned to the right."""
+
 LEVEL_OF: Mapping[str, Level] = {kind.name: kind.level for kind in KINDS}
 
 
-def table(found: Sequence[tuple[Face, Finding]], shown: int, several: bool) -> str:
-    """The worst findings, one a line."""
-    located = any(finding.location for _, finding in found[:shown])
-    headings = ("font",) * several + ("glyph", "level", "contour", "segment", "point", "finding")
-    rows = []
-    for face, finding in found[:shown]:
-        cells = [face.font] * several + [finding.glyph, finding.level, str(finding.contour), str(finding.segment)]
-        cells += ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
-        rows.append(cells + [place_on_axes(finding, face.home)] * located)
-    return plain(headings + ("location",) * located, rows, numbers=("contour", "segment", "point"))
+def columns(found: Sequence[tuple[Face, Finding]], several: bool) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows of a table of findings, with the fonts' names if there are ``several``."""
+    located = any(finding.location for _, finding in found)
+    headings = ["font"] * several + ["glyph", "level", *NUMBERS, "finding"] + ["location"] * located
+    rows = [
+        [face.font] * several
+        + [finding.glyph, finding.level, str(finding.contour), str(finding.segment)]
+        + ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
+        + [place_on_axes(finding, face.home)] * located
+        for face, finding in found
+    ]
+    return headings, rows
+
+
+def table(found: Sequence[tuple[Face, Finding]], several: bool) -> str:
+    """Findings, one a line."""
+    return plain(*columns(found, several), numbers=NUMBERS)
 
 
 def counts_words(counts: Mapping[str, int], level: Level | None = None) -> str:
@@ -69,36 +76,37 @@ def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> It
         yield f"INFO, shown with -l INFO: {words}"
     if known := sum(face.known for face in faces):
         yield f"not counted, as the baseline has them: {known}"
-    failed = [(face.font, *pair) for face in faces for pair in face.failed]
-    yield from [f"not checked: {font}: {glyph}: {error}" for font, glyph, error in failed[:FAILURES]]
-    if len(failed) > FAILURES:
-        yield f"not checked: and {len(failed) - FAILURES} glyphs more"
-    unread = [face.error for face in faces if face.error is not None]
-    yield from [f"not checked: {error}" for error in unread[:FAILURES]]
-    if len(unread) > FAILURES:
-        yield f"not checked: and {len(unread) - FAILURES} fonts more"
+    failed, unread = failures(faces)
+    for lines, noun in ((failed, "glyphs"), (unread, "fonts")):
+        yield from [f"not checked: {line}" for line in lines[:3]]
+        if len(lines) > 3:
+            yield f"not checked: and {len(lines) - 3} {noun} more"
+
+
+def failures(faces: Sequence[Face]) -> tuple[list[str], list[str]]:
+    """Glyphs that could not be checked, and fonts, with the reasons."""
+    failed = [f"{face.font}: {glyph}: {error}" for face in faces for glyph, error in face.failed]
+    return failed, [face.error for face in faces if face.error is not None]
 
 
 def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
     """All faces as JSON: each with its findings, kinks along its axes in numbers, and glyphs that failed."""
-    data = {"thresholds": asdict(thresholds), "fonts": [face_facts(face) for face in faces]}
-    return json.dumps(data, indent=1, ensure_ascii=False)
-
-
-def face_facts(face: Face) -> dict[str, Any]:
-    """A face as JSON data."""
-    return {
-        "font": face.font,
-        "family": face.family,
-        "style": face.style,
-        "error": face.error,
-        "glyphs": face.glyphs,
-        "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
-        "known": face.known,
-        "axes": [asdict(numbers) for numbers in face.axes],
-        "findings": [asdict(finding) for finding in face.findings],
-        "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
-    }
+    fonts = [
+        {
+            "font": face.font,
+            "family": face.family,
+            "style": face.style,
+            "error": face.error,
+            "glyphs": face.glyphs,
+            "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
+            "known": face.known,
+            "axes": [asdict(numbers) for numbers in face.axes],
+            "findings": [asdict(finding) for finding in face.findings],
+            "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
+        }
+        for face in faces
+    ]
+    return json.dumps({"thresholds": asdict(thresholds), "fonts": fonts}, indent=1, ensure_ascii=False)
 
 
 def as_csv(found: Sequence[tuple[Face, Finding]]) -> str:
@@ -131,26 +139,23 @@ def as_markdown(faces: Sequence[Face], found: Sequence[tuple[Face, Finding]], le
         f"{_code(faces[0].font) if len(faces) == 1 else counted(len(faces), 'font')}: "
         f"{counts_words(counts) or 'no findings'}.",
     ]
-    columns = [("font", "---")] * (len(faces) > 1) + [("glyph", "---"), ("level", "---"), ("contour", "---:")]
-    columns += [("segment", "---:"), ("point", "---:"), ("finding", "---")]
-    located = any(item.location for _, item in found)
-    columns += [("location", "---")] * located
     if found:
-        lines += ["", *[f"| {' | '.join(cells)} |" for cells in zip(*columns, strict=True)]]
-    for face, item in found[:MARKDOWN_ROWS]:
-        cells = [_code(face.font)] * (len(faces) > 1) + [_code(item.glyph), item.level, str(item.contour)]
-        cells += [str(item.segment), "{:.0f}, {:.0f}".format(*item.point), _plain(f"{item.kind}: {item.sentence}")]
-        cells += [_plain(place_on_axes(item, face.home))] * located
-        lines.append(f"| {' | '.join(cells)} |")
+        headings, rows = columns(found[:MARKDOWN_ROWS], len(faces) > 1)
+        lines += ["", _row(headings), _row("---:" if heading in NUMBERS else "---" for heading in headings)]
+        for cells in rows:
+            named = zip(headings, cells, strict=True)
+            lines.append(_row(_code(cell) if heading in ("font", "glyph") else _plain(cell) for heading, cell in named))
     if len(found) > MARKDOWN_ROWS:
         lines += ["", f"And {len(found) - MARKDOWN_ROWS} more."]
     if level == "WARN" and (words := counts_words(counts, "INFO")):
         lines += ["", f"Not listed, INFO: {words}."]
-    failed = [f"{face.font}: {glyph}: {error}" for face in faces for glyph, error in face.failed]
-    failed += [face.error for face in faces if face.error is not None]
-    if failed:
-        lines += ["", *[f"- not checked: {_code(line)}" for line in failed[:MARKDOWN_ROWS]]]
+    if unchecked := [line for part in failures(faces) for line in part]:
+        lines += ["", *[f"- not checked: {_code(line)}" for line in unchecked[:MARKDOWN_ROWS]]]
     return "\n".join(lines) + "\n"
+
+
+def _row(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
 
 
 def _plain(text: str) -> str:

@@ -7,26 +7,26 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
 import typer
 
 from ..errors import OptionError
-from ..fields import CORNERS, Described, option, options_of
+from ..fields import CORNERS, About, Described, described, option, options_of
 from ..fitting.options import PRESETS, Options, Preset
 from .messages import errors, listen
 
 Value = TypeVar("Value")
 
 
-@dataclass(frozen=True)
-class Shown:
+class Shown(NamedTuple):
     """Fields of a dataclass that are options of a command: those with these names, or all others."""
 
     names: frozenset[str] = frozenset()
     listed: bool = False
 
-    def __contains__(self, name: str) -> bool:
+    def has(self, name: str) -> bool:
+        """Whether the field of this name is an option."""
         return (name in self.names) == self.listed
 
 
@@ -41,7 +41,7 @@ def without(*names: str) -> Shown:
 
 
 @dataclass(frozen=True)
-class Choice:
+class PresetOption:
     """Options that are set together."""
 
     preset: Preset | None = option(
@@ -55,45 +55,40 @@ class Choice:
 def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
     """A command for typer, from a function that takes values and returns the exit status.
 
-    Expected errors end the command with status 2, those of making the values too. A field whose option is not given,
-    neither on the command line nor in a file, keeps the value of the parameter's default, or that of the preset. The
-    command's attribute ``values`` is the function that makes the values from typer's context.
+    A parameter is a dataclass, an option annotated with :class:`.About`, or an argument of typer. Expected errors end
+    the command with status 2, those of making the values too. A field whose option is not given, neither on the command
+    line nor in a file, keeps the value of the parameter's default, or that of the preset.
     """
     hints = get_type_hints(function, include_extras=True)
     hints.pop("return")
-    defaults = {name: parameter.default for name, parameter in signature(function).parameters.items()}
-    groups = {name: group for name, hint in hints.items() if (group := _group(hint, defaults[name]))}
+    groups: dict[str, tuple[Any, Shown]] = {}
     flat = [_parameter("context", typer.Context)]
     for name, hint in hints.items():
-        flat += _expanded(*groups[name]) if name in groups else [_parameter(name, hint, defaults[name])]
-
-    def values(context: Any) -> dict[str, Any]:
-        given, source = context.params, context.get_parameter_source
-        own = {name: value for name, value in given.items() if getattr(source(name), "name", "") != "DEFAULT"}
-        return {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
+        default = signature(function).parameters[name].default
+        kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
+        extra = extras[0] if extras else None
+        if isinstance(kind, type) and is_dataclass(kind):
+            groups[name] = kind() if default is Parameter.empty else default, extra or Shown()
+            flat += _expanded(*groups[name])
+        elif isinstance(extra, About):
+            flat.append(_option(described(name, kind, extra), default))
+        else:
+            flat.append(_parameter(name, hint, default))
 
     def command(context: typer.Context, **given: Any) -> None:
-        quiet = bool(given.get("quiet"))
-        with errors(quiet, bool(given.get("json_log"))):
+        quiet, source = bool(given.get("quiet")), context.get_parameter_source
+        own = {name: value for name, value in given.items() if getattr(source(name), "name", "") != "DEFAULT"}
+        with errors(quiet or bool(given.get("json_log"))):
             listen(quiet)
-            status = function(**values(context))
+            values = {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
+            status = function(**values)
         if status:
             raise typer.Exit(status)
 
-    command.values = values  # type: ignore[attr-defined]
     command.__name__, command.__doc__ = function.__name__, function.__doc__
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in flat}
     command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
     return command
-
-
-def _group(hint: Any, default: Any) -> tuple[Any, Shown] | None:
-    """The value that a parameter has without options, and its fields that are options; None: it is no dataclass."""
-    kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
-    if not (isinstance(kind, type) and is_dataclass(kind)):
-        return None
-    shown = next((extra for extra in extras if isinstance(extra, Shown)), Shown())
-    return kind() if default is Parameter.empty else default, shown
 
 
 def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
@@ -105,14 +100,13 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     kind: Any = type(base)
     if kind is Options:
         given = {**PRESETS.get(given.get("preset", ""), {}), **given}
-    found = {
-        one.name: collected(value, shown, given)
-        for one in fields(kind)
-        if is_dataclass(value := getattr(base, one.name)) and one.name in shown
-    }
-    found = {name: value for name, value in found.items() if value != getattr(base, name)}
-    known = {one.name: one for one in options_of(kind) if one.name in shown and one.name in given}
-    found |= {name: _read(one, given[name]) for name, one in known.items()}
+    known = {one.name: one for one in options_of(kind)}
+    found: dict[str, Any] = {}
+    for name in (one.name for one in fields(kind) if shown.has(one.name)):
+        if is_dataclass(value := getattr(base, name)):
+            found[name] = collected(value, shown, given)
+        elif name in known and name in given:
+            found[name] = _read(known[name], given[name])
     try:
         return replace(base, **found)  # type: ignore[type-var]
     except OptionError as error:
@@ -124,13 +118,13 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
 def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:
     """The options of a dataclass and of those in it, as parameters for typer."""
     if isinstance(base, Options):
-        yield from _expanded(Choice(), Shown())
+        yield from _expanded(PresetOption(), Shown())
     known = {one.name: one for one in options_of(base)}
     for one in fields(base):
         value = getattr(base, one.name)
-        if one.name in shown and is_dataclass(value):
+        if shown.has(one.name) and is_dataclass(value):
             yield from _expanded(value, shown)
-        elif one.name in shown and one.name in known:
+        elif shown.has(one.name) and one.name in known:
             yield _option(known[one.name], value)
 
 
@@ -139,12 +133,11 @@ def _option(one: Described, default: Any) -> Parameter:
     kind, about = one.kind, one.about
     if about.words or get_origin(kind) is tuple:
         kind, default = str, _written(default, about.words)
-    parsers = {int: whole, float: number}
-    more = {"parser": parsers[kind]} if kind in parsers else {}
+    more = {"parser": PARSERS[kind]} if kind in (int, float) else {}
     made = typer.Option(
         *one.flags, help=about.help, rich_help_panel=about.panel, metavar=about.metavar, **more | dict(about.more)
     )
-    return _parameter(one.name, Annotated[kind if default is not None else kind | None, made], default)
+    return _parameter(one.name, Annotated[kind | None if default is None else kind, made], default)
 
 
 def _written(value: Any, words: Mapping[str, Any]) -> str | None:
@@ -153,12 +146,12 @@ def _written(value: Any, words: Mapping[str, Any]) -> str | None:
 
 
 def _read(one: Described, value: Any) -> Any:
-    """A value of the command line as its field has it."""
+    """A value of the command line, or of a file of settings, as its field has it."""
     if get_origin(one.kind) is tuple:
         return tuple(part.strip() for part in value.split(",") if part.strip())
     if one.about.words:
         return one.about.words[value] if value in one.about.words else whole(value)
-    return value
+    return PARSERS[one.kind](value) if one.kind in PARSERS else value
 
 
 def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:
@@ -196,3 +189,6 @@ def place(text: Any) -> Path:
     if not str(text):
         raise typer.BadParameter("it is empty: give a folder, or . for this one")
     return Path(text)
+
+
+PARSERS: dict[Any, Callable[[Any], Any]] = {int: whole, float: number, Path: place}

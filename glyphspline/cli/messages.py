@@ -1,31 +1,30 @@
-"""What commands say on standard error: lines, warnings of the libraries, and expected errors, which end the command."""
+"""What commands write on standard error: lines, warnings of libraries, progress, and expected errors."""
 
 from __future__ import annotations
 
+import json
 import logging
 import os
+import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import typer
 
 from . import interruption
 
 QUIET = "GLYPHSPLINE_QUIET"
-"""Environment variable that keeps processes from saying that they compile, as in :mod:`..compiled`."""
+"""Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
 
 
 @contextmanager
-def errors(quiet: bool = False, json_log: bool = False) -> Iterator[None]:
-    """Print an expected error as one line on standard error and exit with status 2.
-
-    Args:
-        quiet, json_log: of the command: nothing is said of compiling then.
-    """
+def errors(quiet: bool) -> Iterator[None]:
+    """Print an expected error as one line on standard error and exit with status 2; ``quiet``: compile silently."""
     from ..errors import GlyphsplineError
 
-    if quiet or json_log:
+    if quiet:
         os.environ[QUIET] = "1"
     try:
         yield
@@ -47,7 +46,12 @@ def say(line: str) -> None:
     typer.echo(printable(line), err=True)
 
 
-class Said(logging.Handler):
+def print_json(facts: Any) -> None:
+    """Print JSON data on standard output."""
+    typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
+
+
+class Logged(logging.Handler):
     """Prints what this package and fontTools log, each sentence once."""
 
     def __init__(self, level: int) -> None:
@@ -66,8 +70,8 @@ def listen(quiet: bool = False) -> None:
     """Print warnings of the libraries on standard error, or only their errors."""
     for name in ("glyphspline", "fontTools"):
         log = logging.getLogger(name)
-        log.handlers[:] = [handler for handler in log.handlers if not isinstance(handler, Said)]
-        log.addHandler(Said(logging.ERROR if quiet else logging.WARNING))
+        log.handlers[:] = [handler for handler in log.handlers if not isinstance(handler, Logged)]
+        log.addHandler(Logged(logging.ERROR if quiet else logging.WARNING))
 
 
 def stop(message: str) -> NoReturn:
@@ -79,3 +83,52 @@ def stop(message: str) -> NoReturn:
 def printable(text: str) -> str:
     """Text without characters that move a terminal's cursor or change its colours; fonts may have any in names."""
     return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+@contextmanager
+def json_lines() -> Iterator[Any]:
+    """Progress as JSON lines on standard error, one a second at most."""
+    last = 0.0
+
+    def observe(done: int, total: int, failed: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= 1 or done == total:
+            last = now
+            say(json.dumps({"done": done, "total": total, "failed": failed}))
+
+    yield observe
+
+
+@contextmanager
+def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
+    """Show a bar of glyphs, or of kinds of work that are compiled, on standard error if that is a terminal.
+
+    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich import progress as rich
+    from rich.console import Console
+
+    columns: list[Any] = [rich.BarColumn(), rich.MofNCompleteColumn()]
+    if compiling:
+        words = rich.TextColumn("compiling"), rich.TextColumn("kinds of work")
+        columns = [words[0], *columns, words[1], rich.TimeElapsedColumn()]
+    else:
+        rate, failures = rich.TextColumn("{task.fields[rate]:.0f}/s"), rich.TextColumn("{task.fields[failed]} failed")
+        columns += [rate, rich.TimeRemainingColumn(), failures]
+    bar = rich.Progress(*columns, console=Console(stderr=True), transient=True)
+    task = bar.add_task("", total=None, rate=0.0, failed=0)
+
+    def observe(done: int, total: int, failed: int = 0) -> None:
+        bar.start()  # not before: it would run over a line about compiling
+        bar.update(task, completed=done, total=total or None, failed=failed, rate=bar.tasks[0].speed or 0.0)
+
+    try:
+        if compiling:
+            bar.start()
+        yield observe
+    finally:
+        bar.stop()

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
 from . import arguments as opt
-from .messages import say, stop
-from .progress import json_lines, progress
+from .messages import json_lines, print_json, progress, say, stop
+from .tables import FontRun, with_character
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from ..readers import Source
     from ..runs import RunSpec, Summary
-    from .closing import FontRun
 
 LOOKED_AT = 64
 """Outlines that are looked at to tell type from brush."""
@@ -42,15 +39,11 @@ class Conversion:
     run: opt.RunOptions
 
 
-@contextmanager
-def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> Iterator[Executor]:
+def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> AbstractContextManager[Executor]:
     """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
     from ..runs.schedule import workers
 
-    with workers(
-        jobs, spec.limits.seconds, spec.options, spec.formats, 1, spec.masters, scheduler=scheduler
-    ) as executor:
-        yield executor
+    return workers(jobs, spec.limits.seconds, spec.options, spec.formats, 1, spec.masters, scheduler=scheduler)
 
 
 def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, alone: bool) -> list[FontRun]:
@@ -60,7 +53,6 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
     """
     from ..errors import GlyphsplineError
     from ..runs import OutputError, faces_of, folders_for, locked
-    from .closing import FontRun
 
     face_index, folders = call.instance.face_index, [call.out]
     if alone:
@@ -79,7 +71,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
             except GlyphsplineError as error:
                 if alone or isinstance(error, OutputError):
                     raise
-                if call.run.quiet or call.run.json_log:  # or else it is said below the table
+                if call.run.quiet or call.run.json_log:  # or else it is below the table
                     say(str(error))
                 runs.append(FontRun(str(font), folder, error=str(error)))
     return runs
@@ -87,14 +79,15 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
 def convert_face(source: Source, name: str, call: Conversion, executor: Executor, alone: bool) -> FontRun:
     """Convert one face of the font called ``name``; those of a collection go to a folder each unless it is alone."""
-    from .closing import FontRun, missing_words
+    from ..runs.summary import listed
 
     if source.num_faces > 1 and not alone:
         name = f"{name}, face {source.face_index}"
         call = replace(call, out=call.out / f"face-{source.face_index}")
     names = call.subset.of(source)
     if names.missing and not call.run.quiet:
-        say(("" if alone else f"{name}: ") + f"not in the font: {missing_words(names.missing)}")
+        words = listed([with_character(phrase) for phrase in names.missing[:10]], len(names.missing))
+        say(("" if alone else f"{name}: ") + f"not in the font: {words}")
     if alone and not names:
         stop("none of the glyphs asked for is in the font")
     summary = run_face(source, names, call, executor, None if alone else name)
@@ -140,7 +133,7 @@ def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleF
         for line in summary.lines():
             say(line)
     if run.as_json:
-        typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
+        print_json(facts)
     return bool(summary.failed)
 
 

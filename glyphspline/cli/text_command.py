@@ -72,11 +72,10 @@ def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
     remarks = [*missing(job.layout), *drawn.notes]
-    if not quiet:
-        for line in remarks[:SHOWN]:
-            say(line)
-        if len(remarks) > SHOWN:
-            say(f"and {len(remarks) - SHOWN} remarks more")
+    if len(remarks) > SHOWN:
+        remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
+    for line in () if quiet else remarks:
+        say(line)
     return 1 if job.layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
 
 

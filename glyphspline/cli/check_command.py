@@ -1,4 +1,4 @@
-"""The command ``check`` as a whole: fonts are checked, and what is found is written where it is asked for."""
+"""The command ``check``: fonts are checked, and findings are written where they are asked for."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import typer
 from ..checks.baseline import Baseline
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError, OutputError
+from ..fields import options_of
 from ..files import writing
 from ..runs.check_fonts import Asked, Face, check_fonts, worst_first
 from ..runs.check_run import STEPS
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
+from .config import CHECK, names_of, settings
 from .findings import as_csv, as_json, as_markdown, sentences, table
-from .messages import say, stop
-from .progress import progress
+from .groups import Shown, collected
+from .messages import progress, say, stop
 
 STDOUT = Path("-")
 
-NAMES = [kind.name for kind in KINDS]
 
-
-def run(
+def run_check(
     inputs: Sequence[str],
     options: opt.CheckOptions,
     report: opt.ReportOptions,
@@ -35,19 +35,22 @@ def run(
     instance: opt.Instance,
     run: opt.RunOptions,
 ) -> list[Face]:
-    """The command with its arguments: check write what is asked for, and say the rest.
+    """Check fonts, write what is asked for, and print the rest.
 
     Raises:
-        GlyphsplineError: an option or a file of it is of no use.
+        GlyphsplineError: an option, or a file that it names, is unusable.
     """
     from ..runs import find_fonts
 
-    piped = [path for path in (report.csv, report.ghmarkdown, report.html) if path == STDOUT]
-    if len(piped) + run.as_json > 1:
+    texts = (report.csv, report.ghmarkdown, report.html)
+    piped = texts.count(STDOUT) + run.as_json
+    if piped > 1:
         stop("only one of --json, --csv - and the like goes to standard output")
-    require_figure(report.plot)
-    for path in (report.csv, report.ghmarkdown, report.html, report.plot, report.write_baseline):
-        require_folder(path)
+    if report.plot is not None and report.plot.suffix[1:].lower() not in get_args(FigureKind):
+        raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {report.plot}")
+    for path in (*texts, report.plot, report.write_baseline):  # before anything is checked
+        if path not in (None, STDOUT) and not path.parent.is_dir():
+            raise OutputError("cannot be written: there is no such folder", font=str(path))
     asked = asked_of(options, report, run.as_json)
     fonts = find_fonts(inputs)
     if not fonts:
@@ -75,8 +78,10 @@ def run(
     if report.html is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
-        drawn = [CheckedFont(face.font, face.source, face.findings) for face in faces if face.source]
-        put(report.html, findings_page(drawn))
+        put(
+            report.html,
+            findings_page([CheckedFont(each.font, each.source, each.findings) for each in faces if each.source]),
+        )
     if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source
         from ..writers.figures.turns import turns_figure
@@ -87,22 +92,59 @@ def run(
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
-        put(STDOUT, table(shown, report.rows, len(faces) > 1))
+        put(STDOUT, table(shown[: report.rows], len(faces) > 1))
     if not run.quiet:
         for line in sentences(faces, len(shown), report.rows, level):
             say(line)
     return faces
 
 
+def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:
+    """What is looked for, from the command's options.
+
+    Raises:
+        GlyphsplineError: an option or the baseline is unusable.
+    """
+    every = [kind.name for kind in KINDS]
+    kinds = _listed(options.kinds)
+    for name in kinds:
+        if name not in every:
+            raise OptionError(f"--kinds has no {name!r}: there are {', '.join(every)}")
+    return Asked(
+        thresholds=thresholds_of(options.thresholds, options.corner_angle),
+        kinds=frozenset(kinds or every),
+        kept=report.loglevel or ("INFO" if as_json or report.csv or report.html else "WARN"),
+        axis=options.axis,
+        steps=STEPS if options.steps is None else options.steps,
+        baseline=None if report.baseline is None else Baseline.read(report.baseline),
+        written=None if report.write_baseline is None else Baseline(),
+        drawn=report.html is not None,
+        joints=report.plot is not None,
+    )
+
+
+def project_settings() -> tuple[Asked, opt.Subset, opt.Instance]:
+    """What is looked for, in which glyphs and where, as ``[tool.glyphspline.check]`` of the working folder has it.
+
+    Raises:
+        GlyphsplineError: a setting is no option of the command, or unusable.
+    """
+    groups: list[Any] = [opt.CheckOptions(), opt.ReportOptions(), opt.Subset(), opt.Instance(), opt.RunOptions()]
+    named = ((one.flags, one.name) for group in groups for one in options_of(group))
+    given = settings(None, names_of(named), CHECK)
+    options, report, subset, instance, _ = (collected(group, Shown(), given) for group in groups)
+    return asked_of(options, report), subset, instance
+
+
 def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
     """Thresholds as ``kink=1,short=2``; of one that is given twice the last counts.
 
     Raises:
-        GlyphsplineError: one is not known, or is no number above 0.
+        OptionError: one is not known, or is no number above 0.
     """
     names = [each.name for each in fields(Thresholds)]
     found: dict[str, float] = {}
-    for item in filter(None, (text or "").replace(" ", "").split(",")):
+    for item in _listed(text):
         name, _, value = item.partition("=")
         if name.replace("-", "_") not in names:
             raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
@@ -115,49 +157,9 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
     return Thresholds(**found)
 
 
-def kinds_of(text: str | None) -> frozenset[str]:
-    """The kinds asked for; without any, all.
-
-    Raises:
-        OptionError: there is no such kind.
-    """
-    names = [name for name in (text or "").replace(" ", "").split(",") if name]
-    for name in names:
-        if name not in NAMES:
-            raise OptionError(f"--kinds has no {name!r}: there are {', '.join(NAMES)}")
-    return frozenset(names or NAMES)
-
-
-def require_figure(path: Path | None) -> None:
-    """Raise an error unless a diagram can be written as what the file's suffix says."""
-    if path is not None and path.suffix[1:].lower() not in get_args(FigureKind):
-        raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {path}")
-
-
-def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:
-    """What is looked for, from the command's arguments.
-
-    Raises:
-        GlyphsplineError: an option or the baseline is of no use.
-    """
-    every = as_json or report.csv or report.html
-    return Asked(
-        thresholds=thresholds_of(options.thresholds, options.corner_angle),
-        kinds=kinds_of(options.kinds),
-        kept=report.loglevel or ("INFO" if every else "WARN"),
-        axis=options.axis,
-        steps=STEPS if options.steps is None else options.steps,
-        baseline=None if report.baseline is None else Baseline.read(report.baseline),
-        written=None if report.write_baseline is None else Baseline(),
-        drawn=report.html is not None,
-        joints=report.plot is not None,
-    )
-
-
-def require_folder(path: Path | None) -> None:
-    """Raise an error before anything is checked, unless a file's folder exists."""
-    if path is not None and path != STDOUT and not path.parent.is_dir():
-        raise OutputError("cannot be written: there is no such folder", font=str(path))
+def _listed(text: str | None) -> list[str]:
+    """The items of a list between commas."""
+    return [item for item in (text or "").replace(" ", "").split(",") if item]
 
 
 def put(path: Path, content: str | bytes) -> None:

@@ -1,0 +1,203 @@
+"""Tables and lines of text: what a font holds, what became of several fonts, and how two fonts differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from math import isinf
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..types import counted, rounded_up
+from .messages import printable
+
+if TYPE_CHECKING:
+    from ..comparing.difference import Difference
+    from ..runs import FontDifference, Summary
+
+WIDE = 1000
+"""Columns of text within which no line of a table is broken; terminals break lines themselves."""
+
+
+def plain(
+    headings: Sequence[str], rows: Iterable[Sequence[str]], numbers: Sequence[str] = (), footer: Sequence[str] = ()
+) -> str:
+    """A table.
+
+    Args:
+        headings: of the columns. rows: their cells; what fonts have in names moves no cursor.
+        numbers: headings of the columns that are aligned to the right. footer: cells of the last line, if there is one.
+    """
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    lines = Table(box=box.ASCII2, show_edge=False, show_footer=bool(footer))
+    for k, heading in enumerate(headings):
+        below = footer[k] if footer else ""
+        lines.add_column(heading, footer=below, justify="right" if heading in numbers else "left")
+    for cells in rows:
+        lines.add_row(*[Text(printable(cell)) for cell in cells])
+    text = StringIO()
+    Console(file=text, width=WIDE, color_system=None).print(lines)
+    return "\n".join([line.rstrip() for line in text.getvalue().splitlines()])
+
+
+def named(glyphs: Sequence[str], what: str, shown: int) -> Iterator[str]:
+    """The number of glyphs and the names of the first; nothing if there are none."""
+    if glyphs:
+        more = ", …" if len(glyphs) > shown else ""
+        yield f"{counted(len(glyphs), 'glyph')}{what}: {', '.join(glyphs[:shown])}{more}"
+
+
+def font_lines(facts: Mapping[str, Any]) -> Iterator[str]:
+    """The facts that :func:`glyphspline.readers.facts.file_facts` gives, line by line."""
+    yield f"{facts['file']}: {facts['format']}, {counted(facts['faces'], 'face')}"
+    for font in facts["fonts"]:
+        yield f"face {font['face_index']}: {font['family']} {font['style']}"
+        yield (
+            f"  {font['units_per_em']:g} units per em, ascender {font['ascender']:g}, descender {font['descender']:g}"
+        )
+        for axis in font["axes"]:
+            limits = f"{axis['minimum']:g} to {axis['maximum']:g}, default {axis['default']:g}"
+            yield f"  axis {axis['tag']} ({axis['name']}): {limits}"
+        if font["instances"]:
+            yield f"  named instances: {', '.join(font['instances'])}"
+        counts = [f"{font[what]} {what}" for what in ("glyphs", "characters", "contours", "segments") if what in font]
+        yield f"  {', '.join(counts)}"
+        for key, what in (
+            ("broken", "cannot be read"),
+            ("degenerate", "with contours that enclose nothing"),
+            ("overlaps", "with overlaps"),
+        ):
+            yield from (f"  {line}" for line in named(font.get(key) or (), f" {what}", 5))
+
+
+@dataclass
+class FontRun:
+    """What became of one face of a font.
+
+    Attributes:
+        name: of the file, with the face if there are several. out: its folder.
+        summary: None if the font could not be read; then ``error`` says why.
+    """
+
+    name: str
+    out: Path
+    summary: Summary | None = None
+    error: str | None = None
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Glyphs of the folder that have a result, that failed, and with a contour outside the tolerance."""
+        if self.summary is None:
+            return 0, 0, 0
+        statuses = self.summary.statuses
+        return statuses["ok"] + statuses["empty"], statuses["failed"], self.summary.outside_tolerance
+
+    @property
+    def seconds(self) -> float:
+        """Time of the run."""
+        return 0.0 if self.summary is None else self.summary.seconds
+
+    @property
+    def failed(self) -> int:
+        """Number of glyphs that failed; a font that could not be read counts as one."""
+        return self.counts[1] if self.summary else 1
+
+    def failures(self) -> Iterator[str]:
+        """What failed, the first three and the number of the others."""
+        if self.error is not None:
+            yield f"failed: {self.error}"
+        for glyph, error in self.summary.failures[:3] if self.summary else ():
+            yield f"failed: {self.name}: {glyph}: {error}"
+        if self.failed > 3:
+            yield f"failed: {self.name}: and {self.failed - 3} more, in the manifest"
+
+
+def runs_table(runs: Sequence[FontRun]) -> str:
+    """All fonts with the numbers of their glyphs; those with failures come last, and why fonts failed."""
+    order = sorted(runs, key=lambda run: (run.summary is None, run.failed > 0))
+    rows = [[run.name, *(map(str, run.counts) if run.summary else "---"), f"{run.seconds:.1f}"] for run in order]
+    headings = ("font", "glyphs", "failed", "outside tolerance", "seconds")
+    sums = [str(sum(column)) for column in zip(*(run.counts for run in runs), strict=True)]
+    footer = [f"{len(runs)} in all", *sums, f"{sum(run.seconds for run in runs):.1f}"]
+    return "\n".join([plain(headings, rows, headings[1:], footer), *(line for run in order for line in run.failures())])
+
+
+def runs_facts(runs: Sequence[FontRun]) -> dict[str, Any]:
+    """All runs as JSON data."""
+    read = [run.summary for run in runs if run.summary is not None]
+    glyphs, failed, outside = (sum(column) for column in zip(*(run.counts for run in runs), strict=True))
+    return {
+        "fonts": [
+            {"font": run.name, "out": str(run.out), "error": run.error, **(run.summary.facts() if run.summary else {})}
+            for run in runs
+        ],
+        "glyphs": glyphs,
+        "failed": failed,
+        "outside_tolerance": outside,
+        "unreadable": len(runs) - len(read),
+        "missing": sum(len(summary.missing) for summary in read),
+        "seconds": round(sum(summary.seconds for summary in read), 3),
+    }
+
+
+def with_character(phrase: str) -> str:
+    """A code point, "U+9F8D", with its character; other phrases as they are."""
+    if not phrase.startswith("U+") or "-" in phrase:
+        return phrase
+    character = chr(int(phrase[2:], 16))
+    return f"{phrase} {character}" if character.isprintable() and not character.isspace() else phrase
+
+
+def differences_table(found: Sequence[Difference], shown: int, tolerance: float) -> str:
+    """Differences one a line; those beyond the tolerance have an asterisk."""
+    rows = []
+    for each in found[:shown]:
+        moved = each.new_advance - each.advance
+        rows.append([
+            "*" if each.is_beyond(tolerance) else "",
+            each.glyph if each.glyph == each.new_glyph else f"{each.glyph} = {each.new_glyph}",
+            _distance(each),
+            "" if each.worst is None else "{:.0f}, {:.0f}".format(*each.worst.point),
+            f"{moved:+.4g}" if moved else "",
+            _changes(len(each.contours_gone), len(each.contours_new)),
+            _changes(len(each.kinks_gone), len(each.kinks_new)),
+        ])  # fmt: skip
+    headings = ("", "glyph", "distance", "at", "advance", "contours", "kinks")
+    return plain(headings, rows, numbers=("distance", "at", "advance"))
+
+
+def _distance(each: Difference) -> str:
+    """The bound for people, rounded up."""
+    if isinf(each.bound):
+        return "one is empty"
+    return f"{rounded_up(each.bound, 3):g}" if each.bound >= 0.001 else "0" if each.identical else "< 0.001"
+
+
+def _changes(gone: int, came: int) -> str:
+    """How many came and went: "+1 -2"."""
+    return " ".join([f"{sign}{count}" for sign, count in (("+", came), ("-", gone)) if count])
+
+
+def difference_lines(found: FontDifference, shown: int) -> Iterator[str]:
+    """What the table does not say."""
+    total, beyond = len(found.differences), len(found.beyond)
+    if total > shown > 0:
+        yield f"and {total - shown} more"
+    yield (
+        f"{counted(found.identical + total, 'glyph')} compared: {found.identical} identical, {total - beyond} within "
+        f"the tolerance of {found.tolerance:g}, {beyond} beyond"
+    )
+    if found.scale != 1:
+        yield f"the new one's units are multiplied by {found.scale:g}: lengths are in the old one's"
+    for what, glyphs in (
+        ("only in the old one", found.glyphs.only_old),
+        ("only in the new one", found.glyphs.only_new),
+        ("of another name", [f"{old} = {new}" for old, new in found.glyphs.renamed]),
+        ("not compared", [f"{each.glyph} ({each.error})" for each in found.unread]),
+    ):
+        yield from (f"{what}: {line}" for line in named(glyphs, "", 10))
