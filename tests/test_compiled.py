@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import interpolate_batch
+from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import interpolate_vertex_reference
 

@@ -1,1 +1,7 @@
-"""A curve as such: B-splines, Bézier pieces, compiled cubics, integrals, crossings, curvature."""
+"""A curve as such: Bézier pieces, B-splines, plane cubics and what can be measured of them."""
+
+DEGREES = range(2, 7)
+"""Degrees of splines whose uniform basis functions rise above 1/2, as the method needs (end of the paper's Section 1).
+
+They stand here, as a command checks its options before it imports NumPy.
+"""

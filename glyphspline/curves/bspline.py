@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError
 from ..types import FloatArray, IntArray, counted
+from . import DEGREES
 from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
-from .choices import DEGREES
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,11 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import spline_beziers
-from ..interpolation.batched import explain, interpolate_batch
-from ..interpolation.compiled_batch import BatchedInterpolation
+from ..interpolation.api import interpolate_batch
 from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.method import Fallback, Method, method_of
+from ..interpolation.polygon import explain
+from ..interpolation.result import BatchedInterpolation
 from ..types import BoolArray, FloatArray, IntArray
 from .options import Options
 

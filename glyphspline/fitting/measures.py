@@ -13,8 +13,8 @@ from ..curves.fairness import curvature_extrema
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
-from ..interpolation.compiled_batch import BatchedInterpolation
 from ..interpolation.polygon import LARGEST, clean_polygon
+from ..interpolation.result import BatchedInterpolation
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..outlines.segments import contour_cubics

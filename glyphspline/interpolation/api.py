@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import accumulate
 from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..curves.choices import Parametrisation
 from ..errors import OptionError, PolygonError, require_choice
-from ..types import FloatArray
-from .batched import explain, interpolate_batch
-from .compiled_batch import as_tangents, over_threads
-from .driver import interpolate_any_degree, interpolate_any_vertex
-from .frozen import solved
-from .method import Fallback, Finish, Method, Tangents, method_of
-from .polygon import as_points
-from .result import Interpolation
+from ..types import BoolArray, FloatArray, IntArray
+from .batch import empty_results, filled, over_threads, run_batch
+from .driver import interpolate_any_degree, interpolate_any_vertex, solved
+from .method import Fallback, Finish, Method, Parametrisation, Tangents, method_of
+from .polygon import as_points, as_tangents, explain
+from .result import BatchedInterpolation, Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
 
@@ -193,34 +191,31 @@ def _interpolated(
         parts.append(p)
     if not good:
         return results
-    pairs = None if method.closed or tangents is None else [tangents[k] for k in good]
-    found: Any
+    ends: Any = None
+    if tangents is not None and not method.closed:
+        ends = as_tangents([tangents[k] for k in good], parts[0].shape[1])
+
+    def one(j: int) -> Interpolation | PolygonError:
+        try:
+            return interpolate_any_degree(
+                parts[j], method, given[j] if given else None, None if ends is None else ends[j]
+            )
+        except PolygonError as error:
+            return error
+
+    found: list[Any]
     if method.stepwise:
-
-        def one(j: int) -> Interpolation | PolygonError:
-            try:
-                return interpolate_any_degree(
-                    parts[j], method, given[j] if given else None, pairs[j] if pairs else None
-                )
-            except PolygonError as error:
-                return error
-
         found = over_threads(one, range(len(good)), threads)
     else:
-        found = interpolate_batch(
-            parts[0] if len(parts) == 1 else np.concatenate(parts), np.array([0, *accumulate(map(len, parts))]), method,
-            knots=np.concatenate(given) if given else None,
-            end_tangents=None if pairs is None else as_tangents(pairs, parts[0].shape[1]),
-            threads=threads,
-        ).results()  # fmt: skip
-        for j in range(len(found)) if None in found else ():
-            if found[j] is None:
-                found[j] = explain(parts[j], given[j] if given else method.knots, method.closed)
+        points, offsets = parts[0] if len(parts) == 1 else np.concatenate(parts), [0, *accumulate(map(len, parts))]
+        knots = np.concatenate(given) if given else None
+        batch = interpolate_batch(points, np.array(offsets), method, knots=knots, end_tangents=ends, threads=threads)
+        found = batch.results()
     for j, k in enumerate(good):
-        results[k] = found[j]
+        results[k] = found[j] or explain(parts[j], given[j] if given else method.knots, method.closed)
         if method.finish == "solve" and isinstance(found[j], Interpolation):
             tolerance = method.tolerance_for(float(np.ptp(parts[j], axis=0).max()))
-            results[k] = solved(found[j], parts[j], pairs[j] if pairs else None, tolerance)
+            results[k] = solved(found[j], parts[j], None if ends is None else ends[j], tolerance)
     return results
 
 
@@ -260,3 +255,65 @@ def interpolate_vertex(
     """
     method = Method(1, residual_tolerance=residual_tolerance, max_iterations=max_iterations)
     return interpolate_any_vertex(points, k, method, whole_curve)
+
+
+def interpolate_batch(
+    points: FloatArray,
+    offsets: IntArray,
+    method: Method,
+    *,
+    knots: FloatArray | None = None,
+    end_tangents: FloatArray | None = None,
+    by_knot: BoolArray | None = None,
+    residual_tolerances: FloatArray | None = None,
+    threads: int | None = None,
+) -> BatchedInterpolation:
+    """Interpolation of many polygons laid end to end. A bad polygon has a status and raises no exception.
+
+    Args:
+        points: (N, d) float64, contiguous, d ≥ 2; offsets: (K + 1,) int64, where each polygon begins, and N.
+        method: of degree 3, without diagnostics.
+        knots: given parameters of all polygons end to end (n + 1 each if closed, n if open), unless the method has a
+            rule.
+        end_tangents: (K, 2, d) of open arcs, NaN for natural ends; None: all are natural.
+        by_knot: (K,) polygons with ``fallback="knot"`` instead of the method's.
+        residual_tolerances: (K,) in place of the method's.
+        threads: number of threads; None for one a core. Results do not depend on it.
+    """
+    count, closed = len(offsets) - 1, method.closed
+    peak_shares = filled(count, method.peak_share)
+    if by_knot is not None:
+        peak_shares[by_knot] = 0.0
+    if residual_tolerances is None:
+        tolerances = filled(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
+    else:
+        tolerances = residual_tolerances.copy()
+    if not method.stepwise:
+        return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads)
+    arrays = empty_results(len(points), count, closed, points.shape[1])
+    u, P, parameters, bounds, kept, whole, rates = arrays
+    whole[:] = np.array([1, 0, -1, 0, 0, 0])
+    residuals = [np.empty(0)] * count
+
+    def one(k: int) -> None:
+        a, b = offsets[k : k + 2].tolist()
+        own = replace(
+            method,
+            fallback="peak" if peak_shares[k] > 0.0 else "knot",
+            residual_tolerance=None if np.isnan(tolerances[k]) else float(tolerances[k]),
+        )
+        given = None if knots is None or method.knots else knots[a + k * closed : b + (k + 1) * closed]
+        try:
+            r = interpolate_any_degree(points[a:b], own, given, None if end_tangents is None else end_tangents[k])
+        except PolygonError:
+            return
+        n, first, start = len(r.parameters), a + k * closed, a + 2 * k * (not closed)
+        u[first : first + n + closed], P[start : start + n + 2 * (not closed)] = r.spline.knots, r.spline.control_points
+        parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
+        kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
+        whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified
+        rates[k], residuals[k] = r.rate_bound, r.residuals
+        tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
+
+    over_threads(one, range(count), threads)
+    return BatchedInterpolation(offsets, closed, tolerances, np.concatenate([*residuals, np.empty(0)]), *arrays)

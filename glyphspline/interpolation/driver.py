@@ -1,12 +1,13 @@
 """The driver of Algorithms 1, 2 and 3 in NumPy: any degree, variant and dimension, one polygon at a time.
 
-It can keep the history of all passes. The pass over the vertices is compiled (:mod:`.kernels.any_degree_pass`). Many
-cubic polygons at once, in variants 1 to 3, are for :mod:`.kernels.driver`.
+It can keep the history of all passes, and has what else is done one by one: the matrices of a run, and the end of
+``finish="solve"``. The pass over the vertices is compiled (:mod:`.kernels.any_degree_pass`). Many cubic polygons at
+once, in variants 1 to 3, are for :mod:`.kernels.driver`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,15 +15,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..curves.bspline import Spline, full_knots, span_controls
-from ..curves.parameters import closed_knots, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
-from .compiled_batch import as_tangents, filled, run_batch
-from .diagnostics import History, diagnose
+from .batch import filled, run_batch
 from .intervals import Intervals, arc_ends, search_intervals
-from .method import SETTLED, Method, Tangents
-from .polygon import as_tangent, clean_polygon
+from .method import SETTLED, Method
+from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import NOTHING_MERGED, Interpolation
+
+History = list[tuple[FloatArray, FloatArray]]
+"""The control points of every iteration, and the footpoints on their curve."""
 
 Pass = Callable[[FloatArray], tuple[FloatArray, FloatArray, float]]
 """From control points to footpoints, control points after the update, and the largest error before it."""
@@ -64,17 +66,19 @@ def interpolate_any_degree(
     points: ArrayLike,
     method: Method,
     knots: ArrayLike | None = None,
-    end_tangents: Tangents | None = None,
+    end_tangents: FloatArray | None = None,
     *,
     keep_history: bool = False,
 ) -> Interpolation:
-    """Interpolate one polygon (n, d); ``knots`` are its parameters if the method has no rule.
+    """Interpolate one polygon (n, d).
 
-    ``keep_history`` keeps the passes without the norms and spectral radii of ``method.diagnostics``.
+    Args:
+        knots: its parameters if the method has no rule.
+        end_tangents: (2, d) of an arc, NaN for a natural end; None: both are natural.
+        keep_history: keep the passes without the norms and spectral radii of ``method.diagnostics``.
     """
     problem = Problem.of(points, method, knots, end_tangents)
-    keep, at_once = keep_history or method.diagnostics, method.variant == 4
-    return problem.result(iterate(problem.one_pass, problem.P, problem.limit, method.max_iterations, at_once, keep))
+    return problem.result(problem.iterate(keep_history or method.diagnostics))
 
 
 def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curve: bool) -> Interpolation:
@@ -89,7 +93,7 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
     if whole_curve:
         intervals, rate_bound = Intervals(u[k] + np.array([[-0.5, 0.5]]) * u[-1], 0, 1.0), 1.0
     problem = Problem(p, u, u[:-1], np.array([k]), intervals, method)
-    run = iterate(problem.one_pass, problem.P, problem.limit, method.max_iterations)
+    run = problem.iterate()
     controls, residuals = p.copy(), np.array(run.residuals) / problem.unit
     controls[k] = problem.points_of(run.controls[k])
     return Interpolation(
@@ -99,17 +103,14 @@ def interpolate_any_vertex(points: ArrayLike, k: int, method: Method, whole_curv
 
 
 def _intervals(
-    p: FloatArray, u: FloatArray, centres: FloatArray, free: IntArray, method: Method, tangents: Tangents
+    p: FloatArray, u: FloatArray, centres: FloatArray, free: IntArray, method: Method, tangents: FloatArray
 ) -> Intervals:
     """Search intervals: those of the compiled driver for cubics in the variants that it has, which is faster."""
     if method.degree == 3 and method.variant:
-        same = replace(
-            method, variant=2 if method.variant == 4 else method.variant, knots=None,
-            max_iterations=0, diagnostics=False,
-        )  # fmt: skip
-        ends = None if method.closed else as_tangents([tangents], p.shape[1])
+        variant = 2 if method.variant == 4 else method.variant
+        same = replace(method, variant=variant, knots=None, max_iterations=0, diagnostics=False)
         shares = filled(1, method.peak_share)
-        found = run_batch(p, np.array((0, len(p))), same, peak_shares=shares, knots=u, end_tangents=ends)
+        found = run_batch(p, np.array((0, len(p))), same, shares, filled(1, np.nan), u, tangents[None])
         return Intervals(found.bounds[free], int(found.whole[0, 3]), float(found.rates[0]))
     first = free - ((method.degree + 1) // 2 if method.closed else 2)
     order = method.degree + 2
@@ -135,7 +136,7 @@ class Problem:
         free: IntArray,
         intervals: Intervals,
         method: Method,
-        tangents: Tangents = (None, None),
+        tangents: FloatArray | None = None,
         merged: IntArray = NOTHING_MERGED,
     ) -> None:
         """Lay out vertices (n, d) with knots, parameters and the indices of those with a free control point."""
@@ -146,14 +147,10 @@ class Problem:
         self.unit = 0.5 ** np.floor(np.log2(np.ptp(p, axis=0).max()))
         self.knot_unit = 0.5 ** np.floor(np.log2(u[-1] / len(p)))
         self.knots, self.degree, self.closed, self.at_once = u, method.degree, method.closed, method.variant == 4
-        q = (p - self.origin) * self.unit
+        self.P = q = (p - self.origin) * self.unit
         natural, base = np.zeros(2), np.zeros((2, p.shape[1]))
-        if self.closed:
-            self.P = q.copy()
-        else:
-            scale = self.unit / self.knot_unit
-            slopes = [None if t is None else as_tangent(t, q.shape[1]) * scale for t in tangents]
-            natural, base = _ends(q, np.diff(u) * self.knot_unit, slopes)
+        if tangents is not None and not self.closed:
+            natural, base = _ends(q, np.diff(u) * self.knot_unit, tangents * (self.unit / self.knot_unit))
             beside = base + natural[:, None] * q[[1, -2]]
             self.P = np.concatenate([q[:1], beside[:1], q[1:-1], beside[1:], q[-1:]])
         spans, bounds, u = len(u) - 1, self.knot_unit * intervals.bounds, self.knot_unit * u
@@ -180,17 +177,23 @@ class Problem:
         self.limit = max(self.tolerance, settled) * self.unit
 
     @classmethod
-    def of(cls, points: ArrayLike, method: Method, knots: ArrayLike | None, end_tangents: Tangents | None) -> Problem:
-        """A polygon (n, d), checked and without duplicates; ``knots`` are its parameters if the method has no rule."""
+    def of(
+        cls, points: ArrayLike, method: Method, knots: ArrayLike | None = None, end_tangents: FloatArray | None = None
+    ) -> Problem:
+        """A polygon (n, d), checked and without duplicates; arguments as for :func:`interpolate_any_degree`."""
         degree, closed = method.degree, method.closed
         p, merged = clean_polygon(points, closed)
         rule: Any = method.knots
         s = vertex_parameters(p, rule or np.delete(np.asarray(knots, dtype=np.float64), merged), closed)
-        u = closed_knots(s, degree) if closed else s
-        centres = vertex_centres(s, degree) if closed else s
-        free = np.arange(len(p)) if closed else np.arange(1, len(p) - 1)
-        tangents = end_tangents or (None, None)
+        u, centres, free = s, s, np.arange(1, len(p) - 1)
+        if closed:
+            u, centres, free = closed_knots(s, degree), vertex_centres(s, degree), np.arange(len(p))
+        tangents = np.full((2, p.shape[1]), np.nan) if end_tangents is None else end_tangents
         return cls(p, u, centres, free, _intervals(p, u, centres, free, method, tangents), method, tangents, merged)
+
+    def iterate(self, keep: bool = False) -> Run:
+        """Passes from the polygon on; see :func:`iterate`."""
+        return iterate(self.one_pass, self.P, self.limit, self.method.max_iterations, self.at_once, keep)
 
     def result(self, run: Run) -> Interpolation:
         """The result of a run in the caller's units, with the history if the run has kept it."""
@@ -232,13 +235,12 @@ class Problem:
         return A
 
 
-def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tuple[FloatArray, FloatArray]:
+def _ends(q: FloatArray, h: FloatArray, tangents: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Weights and rests of the control points beside the ends: base + weight times the free one next to them."""
     natural, base = natural_weights(h, tangents), np.zeros((2, q.shape[1]))
     for end, (near, beyond, sign) in enumerate(((0, 1, 1.0), (-1, -2, -1.0))):
-        tangent = tangents[end]
-        if tangent is not None:
-            base[end] = q[near] + sign * h[near] / 3 * tangent
+        if not np.isnan(tangents[end]).any():
+            base[end] = q[near] + sign * h[near] / 3 * tangents[end]
         elif len(q) == 2:
             base[end] = q[near] + (q[beyond] - q[near]) / 3
         else:
@@ -246,13 +248,101 @@ def _ends(q: FloatArray, h: FloatArray, tangents: list[FloatArray | None]) -> tu
     return natural, base
 
 
-def natural_weights(h: FloatArray, tangents: Sequence[Any]) -> FloatArray:
+def natural_weights(h: FloatArray, tangents: FloatArray) -> FloatArray:
     """(2,) weights of the first (last) free control point of an arc in the one beside it; 0 at ends with a tangent.
 
     With them the curve has no curvature there.
     """
-    weights = np.zeros(2)
-    for end, (near, beyond) in enumerate(((0, 1), (-1, -2)) if len(h) > 1 else ()):
-        if tangents[end] is None:
-            weights[end] = h[near] / (2 * h[near] + h[beyond])
-    return weights
+    if len(h) < 2:
+        return np.zeros(2)
+    return np.isnan(tangents).any(axis=1) * h[[0, -1]] / (2 * h[[0, -1]] + h[[1, -2]])
+
+
+def diagnose(matrix: Callable[[FloatArray], FloatArray], history: History, at_once: bool) -> dict[str, Any]:
+    """Error iteration matrices of a run: the largest row-sum norm, and the spectral radius of their product so far.
+
+    In Algorithm 2 the factor of a step is I - Bᵐ (the paper's equation 3). In Algorithm 3, with L the part of B
+    below the diagonal, the corrections of a sweep are (I + L)⁻¹ times the errors before it, so that the factor
+    from one sweep's corrections to the next one's is I - (I + L)⁻¹ B.
+
+    Args:
+        matrix: from (f,) footpoints to the (f, f) matrix B of the free control points.
+        at_once: whether the run is one of Algorithm 3.
+    """
+    factors = []
+    for _, t in history[:-1]:
+        B = matrix(t)
+        identity = np.eye(len(B))
+        factors.append(identity - (np.linalg.solve(identity + np.tril(B, -1), B) if at_once else B))
+    radii, product = [], np.eye(len(history[0][1]))
+    for factor in factors:
+        product = factor @ product
+        radii.append(float(np.abs(np.linalg.eigvals(product)).max(initial=0.0)))
+    norms = [float(np.abs(factor).sum(axis=1).max(initial=0.0)) for factor in factors]
+    return {
+        "history": tuple(history),
+        "rate_observed": max(norms, default=0.0),
+        "spectral_radii": np.array(radii),
+    }
+
+
+def solved(
+    found: Interpolation, points: FloatArray, end_tangents: FloatArray | None, tolerance: float
+) -> Interpolation:
+    """A result with the control points whose curve passes through every vertex at its present parameter.
+
+    The control points stay as they are where that is impossible: variants 0, 1 and 4 may bring two footpoints together.
+
+    Args:
+        points: (n, d) the polygon as it was given. end_tangents: as :func:`interpolate_any_degree` has them.
+    """
+    spline, t = found.spline, found.parameters
+    if not np.isfinite(found.max_error) or not (spline.closed or len(t) > 2):
+        return found
+    p = np.delete(points, found.merged, axis=0)
+    natural = np.zeros(2)
+    if not spline.closed:
+        tangents = np.full((2, 2), np.nan) if end_tangents is None else end_tangents
+        natural = natural_weights(np.diff(spline.knots), tangents)
+    best, error = spline, found.max_error
+    for _ in range(2):  # the second time for the rounding errors of the first
+        better = _corrected(best, t, p - best(t), natural)
+        left = float(lengths(p - better(t)).max())
+        if left < error:
+            best, error = better, left
+    residuals = np.append(found.residuals, error)
+    return replace(
+        found, spline=best, residuals=residuals, iterations=found.iterations + 1, converged=error < tolerance
+    )
+
+
+def _corrected(spline: Spline, t: FloatArray, e: FloatArray, natural: FloatArray) -> Spline:
+    """The spline moved by e (n, d) at its vertices' parameters (n,); NaN or infinite if the system is singular."""
+    from scipy.linalg import LinAlgError, solve_banded
+
+    columns, weights = spline.basis_rows(t)
+    n, P = len(t), spline.control_points.copy()
+    if spline.closed:  # in the order 0, n-1, 1, n-2, … neighbours on the ring are near each other
+        i = np.arange(n)
+        place = np.minimum(2 * i, 2 * (n - 1 - i) + 1)
+        rows, columns, order = place, place[columns], np.argsort(place)
+    else:  # control points beside natural ends follow their neighbours, the others at the ends are fixed
+        free = np.arange(1, n - 1)
+        columns, weights, e = columns[free] - 2, weights[free], e[free]
+        weights[columns == -1] *= natural[0]
+        weights[columns == n - 2] *= natural[1]
+        weights[(columns < -1) | (columns > n - 2)] = 0.0
+        rows, columns, order = free - 1, columns.clip(0, n - 3), free - 1
+    width = int(np.abs(columns - rows[:, None]).max())
+    band = np.zeros((2 * width + 1, len(rows)))
+    np.add.at(band, (width + rows[:, None] - columns, columns), weights)
+    try:
+        moves = solve_banded((width, width), band, e[order], check_finite=False)
+    except LinAlgError:
+        moves = np.full_like(e, np.nan)
+    if spline.closed:
+        P += moves[rows]
+    else:
+        P[2:-2] += moves
+        P[[1, -2]] += natural[:, None] * moves[[0, -1]]
+    return Spline(P, spline.knots, spline.degree, spline.closed)

@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
-from ..curves.choices import CHORD_EXPONENT, DEGREES, Parametrisation
+from ..curves import DEGREES
 from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+Parametrisation: TypeAlias = Literal["chord", "uniform", "centripetal"]
 Fallback: TypeAlias = Literal["knot", "peak"]
 Finish: TypeAlias = Literal["iterate", "solve"]
 Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
+
+CHORD_EXPONENT: dict[str, float] = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
 
 STEPWISE = (0, 4)
 """Variants that the passes of many vertices at once do not have."""

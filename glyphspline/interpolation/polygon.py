@@ -1,19 +1,26 @@
-"""Validation of polygons, and merging of duplicate vertices."""
+"""Polygons: validation, merging of duplicate vertices, and the parameters of the vertices."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..curves.parameters import lengths
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
+from .method import CHORD_EXPONENT, Parametrisation, Tangents
 
 SAME_VERTEX = 1e-12
 """Neighbours nearer than this share of the polygon's extent are one vertex.
 
 With a much smaller value, sums of chords in floating point would give them the same knot.
 """
+
+LARGEST, SMALLEST = 1e100, 1e-100
+"""Extents beyond which squared distances leave the range of floats."""
 
 
 def as_points(points: ArrayLike) -> FloatArray:
@@ -27,15 +34,21 @@ def as_points(points: ArrayLike) -> FloatArray:
     return p
 
 
-def as_tangent(tangent: ArrayLike, d: int) -> FloatArray:
-    """An end tangent as (d,) float64; a PolygonError if it is not so many numbers."""
-    try:
-        given = np.asarray(tangent, dtype=np.float64)
-    except (TypeError, ValueError) as cause:
-        raise PolygonError("an end tangent is an array of numbers") from cause
-    if given.shape != (d,):
-        raise PolygonError(f"an end tangent of a polygon (n, {d}) has shape ({d},), not {given.shape}")
-    return given
+def as_tangents(tangents: Sequence[Tangents | None], d: int) -> FloatArray:
+    """End tangents of K arcs as (K, 2, d), NaN for natural ends; a PolygonError if one is not d numbers."""
+    array = np.full((len(tangents), 2, d), np.nan)
+    for k, pair in enumerate(tangents):
+        for end, tangent in enumerate(pair or ()):
+            if tangent is None:
+                continue
+            try:
+                given = np.asarray(tangent, dtype=np.float64)
+            except (TypeError, ValueError) as cause:
+                raise PolygonError("an end tangent is an array of numbers") from cause
+            if given.shape != (d,):
+                raise PolygonError(f"an end tangent of a polygon (n, {d}) has shape ({d},), not {given.shape}")
+            array[k, end] = given
+    return array
 
 
 def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, IntArray]:
@@ -69,10 +82,6 @@ def clean_polygon(points: ArrayLike, closed: bool = True) -> tuple[FloatArray, I
     return p[kept], np.setdiff1d(np.arange(len(p)), kept)
 
 
-LARGEST, SMALLEST = 1e100, 1e-100
-"""Extents beyond which squared distances leave the range of floats."""
-
-
 def _distinct(p: FloatArray, closed: bool, apart: float) -> IntArray:
     """Indices of the vertices that lie farther than ``apart`` from the kept one before them."""
     if (lengths(np.diff(p, axis=0)) > apart).all():
@@ -85,3 +94,71 @@ def _distinct(p: FloatArray, closed: bool, apart: float) -> IntArray:
     while closed and len(kept) > 1 and lengths(p[kept[-1]] - p[0]) <= apart:
         kept.pop()
     return np.array(kept, dtype=np.int64)
+
+
+def lengths(vectors: FloatArray) -> Any:
+    """Euclidean lengths of vectors (..., d), d ≥ 2: (...,). Squares of the coordinates may overflow."""
+    return reduce(np.hypot, np.moveaxis(vectors, -1, 0))
+
+
+def vertex_parameters(
+    points: FloatArray, knots: Parametrisation | ArrayLike = "chord", closed: bool = True
+) -> FloatArray:
+    """The parameter s_i of every vertex; the first is 0.
+
+    Args:
+        points: (n, d) vertices, consecutive ones distinct. closed: whether the polygon returns to its first vertex.
+        knots: "chord", "uniform", "centripetal", or the parameters themselves, increasing.
+
+    Returns:
+        (n + 1,) for a closed polygon, where the last entry is the period T; (n,) for an open one.
+
+    Raises:
+        PolygonError: the number of given parameters is wrong, or they are not finite or not increasing.
+    """
+    n = len(points)
+    if isinstance(knots, str):
+        if knots not in CHORD_EXPONENT:
+            raise PolygonError(f"knots are {', '.join(CHORD_EXPONENT)} or an array, not {knots!r}")
+        ends = np.concatenate([points, points[:1]]) if closed else points
+        chords = lengths(np.diff(ends, axis=0))
+        return np.concatenate([[0.0], np.cumsum(chords ** CHORD_EXPONENT[knots])])
+    given, expected = np.asarray(knots, dtype=np.float64), n + closed
+    if given.shape != (expected,):
+        raise PolygonError(f"{n} vertices need {expected} knots, not an array of shape {given.shape}")
+    if not np.isfinite(given).all() or not (np.diff(given) > 0).all():
+        raise PolygonError("knots have to be finite and increasing")
+    return given - given[0]
+
+
+def closed_knots(parameters: FloatArray, degree: int) -> FloatArray:
+    """The (n + 1,) knots of a closed spline whose B_i is centred on vertex parameter s_i, from 0 to T.
+
+    For odd degrees the knots are the parameters. For even degrees they are the midpoints of neighbouring parameters,
+    counted from the one before s_0. ``B_i`` is centred on s_i either way.
+    """
+    if degree % 2:
+        return parameters
+    before = parameters[-2] - parameters[-1]
+    middles = (np.concatenate([[before], parameters[:-1]]) + parameters) / 2
+    return middles - middles[0]
+
+
+def vertex_centres(parameters: FloatArray, degree: int) -> FloatArray:
+    """(n,) the parameter s_i of each vertex, relative to the first knot of :func:`closed_knots`."""
+    centres = parameters[:-1]
+    return centres if degree % 2 else centres + (parameters[-1] - parameters[-2]) / 2
+
+
+def explain(points: ArrayLike, knots: Any, closed: bool) -> PolygonError:
+    """The error that says why the compiled kernels refused a polygon."""
+    try:
+        p, merged = clean_polygon(points, closed)
+        if not isinstance(knots, str):
+            knots = np.delete(np.asarray(knots, dtype=np.float64), merged)
+        vertex_parameters(p, knots, closed)
+    except PolygonError as error:
+        return error
+    return PolygonError(
+        "neighbouring vertices are so close, beside the polygon's length, that their knots fall together"
+    )

@@ -17,15 +17,12 @@ from numpy.typing import ArrayLike
 
 from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
-from ..curves.choices import Parametrisation
-from ..curves.parameters import closed_knots, lengths, vertex_centres, vertex_parameters
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
-from .diagnostics import diagnose
-from .driver import iterate
+from .driver import diagnose, iterate
 from .intervals import Intervals, arc_ends, search_intervals
-from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Tangents
-from .polygon import clean_polygon
+from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Parametrisation, Tangents
+from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import Interpolation
 
 NEARLY_REAL = 0.05

@@ -1,8 +1,10 @@
-"""The result of an interpolation."""
+"""The result of an interpolation, and those of many as arrays laid end to end."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -60,6 +62,77 @@ class Interpolation:
     def max_error(self) -> float:
         """The largest distance of a vertex from its footpoint on the result."""
         return float(self.residuals[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class BatchedInterpolation:
+    """Results for K polygons as arrays laid end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+
+    Where duplicates were merged, or a polygon was refused, the rest of its part is undefined.
+
+    Attributes:
+        offsets: (K + 1,) of the points. Of polygon k, if closed, the knots begin at ``offsets[k] + k``; if open, the
+            control points at ``offsets[k] + 2 k``.
+        closed: all polygons, or none.
+        tolerances: (K,) residual tolerances. residuals: (iterations + 1) numbers a polygon, end to end.
+        knots, controls, parameters, bounds: as :class:`Interpolation` has them.
+        kept: indices of the vertices that were not merged.
+        whole: (K, 6) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, the
+            footpoints that took a full search, and those that are not certified.
+        rates: (K,) rate bounds.
+    """
+
+    offsets: IntArray
+    closed: bool
+    tolerances: FloatArray
+    residuals: FloatArray
+    knots: FloatArray
+    controls: FloatArray
+    parameters: FloatArray
+    bounds: FloatArray
+    kept: IntArray
+    whole: IntArray
+    rates: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    @property
+    def last_residuals(self) -> FloatArray:
+        """(K,) the residuals of the results; undefined for polygons that were refused."""
+        return self.residuals[np.cumsum(self.whole[:, 2] + 1) - 1]
+
+    def __getitem__(self, k: int) -> Interpolation:
+        """The result of polygon k; its arrays are views."""
+        k = range(len(self))[k]
+        return next(self._results(k, int(self.whole[:k, 2].sum()) + k))
+
+    def results(self) -> list[Interpolation]:
+        """All polygons' results; None stands for one that was refused."""
+        return list(self._results(0, 0))
+
+    def _results(self, k: int, first: int) -> Iterator[Any]:
+        """Results from polygon k on, whose residuals begin at ``first``."""
+        offsets, whole = self.offsets[k:].tolist(), self.whole[k:].tolist()
+        tolerances, rates, closed = self.tolerances[k:].tolist(), self.rates[k:].tolist(), self.closed
+        for start, stop, row, tolerance, rate in zip(offsets, offsets[1:], whole, tolerances, rates, strict=False):
+            status, n, iterations, fallbacks, _, uncertified = row
+            if status:
+                yield None
+            else:
+                u, P, vertices = start + k * closed, start + 2 * k * (not closed), slice(start, start + n)
+                merged = NOTHING_MERGED
+                if n < stop - start:
+                    merged = np.setdiff1d(np.arange(stop - start), self.kept[vertices])
+                residuals = self.residuals[first : first + iterations + 1]
+                spline = Spline.trusted(
+                    self.controls[P : P + n + 2 * (not closed)], self.knots[u : u + n + closed], 3, closed
+                )
+                yield Interpolation(
+                    spline, self.parameters[vertices], self.bounds[vertices], iterations, residuals,
+                    float(residuals[-1]) < tolerance, fallbacks, rate, merged, uncertified,
+                )  # fmt: skip
+            k, first = k + 1, first + iterations + 1
 
 
 def reversed_interpolation(result: Interpolation) -> Interpolation:

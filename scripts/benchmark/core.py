@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import interpolate_batch
-from glyphspline.interpolation.compiled_batch import BatchedInterpolation
+from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.driver import interpolate_any_degree
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
+from glyphspline.interpolation.result import BatchedInterpolation
 from glyphspline.types import FloatArray, IntArray
 
 from .measure import Row, in_words, interleaved

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 import glyphspline as gs
 from glyphspline.interpolation.driver import Problem, interpolate_any_degree, iterate
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import as_tangents
 from glyphspline.types import FloatArray
 
 from .clicking import FONTS
@@ -83,7 +84,7 @@ class Anderson:
 
 def accelerated(points: FloatArray, variant: int = 2, **options: Any) -> gs.Interpolation:
     """The result of accelerated passes; other options are those of :func:`glyphspline.interpolate`."""
-    end_tangents = options.pop("end_tangents", None)
+    end_tangents = as_tangents([options.pop("end_tangents", None)], points.shape[1])[0]
     method = Method(variant, **options)
     problem = Problem.of(points, method, None, end_tangents)
     anderson = Anderson(slice(problem.layout.first, problem.layout.first + len(problem.free)))

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from glyphspline.curves.choices import DEGREES
+from glyphspline.curves import DEGREES
 from glyphspline.types import FloatArray
 
 from .certified import crossing

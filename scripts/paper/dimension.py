@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.curves.parameters import lengths
+from glyphspline.interpolation.polygon import lengths
 from glyphspline.types import FloatArray
 
 from .clicking import FONTS

@@ -8,10 +8,10 @@ from scipy.spatial import ConvexHull
 
 import glyphspline as gs
 from glyphspline.curves.bezier import cross, evaluate
-from glyphspline.curves.choices import Parametrisation
 from glyphspline.curves.fairness import curvature_variation
 from glyphspline.curves.integrals import shape
-from glyphspline.curves.parameters import vertex_parameters
+from glyphspline.interpolation.method import Parametrisation
+from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.types import FloatArray
 
 METHODS = ("variant 1", "variant 2", "variant 3", "SciPy chord", "SciPy centripetal", "SciPy uniform")

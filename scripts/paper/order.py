@@ -12,10 +12,10 @@ from scipy.interpolate import BSpline
 
 import glyphspline as gs
 from glyphspline.curves.bspline import full_knots
-from glyphspline.curves.parameters import vertex_parameters
 from glyphspline.interpolation.driver import Problem, iterate
 from glyphspline.interpolation.intervals import search_intervals
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run

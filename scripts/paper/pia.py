@@ -17,7 +17,7 @@ import glyphspline as gs
 from glyphspline.curves.bspline import Spline
 from glyphspline.curves.fairness import curvature_variation
 from glyphspline.curves.integrals import shape
-from glyphspline.curves.parameters import vertex_parameters
+from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run, random_polygons

@@ -8,7 +8,7 @@ from fontTools.pens.recordingPen import RecordingPen
 
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
-from glyphspline.curves.parameters import closed_knots, vertex_centres, vertex_parameters
+from glyphspline.interpolation.polygon import closed_knots, vertex_centres, vertex_parameters
 from glyphspline.types import FloatArray
 from tests.polygons import ellipse, random_polygon
 

@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import interpolate_batch
+from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.driver import interpolate_any_degree
 from glyphspline.interpolation.kernels.footpoint import WORK, reduce, search_piece
 from glyphspline.interpolation.method import Method

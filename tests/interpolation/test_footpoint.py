@@ -9,7 +9,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.curves.bspline import Spline
-from glyphspline.interpolation.batched import interpolate_batch
+from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import footpoint, prepare

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.interpolation.batched import interpolate_batch
-from glyphspline.interpolation.compiled_batch import _parts, over_threads
+from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import _parts, over_threads
 from glyphspline.interpolation.method import Method
 from tests.polygons import polygon, uniform
 

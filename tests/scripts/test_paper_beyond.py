@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.curves.parameters import vertex_parameters
+from glyphspline.interpolation.polygon import vertex_parameters
 from scripts.paper.common import random_polygons
 from scripts.paper.dimension import stacked_masters
 from scripts.paper.order import greville_start, local_error, reparametrised

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import GlyphsplineError
-from ...interpolation.compiled_batch import BatchedInterpolation
+from ...interpolation.result import BatchedInterpolation
 from ...outlines.contour_arrays import offsets_of
 from ...types import FloatArray, IntArray
 from ..closed_curves import beziers, interpolated

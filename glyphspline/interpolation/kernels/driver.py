@@ -12,7 +12,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...intrinsics import select
-from ...types import FloatArray
+from ...types import FloatArray, IntArray
 from .blocks import (
     BLOCK, COUNT, DD, DONE, FALLBACKS, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW,
     NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO, UNCERTIFIED, UNIT,
@@ -34,12 +34,23 @@ SPARSE = 0.75
 
 
 @compiled
-def run(k0: int, k1: int, given: Given, found: Found, memory: FloatArray) -> FloatArray:
+def run(
+    k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
+    variant: int, margin: float, exponent: float, peak_shares: FloatArray, tolerances: FloatArray, max_iterations: int,
+    settled: float, knots: FloatArray, controls: FloatArray, parameters: FloatArray, bounds: FloatArray,
+    kept: IntArray, whole: IntArray, rates: FloatArray, memory: FloatArray,
+) -> FloatArray:  # fmt: skip
     """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
 
     Args:
+        points, …, settled: as :class:`Given` has them. knots, …, rates: as :class:`Found` has them.
         memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
     """
+    given = Given(
+        points, offsets, own_knots, tangents, closed, variant, margin, exponent, peak_shares, tolerances,
+        max_iterations, settled,
+    )  # fmt: skip
+    found = Found(knots, controls, parameters, bounds, kept, whole, rates)
     group, at = _allocated(memory, given.points.shape[1])
     history, residuals, used = np.empty(64), np.empty(64), 0
     slots, lane, interval = 0, 0, 0
