@@ -39,8 +39,6 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.extending import models, register_model
 
-numba_jit: Any = njit
-
 JIT = not numba.config.DISABLE_JIT  # type: ignore[attr-defined, unused-ignore]
 """Whether functions are compiled: Numba's own switch."""
 
@@ -98,7 +96,8 @@ class Compiled:
         return _Callee(self.inner)
 
     def _dispatcher(self, role: str, **options: bool) -> Any:
-        made: Any = numba_jit(**OPTIONS, **options)(self.py_func)
+        jit: Any = njit
+        made = jit(**OPTIONS, **options)(self.py_func)
         made._cache = _Files(self.py_func, role)
         return made
 
@@ -271,23 +270,15 @@ def own_folder() -> Path | None:
         caches = os.environ.get("XDG_CACHE_HOME", "~/.cache")
     chosen = [Path(os.environ[PLACE])] if os.environ.get(PLACE) else []
     for folder in (*chosen, PACKAGE / "__pycache__" / "compiled", Path(os.path.expanduser(caches)) / "glyphspline"):
-        if _can_write(folder):
+        with suppress(OSError):  # trying is the only way to know: rights alone do not tell
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
             return folder
     with suppress(OSError):
         folder = temporary_folder()
         os.environ[PLACE] = str(folder)
         return folder
     return None
-
-
-def _can_write(folder: Path) -> bool:
-    """Whether files can be written to a folder, which is made if there is none. Rights alone do not tell."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        return False
-    return True
 
 
 def temporary_folder() -> Path:
@@ -319,10 +310,9 @@ def stamp(function: Callable[..., Any]) -> str:
     for one in below(function):
         files.add(getfile(one))
         for name, value in globals_of(one):
-            if str(getattr(value, "__module__", "")).startswith(
-                f"{__package__}."
-            ):  # named tuples, instructions of LLVM
-                files.add(str(sys.modules[value.__module__].__file__))
+            module = str(getattr(value, "__module__", ""))
+            if module.startswith(f"{__package__}."):  # named tuples, instructions of LLVM
+                files.add(str(sys.modules[module].__file__))
             elif isinstance(value, CONSTANTS):
                 constants.add((name, value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()))
     return blake2b(repr((OPTIONS, sorted(map(_digest, files)), sorted(constants))).encode()).hexdigest()

@@ -13,7 +13,7 @@ class GlyphsplineError(Exception):
     """What the package raises by design. ``font``, ``glyph`` and ``contour`` say where, as far as it is known.
 
     The parts are filled in from the inside out: the interpolation knows only its polygon, the glyph
-    pipeline adds contour and glyph, the batch adds the font. ``str()`` gives the whole sentence.
+    pipeline adds contour and glyph, the run adds the font. ``str()`` gives the complete sentence.
     """
 
     def __init__(
@@ -35,16 +35,10 @@ class GlyphsplineError(Exception):
         return self
 
     def __str__(self) -> str:
-        place = [
-            part
-            for part in (
-                self.font,
-                f"glyph {self.glyph!r}" if self.glyph is not None else None,
-                f"contour {self.contour}" if self.contour is not None else None,
-            )
-            if part
-        ]
-        return f"{', '.join(place)}: {self.message}" if place else self.message
+        glyph = None if self.glyph is None else f"glyph {self.glyph!r}"
+        contour = None if self.contour is None else f"contour {self.contour}"
+        place = ", ".join(filter(None, (self.font, glyph, contour)))
+        return f"{place}: {self.message}" if place else self.message
 
 
 class PolygonError(GlyphsplineError, ValueError):
@@ -77,18 +71,15 @@ def require_choice(name: str, value: object, choices: Collection[object] = (True
 
 def is_whole(value: Any, least: int, largest: int) -> bool:
     """Whether a value is an integer from ``least`` to ``largest``. A bool is not."""
-    return _is_a(Integral, value) and bool(least <= value <= largest)
+    return isinstance(value, Integral) and is_number(value, least, largest)
 
 
 def is_number(value: Any, least: float = -sys.float_info.max, largest: float = sys.float_info.max) -> bool:
     """Whether a value is a finite number from ``least`` to ``largest``. A bool is not."""
-    return _is_a(Real, value) and bool(least <= value <= largest)
+    real = isinstance(value, Real) and not isinstance(value, bool)
+    return real and bool(least <= value <= largest)
 
 
 def is_positive(value: Any, largest: float = sys.float_info.max) -> bool:
     """Whether a value is a finite number above 0 and up to ``largest``."""
     return is_number(value, math.ulp(0.0), largest)
-
-
-def _is_a(kind: type, value: object) -> bool:
-    return isinstance(value, kind) and not isinstance(value, bool)

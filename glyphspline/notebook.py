@@ -50,14 +50,13 @@ def glyph_svg(glyph: GlyphResult) -> str:
 def glyph_html(glyph: GlyphResult) -> str:
     """The result with its comb, above a table of its contours' measures, its options and its notes."""
     em = glyph.outline.metrics.units_per_em
-    head = "".join(_head(*QUANTITIES[name]) for name in SHOWN)
+    head = "".join(
+        f'<th title="{escape(about)}">{label}{f", {unit}" if unit else ""}</th>'
+        for label, unit, about in (QUANTITIES[name] for name in SHOWN)
+    )
     rows = "".join(f"<tr><th>{c}</th>{_cells(each.measures, em)}</tr>" for c, each in enumerate(glyph.contours))
     notes = "".join(f"<p>{escape(note)}</p>" for note in (glyph.options.words, *glyph.notes))
     return f"{glyph_svg(glyph)}<table><tr><th>contour</th>{head}</tr>{rows}</table>{notes}"
-
-
-def _head(label: str, unit: str, about: str) -> str:
-    return f'<th title="{escape(about)}">{label}{f", {unit}" if unit else ""}</th>'
 
 
 def _cells(measures: Measures, em: float) -> str:

@@ -1,9 +1,12 @@
-"""The viewer's routes: the page and its files, the font, and what is computed for the page."""
+"""The viewer's server, on the loopback interface only: the page and its files, the font, and what the page asks for."""
 
 from __future__ import annotations
 
 import json
+import socket
+import webbrowser
 from collections.abc import Callable, Iterable
+from contextlib import closing
 from dataclasses import asdict, replace
 from importlib.resources import files
 from pathlib import Path
@@ -26,23 +29,59 @@ from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, steps
 from .guard import Guard
 from .payload import glyph_payload, instance_payload, result_payload, step_payload
-from .search import search
-from .state import State, read_state
+from .requests import State, read_state, search
+
+HOST = "127.0.0.1"
 
 LONGEST_BODY = 200_000
 """Bytes of a request; moved vertices take most of it."""
 
-OWN = ("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js")
-PACKAGES = dict.fromkeys(OWN, "glyphspline.viewer")
-PACKAGES |= dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report")
+PACKAGES = {
+    **dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), "glyphspline.viewer"),
+    **dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report"),
+}
 """All static files and their packages: no path of a request reaches the file system."""
 
 FIRST = "龍龙好gSa"
 """The first of these in the font is shown first: the paper's characters, or some with curves."""
 
 
-TRIED = 200
-"""Glyphs looked at for one with contours."""
+def serve(
+    path: Path,
+    face_index: int = 0,
+    *,
+    port: int = 0,
+    browser: bool = True,
+    announce: Callable[[str], None] | None = None,
+) -> None:
+    """Serve until interrupted.
+
+    Args:
+        path: the font file. face_index: which font of a collection.
+        port: to listen on; 0 takes any free port. browser: open a page in the visitor's browser.
+        announce: called with the address once it is known.
+
+    Raises:
+        FontError: the font cannot be opened. GlyphsplineError: the port is taken.
+    """
+    import uvicorn
+
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_STREAM)) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((HOST, port))
+            listener.listen()  # from here on a page that opens early waits
+        except OSError as error:
+            raise GlyphsplineError(f"port {port} cannot be had: {error.strerror}") from error
+        port = listener.getsockname()[1]
+        app = make_app(path, face_index, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
+        address = f"http://{HOST}:{port}/"
+        if announce:
+            announce(address)
+        if browser:
+            webbrowser.open(address)
+        config = uvicorn.Config(app, log_level="warning", access_log=False, server_header=False, lifespan="off")
+        uvicorn.Server(config).run(sockets=[listener])
 
 
 def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starlette:
@@ -83,7 +122,9 @@ def static(request: Request) -> Response:
 
 def font_facts(work: Work) -> dict[str, Any]:
     """The facts of the font that the page needs."""
-    font = work.font
+    font, options = work.font, Options()
+    names = ("variant", "margin", "corners", "continuity", "effort")
+    defaults = {name: getattr(options, name) for name in names}
     return {
         "family": font.family,
         "style": font.style,
@@ -91,21 +132,11 @@ def font_facts(work: Work) -> dict[str, Any]:
         "metrics": asdict(font.metrics),
         "axes": [axis_facts(axis) for axis in font.axes],
         "first": first_glyph(work),
-        "defaults": defaults(work.em),
+        "defaults": defaults | {"sampling": "tolerance", "amount": options.tolerance_for(work.em)},
         "measures": measures(),
         "scale": work.scale(),
         "presets": PRESETS,
         "palette": palette(),
-    }
-
-
-def defaults(em: float) -> dict[str, Any]:
-    """What the page opens on: the command line's own defaults."""
-    options = Options()
-    names = ("variant", "margin", "corners", "continuity", "effort")
-    return {name: getattr(options, name) for name in names} | {
-        "sampling": "tolerance",
-        "amount": options.tolerance_for(em),
     }
 
 
@@ -114,7 +145,7 @@ def first_glyph(work: Work) -> str:
     font = work.font
     mapped = [font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap]
     others = [name for name in dict.fromkeys([*font.cmap.values(), *font.glyph_names]) if name != ".notdef"]
-    candidates = [*mapped, *others[:TRIED]]
+    candidates = [*mapped, *others[:200]]
     drawn = (name for name in candidates if work.has_ink(name))
     return next(drawn, (candidates or font.glyph_names)[0])
 
@@ -131,18 +162,14 @@ def compare_answer(work: Work, state: State) -> dict[str, Any]:
     return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
 
 
-def text_answer(work: Work, state: State) -> dict[str, Any]:
-    """The line of text as a drawing, with remarks."""
-    svg, notes = work.text(state)
-    return {"svg": svg, "notes": notes}
-
-
 def masters_answer(work: Work, state: State) -> dict[str, Any]:
     """The glyph, converted in all masters at once, at a location; and the command that draws it along an axis."""
     if not work.font.axes:
         raise GlyphsplineError("not a variable font: it has no axes", font=str(work.path))
     result = work.in_all_masters(state.glyph, state.options)
-    return instance_payload(result, dict(state.location)) | {"command": work.axis_command(state)}
+    return instance_payload(result, dict(state.location)) | {
+        "command": work.command(state, along=work.font.axes[0].tag)
+    }
 
 
 ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
@@ -150,7 +177,7 @@ ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
     "compare": compare_answer,
     "masters": masters_answer,
     "steps": lambda work, state: {"steps": [step_payload(m, curves) for m, curves in steps(work.result(state))]},
-    "text": text_answer,
+    "text": lambda work, state: dict(zip(("svg", "notes"), work.text(state), strict=True)),
     "svg": lambda work, state: {"svg": to_svg(work.result(state))},
 }
 """By route: the glyph; its polygon by the variants 1, 2 and 3; the glyph in all masters; the iteration of its closed

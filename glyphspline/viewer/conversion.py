@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
@@ -29,14 +30,13 @@ from ..types import FloatArray
 from ..typesetting.lay_out import layout
 from ..writers.svg.curvature_map import combs
 from ..writers.svg.text_drawing import text_document
-from .state import Moved, State
+from .requests import Moved, State
 
 COMPARED = (1, 2, 3)
 """Variants shown side by side, as in the paper's Figs. 8 and 9."""
 
 STEPS = 60
 """Maximum number of iterations shown: the first half of them are consecutive, then their distance grows."""
-
 
 CONVERTED = 128
 """Converted glyphs that are kept: the distinct ones of a line of text, and some by other options."""
@@ -95,44 +95,34 @@ class Work:
         with self.lock:
             placed = layout(self.at(state.location), state.text)
             names = [self.font.glyph_names[gid] for _, gid in placed.distinct()]
-        results = [self._of_text(name, state) for name in names]
-        drawing = text_document(placed, results)
-        lacking = [f"no glyph for {' '.join(placed.missing)}"] if placed.missing else []
-        failed = [note for result in results if not result.contours for note in result.notes]
-        return drawing.decode(), [*lacking, *failed]
-
-    def _of_text(self, name: str, state: State) -> GlyphResult:
-        """A glyph of the text; one that is broken has no contours, and a note."""
-        try:
-            return self.converted(name, state.location, state.options)
-        except GlyphsplineError as error:
-            return GlyphResult(Outline(name), state.options, (), (str(error),))
+        notes = [f"no glyph for {' '.join(placed.missing)}"] if placed.missing else []
+        results = []
+        for name in names:
+            try:
+                results.append(self.converted(name, state.location, state.options))
+            except GlyphsplineError as error:
+                results.append(GlyphResult(Outline(name), state.options, (), (str(error),)))
+            notes += [] if results[-1].contours else results[-1].notes
+        return text_document(placed, results).decode(), notes
 
     def _scale(self) -> float:
         """The font's curvature scale, from the source outlines of at most 60 glyphs."""
         names = [name for name in self.font.glyph_names if name in set(self.font.cmap.values())]
         chosen = (names or list(self.font.glyph_names))[:: max(1, len(names) // 60)]
-        return robust_scale(item for name in chosen for item in self._source_combs(name)) or 4 / self.em
+        found: list[Comb] = []
+        for name in chosen:
+            with suppress(GlyphsplineError):  # a broken glyph has its error when it is shown
+                found += combs(as_glyph(self.outline(name, ())))
+        return robust_scale(found) or 4 / self.em
 
-    def _source_combs(self, name: str) -> list[Comb]:
-        try:
-            return list(combs(as_glyph(self.outline(name, ()))))
-        except GlyphsplineError:
-            return []  # a broken glyph has its error when it is shown
-
-    def command(self, state: State) -> str:
-        """The command that converts the glyph with the options of the state, without moved vertices."""
-        return self._command("convert", state, "outputs/gid-{}")
-
-    def axis_command(self, state: State) -> str:
-        """The command that draws the glyph along the font's first axis."""
-        return self._command("atlas", state, "gid-{}.pdf", "--axis", self.font.axes[0].tag)
-
-    def _command(self, name: str, state: State, out: str, *more: str) -> str:
+    def command(self, state: State, along: str | None = None) -> str:
+        """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis."""
         gid = str(self.font.glyph_names.index(state.glyph))
         words = [str(self.path), "--gids", gid, *instance_arguments(self.face_index, dict(state.location))]
         words += chain(*arguments(replace(state.options, measure=False), Options()).values())
-        return shlex.join(["glyphspline", name, *words, *more, "--out", out.format(gid)])
+        if along is None:
+            return shlex.join(["glyphspline", "convert", *words, "--out", f"outputs/gid-{gid}"])
+        return shlex.join(["glyphspline", "atlas", *words, "--axis", along, "--out", f"gid-{gid}.pdf"])
 
 
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:
@@ -164,10 +154,9 @@ def through(contour: ContourResult, polygon: FloatArray, options: Options) -> Co
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
     """Numbers of updates, and after each number the closed curves of the glyph: each run is made once."""
     closed = [contour for contour in result.contours if is_smooth(contour)]
-    arcs = [contour.interpolations[0] for contour in closed]
-    runs = [recorded(contour.polygon, result.options) for contour in closed]
+    runs = [(contour.interpolations[0], recorded(contour.polygon, result.options)) for contour in closed]
     for m in shown_steps(updates_of(result)):
-        yield m, [_after(m, arc, run) for arc, run in zip(arcs, runs, strict=True)]
+        yield m, [_after(m, arc, run) for arc, run in runs]
 
 
 def updates_of(result: GlyphResult) -> int:
