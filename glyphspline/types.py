@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 FloatArray: TypeAlias = "NDArray[np.float64]"
 IntArray: TypeAlias = "NDArray[np.int64]"
+ComplexArray: TypeAlias = "NDArray[np.complex128]"
 BoolArray: TypeAlias = "NDArray[np.bool_]"
 """Text, so that a command can read its options without NumPy."""
 

@@ -7,11 +7,11 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.comb import control_length
 from ..curves.cubics import jet, length
-from ..curves.fairness import TURN, curvatures, first_of, swings
+from ..curves.fairness import MOST, TURN, curvatures, first_of, swings
 from ..outlines.contour_arrays import ContourArrays
-from ..types import FloatArray, IntArray
-from .joints import COLUMNS, NO_HANDLE, add
-from .kinds import LUMP, Limits
+from ..types import FloatArray
+from .kinds import LUMP
+from .segments import CONTOUR, DETAIL, NO_HANDLE, OTHER, PLACE, VALUE, WHAT
 
 QUARTER = np.pi / 2
 """A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""
@@ -30,36 +30,35 @@ STEPS = 8
 
 
 @compiled
-def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -> FloatArray:
-    """(n, 6) lumps of contours; see :mod:`.joints`. The second number is how far a lump moves the curve, in units.
+def bend_findings(
+    cubics: FloatArray, contours: ContourArrays, least_share: float, least_height: float, corner_angle: float
+) -> FloatArray:
+    """(n, 6) lumps of contours; see :mod:`.segments`. The second number is how far a lump moves the curve, in units.
 
     A bend goes from an inflection, a corner or a line to the next. The maxima of its absolute curvature are those of
-    :func:`..curves.fairness.swings`, with the limit's share. Contours with quadratics are passed over: each quadratic
+    :func:`..curves.fairness.swings`, with the least share. Contours with quadratics are passed over: each quadratic
     has a peak of its own.
 
     Args:
         cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
+        least_share, least_height: of a lump. corner_angle: in radians.
     """
-    table, count = np.empty((16, COLUMNS)), 0
-    share, corner = limits.lump / (1 + limits.lump), np.cos(limits.corner_angle)
+    table, count = np.empty((MOST * len(cubics), 6)), 0
+    share, corner = least_share / (1 + least_share), np.cos(corner_angle)
     for c in range(len(contours.offsets) - 1):
         a, b = contours.offsets[c], contours.offsets[c + 1]
-        bent = plain = True
-        for j in range(a, b):
-            plain = plain and contours.degrees[j] != 2
-            bent = bent or contours.degrees[j] == 3
-        if not (plain and bent):
+        degrees, own = contours.degrees[a:b], cubics[a:b]
+        if (degrees == 2).any() or not (degrees == 3).any():
             continue
-        own = cubics[a:b]
         extent = control_length(own)
         values, where, n = curvatures(own, extent, corner)
         if n == 0:
             continue
         for i in range(n):
-            if contours.degrees[a + min(int(where[i]), b - a - 1)] == 1 and where[i] % 1 == 0 and values[i] == 0.0:
+            if degrees[min(int(where[i]), b - a - 1)] == 1 and where[i] % 1 == 0 and values[i] == 0.0:
                 values[i] = np.nan
         least = TURN / extent
-        found = np.empty(n + 2, dtype=np.int64)
+        found, at, sizes = np.empty(n + 2, dtype=np.int64), np.empty(n + 2), np.empty(n + 2)
         start, whole = start_of(values, n, least)
         first, sign = start, 0.0
         for i in range(start, start + n + 1):
@@ -69,10 +68,11 @@ def bend_findings(cubics: FloatArray, contours: ContourArrays, limits: Limits) -
                 before = first - 1 if not np.isnan(values[(first - 1) % n]) and not whole else first
                 behind = i if np.isnan(value) else i + 1
                 number = swings(values, n, before, behind, sign, share, least, found)
-                table, count = lumps_of(
-                    own, values, where, n, found, number, before, behind - 1, sign, whole, least, limits.lump_height, c,
-                    table, count,
-                )  # fmt: skip
+                for k in range(number + 1):
+                    at[k], sizes[k] = where[found[k] % n], sign * values[found[k] % n]
+                begin, end = where[before % n], where[(behind - 1) % n]
+                rows = table[count:]
+                count += lumps_of(own, at, sizes, number, begin, end, sign, whole, least, least_height, c, rows)
             if ends:
                 first, sign = i, 0.0
             if np.isnan(value):
@@ -103,55 +103,51 @@ def start_of(values: FloatArray, n: int, least: float) -> tuple[int, bool]:
 
 @compiled
 def lumps_of(
-    cubics: FloatArray, values: FloatArray, where: FloatArray, n: int, found: IntArray, number: int,
-    before: int, behind: int, sign: float, whole: bool, least: float, height: float, contour: int,
-    table: FloatArray, count: int,
-) -> tuple[FloatArray, int]:  # fmt: skip
-    """The table with the lumps of one bend.
+    cubics: FloatArray, at: FloatArray, sizes: FloatArray, number: int, begin: float, end: float, sign: float,
+    whole: bool, least: float, least_height: float, contour: int, rows: FloatArray,
+) -> int:  # fmt: skip
+    """Write the lumps of one bend into rows (k, 6) of the table; return their number.
 
     Of two maxima too close together the lesser is a lump; then the least of all, until there are no more than the bend
     needs. The lesser one is that which exceeds the minima beside it by the smaller share.
 
     Args:
-        values, where: n curvatures and their places. found: the significant extrema, as many as ``number`` swings.
-        before, behind: where the bend begins and ends. sign: of its curvature. whole: it is the whole contour.
+        at, sizes: places and absolute curvatures of the significant extrema, as many as ``number`` swings, and the end.
+        begin, end: of the bend. sign: of its curvature. whole: it is the whole contour.
     """
     first = 0 if whole else 1
     if number - first < 3:
-        return table, count
-    peaks, shares, heights = np.empty(number), np.empty(number), np.empty(number)
-    size = 0
+        return 0
+    peaks, size, count = np.empty((number, 3)), 0, 0
     for k in range(first, number):
-        i, j, h = found[k] % n, found[k - 1 if k else number - 1] % n, found[(k + 1) % number if whole else k + 1] % n
-        own, beside = sign * values[i], max(sign * values[j], sign * values[h])
-        if own > beside:
-            (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = point_at(cubics, where[j]), point_at(cubics, where[h])
-            square = (x1 - x0) ** 2 + (y1 - y0) ** 2
-            peaks[size], shares[size] = where[i], own / max(beside, least) - 1
-            heights[size] = (own - beside) * square / WAVE
-            if heights[size] >= height:
+        i, j = k - 1 if k else number - 1, (k + 1) % number if whole else k + 1
+        beside = max(sizes[i], sizes[j])
+        if sizes[k] > beside:
+            (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = point_at(cubics, at[i]), point_at(cubics, at[j])
+            height = (sizes[k] - beside) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / WAVE
+            if height >= least_height:
+                peaks[size, 0], peaks[size, 1], peaks[size, 2] = at[k], sizes[k] / max(beside, least) - 1, height
                 size += 1
-    needed = max(1, int(np.ceil((turned(cubics, where[before % n], where[behind % n], sign, whole) - SLACK) / QUARTER)))
+    needed = max(1, int(np.ceil((turned(cubics, begin, end, sign, whole) - SLACK) / QUARTER)))
     while size > 1:
-        worst, close = -1, False
+        worst, close = 0, False
         for k in range(size if whole else size - 1):
-            h = (k + 1) % size
-            if turned(cubics, peaks[k], peaks[h], sign, False) < APART:
-                lesser = k if shares[k] < shares[h] else h
-                if worst < 0 or shares[lesser] < shares[worst]:
-                    worst, close = lesser, True
-        if not close and size > needed:
-            worst = 0
-            for k in range(size):
-                worst = k if shares[k] < shares[worst] else worst
-        if worst < 0:
-            break
-        table = add(table, count, LUMP, contour, peaks[worst] % len(cubics), shares[worst], heights[worst], -1)
-        count += 1
-        size -= 1
+            other = (k + 1) % size
+            if turned(cubics, peaks[k, 0], peaks[other, 0], sign, False) < APART:
+                lesser = k if peaks[k, 1] < peaks[other, 1] else other
+                worst = worst if close and peaks[worst, 1] <= peaks[lesser, 1] else lesser
+                close = True
+        if not close:
+            if size <= needed:
+                break
+            worst = int(peaks[:size, 1].argmin())
+        row = rows[count]
+        row[WHAT], row[CONTOUR], row[PLACE] = LUMP, contour, peaks[worst, 0] % len(cubics)
+        row[VALUE], row[DETAIL], row[OTHER] = peaks[worst, 1], peaks[worst, 2], -1
+        count, size = count + 1, size - 1
         for k in range(worst, size):
-            peaks[k], shares[k], heights[k] = peaks[k + 1], shares[k + 1], heights[k + 1]
-    return table, count
+            peaks[k, 0], peaks[k, 1], peaks[k, 2] = peaks[k + 1, 0], peaks[k + 1, 1], peaks[k + 1, 2]
+    return count
 
 
 @compiled

@@ -1,14 +1,18 @@
-"""Outlines checked: findings as values, from the tables of :mod:`.measured`."""
+"""Outlines checked: all passes over all glyphs of a batch, and what they find as values."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..outlines.outline import Outline
-from .finding import Finding, findings
-from .kinds import Thresholds
+import numpy as np
 
-THRESHOLDS = Thresholds()
+from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.outline import Outline
+from .finding import Finding, Measured, findings
+from .kinds import KINDS, THRESHOLDS, Thresholds
+
+PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
+"""Kinds whose values passes have in 1/unit."""
 
 
 def check(outline: Outline, thresholds: Thresholds = THRESHOLDS, *, outer: int = 0) -> list[Finding]:
@@ -30,9 +34,43 @@ def check_many(
     outlines: Sequence[Outline], thresholds: Thresholds = THRESHOLDS, *, outer: int = 0
 ) -> list[list[Finding]]:
     """As :func:`check`, of many outlines of one font at once; the result of one does not depend on the others."""
-    from .measured import measured  # imported here, so that the package opens without a compiler
-
     if not outlines:
         return []
     rows = measured([outline.arrays for outline in outlines], thresholds, outlines[0].metrics.units_per_em, outer)
     return findings([(outline.name, outline.gid) for outline in outlines], rows)
+
+
+def measured(
+    outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float, outer: int = 0
+) -> Measured:
+    """Measure the contours of glyphs of one em; ``outer`` as in :attr:`.Source.outer`."""
+    from ..curves.bezier import evaluate
+    from ..outlines.segments import all_cubics  # imports the compiler
+    from .bends import bend_findings
+    from .enclosed import enclosed_findings
+    from .segments import CONTOUR, OTHER, PLACE, VALUE, WHAT, Segments, joint_findings, segment_findings
+
+    limits = thresholds.limits(units_per_em)
+    contours = joined(outlines)
+    glyphs = offsets_of([outline.num_contours for outline in outlines])
+    cubics = all_cubics(contours)
+    segments = Segments.of(cubics, contours)
+    table = np.concatenate([
+        joint_findings(segments, limits),
+        segment_findings(segments, limits),
+        bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle),
+        enclosed_findings(cubics, segments, glyphs, limits.doubled, units_per_em / 1000, outer),
+    ])  # fmt: skip
+    table[np.isin(table[:, WHAT], PER_EM), VALUE] *= units_per_em
+    table = table[np.lexsort((-table[:, VALUE], table[:, WHAT]))]
+    numbers = table[:, PLACE:].copy()
+    contour = table[:, CONTOUR].astype(np.int64)
+    places = np.floor(table[:, PLACE]).astype(np.int64)
+    numbers[:, 0] -= places
+    owners = np.searchsorted(glyphs, contour, side="right") - 1
+    numbers[:, OTHER - PLACE] = np.where(table[:, OTHER] < 0, -1, table[:, OTHER] - glyphs[owners])
+    return Measured(
+        owners, contour - glyphs[owners], places, table[:, WHAT].astype(np.int64), numbers,
+        evaluate(cubics[contours.offsets[contour] + places], numbers[:, 0]),
+        np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
+    )  # fmt: skip

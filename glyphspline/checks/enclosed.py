@@ -20,12 +20,11 @@ from ..compiled import compiled
 from ..curves.bezier import evaluate
 from ..curves.contacts import crossing_contacts
 from ..curves.crossings import meetings
-from ..curves.cubics import directions, jet, length, split
+from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
-from ..outlines.contour_arrays import ContourArrays
 from ..types import BoolArray, FloatArray, IntArray
-from .joints import COLUMNS, NO_HANDLE, ROUNDING, add
-from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, Limits
+from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP
+from .segments import ROUNDING, Segments
 
 NEARLY_ALL = 0.9
 """Share of a contour that lies on another one in the same direction, from which it is a copy."""
@@ -43,18 +42,23 @@ MOST_HALVINGS = 128
 """Most halvings of a segment for a ray: those around the ray's beginning cannot be told from a point by then."""
 
 
-def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, limits: Limits) -> FloatArray:
-    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.joints`.
+def enclosed_findings(
+    cubics: FloatArray, segments: Segments, glyphs: IntArray, least: float, unit: float, outer: int
+) -> FloatArray:
+    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.segments`.
 
     Two contours that cross are told once, of the first, where it first crosses; the value is the number of places. The
     value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
     :func:`..curves.crossings.meetings` gives up, only spurs and directions are told.
 
     Args:
-        cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
-        glyphs: (G + 1,) where the contours of each glyph begin.
+        cubics: (m, 4, 2) the segments. glyphs: (G + 1,) where the contours of each glyph begin.
+        least: length of a doubled strand. unit: a thousandth of an em.
+        outer: direction of outer contours; 0 for that of most of the glyph's.
     """
-    offsets = contours.offsets
+    if not len(cubics):
+        return np.empty((0, 6))
+    offsets = segments.offsets
     met, _ = meetings(cubics, offsets, glyphs)
     touch = ~np.isnan(met[:, 4])
     crossed, touching = met[~touch, :4], met[touch]
@@ -62,20 +66,20 @@ def enclosed_findings(cubics: FloatArray, contours: ContourArrays, glyphs: IntAr
         crossed = np.concatenate([crossed, crossing_contacts(cubics, offsets, touching)])
     crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
     crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
-    doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
+    doubled = _doubled(cubics, offsets, touching, crosses, least)
     pairs = doubled[:, [1, 5]].astype(np.int64)
     lies[pairs[pairs[:, 1] >= 0]] = True
-    found = contour_findings(cubics, contours, glyphs, crosses, lies, limits)
-    spurs = found[found[:, 0] == DOUBLED, 1]
-    told = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs)
-    return np.concatenate([_crossed(crossed), doubled[~told], found])
+    spurs = _spurs(cubics, segments, least, min(ROUNDING, unit))
+    known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[:, 1])
+    directions = _wrong_directions(cubics, offsets, glyphs, crosses, lies, unit, outer)
+    return np.concatenate([_crossed(crossed), doubled[~known], spurs, directions])
 
 
 def _crossed(crossed: FloatArray) -> FloatArray:
     """Overlaps and self-crossings, a row for each pair of contours: from (k, 4) crossings."""
     crossed = crossed[np.lexsort(crossed.T[::-1])]
     pairs, first, counts = np.unique(crossed[:, :2], axis=0, return_index=True, return_counts=True)
-    rows = np.full((len(pairs), COLUMNS), np.nan)
+    rows = np.full((len(pairs), 6), np.nan)
     itself = pairs[:, 0] == pairs[:, 1]
     rows[:, 0] = np.where(itself, CROSSING, OVERLAP)
     rows[:, 1], rows[:, 2], rows[:, 3] = pairs[:, 0], crossed[first, 2], counts
@@ -112,7 +116,7 @@ def _doubled(
                 total *= total >= NEARLY_ALL * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
             rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
-    return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+    return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
 def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
@@ -126,46 +130,72 @@ def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
     return float(np.hypot(*np.diff(points, axis=1).reshape(-1, 2).T).sum())
 
 
-@compiled
-def contour_findings(
-    cubics: FloatArray, contours: ContourArrays, glyphs: IntArray, crosses: BoolArray, lies: BoolArray, limits: Limits
+def _spurs(cubics: FloatArray, segments: Segments, least: float, apart: float) -> FloatArray:
+    """Contours that run to a tip and straight back, from joints whose direction reverses but for rounding."""
+    offsets, before = segments.offsets, np.arange(len(cubics)) - 1
+    before[offsets[:-1]] = offsets[1:] - 1
+    products = segments.last[before].conj() * segments.first
+    reverse = np.flatnonzero(products.real < 0)
+    rounding = ROUNDING * (1 / np.abs(segments.last[before[reverse]]) + 1 / np.abs(segments.first[reverse]))
+    tips = reverse[np.abs(np.angle(products[reverse])) >= np.pi - rounding]
+    rows = []
+    for tip, c in zip(tips.tolist(), (np.searchsorted(offsets, tips, side="right") - 1).tolist(), strict=True):
+        run = spur_length(cubics[offsets[c] : offsets[c + 1]], tip - int(offsets[c]), apart)
+        if run >= least:
+            rows.append((DOUBLED, c, tip - offsets[c], run, np.nan, -1))
+    return np.array(rows, dtype=np.float64).reshape(-1, 6)
+
+
+def _wrong_directions(
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, crosses: BoolArray, lies: BoolArray, unit: float, way: int
 ) -> FloatArray:
-    """(n, 6) spurs and wrong directions.
+    """Contours that bound no ink, and outer ones that run against ``way``, or, if it is 0, against most of the glyph's.
 
     Args:
         crosses, lies: (C,) whether a contour crosses another one, and whether it lies on one: its sides are unknown.
     """
-    table, count = np.empty((16, COLUMNS)), 0
-    offsets = contours.offsets
-    unit = min(ROUNDING, limits.unit)
-    for c in range(len(offsets) - 1):
-        a, b = offsets[c], offsets[c + 1]
-        for j in range(a, b):
-            i = j - 1 if j > a else b - 1
-            if runs_back(cubics, i, j, contours.degrees):
-                run = spur_length(cubics[a:b], j - a, unit)
-                if run >= limits.doubled:
-                    table = add(table, count, DOUBLED, c, j - a, run, np.nan, -1)
-                    count += 1
-    boxes = np.empty((len(offsets) - 1, 4))
-    for c in range(len(boxes)):
+    areas, bounds, outer, around = surroundings(cubics, offsets, glyphs, crosses, unit * unit)
+    owners = np.repeat(np.arange(len(glyphs) - 1), np.diff(glyphs))
+    most, total = (np.bincount(owners, values * outer, len(glyphs) - 1) for values in (np.sign(areas), areas))
+    wanted = np.full(len(most), way) if way else np.where(most != 0, most, total)
+    hidden = (areas != 0) & ~bounds & ~lies
+    which = np.flatnonzero(hidden | (outer & (areas * wanted[owners] < 0)))
+    found = np.full((len(which), 6), np.nan)
+    found[:, 0], found[:, 1], found[:, 2] = DIRECTION, which, 0.0
+    found[:, 3], found[:, 5] = np.abs(areas[which]), np.where(hidden[which], around[which], -1)
+    return found
+
+
+@compiled
+def surroundings(
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, crosses: BoolArray, least: float
+) -> tuple[FloatArray, BoolArray, BoolArray, IntArray]:
+    """(C,) signed area of contours, 0 up to ``least``; whether they bound ink, and are outer; the next one around.
+
+    The last is -1 if there is none. ``crosses``: (C,) whether a contour crosses another one.
+    """
+    count = len(offsets) - 1
+    areas = np.empty(count)
+    bounds, outer = np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
+    around = np.full(count, -1)
+    pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
+    boxes = np.empty((count, 4))
+    for c in range(count):
+        areas[c] = area(cubics[offsets[c] : offsets[c + 1]])
+        if abs(areas[c]) <= least:
+            areas[c] = 0.0
         box = boxes[c]
         box[0] = box[1] = np.inf
         box[2] = box[3] = -np.inf
         for s in range(offsets[c], offsets[c + 1]):
-            for k in range(4):
-                for axis in range(2):
-                    box[axis] = min(box[axis], cubics[s, k, axis])
-                    box[2 + axis] = max(box[2 + axis], cubics[s, k, axis])
-    areas, outer = np.empty(len(boxes)), np.empty(len(boxes), dtype=np.bool_)
-    pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
+            for k in range(8):
+                value = cubics[s, k // 2, k % 2]
+                box[k % 2], box[2 + k % 2] = min(box[k % 2], value), max(box[2 + k % 2], value)
     for g in range(len(glyphs) - 1):
-        most = total = 0.0
         for c in range(glyphs[g], glyphs[g + 1]):
-            areas[c], outer[c] = area(cubics[offsets[c] : offsets[c + 1]]), False
-            if abs(areas[c]) <= limits.unit * limits.unit:
+            if areas[c] == 0:
                 continue
-            sign, hidden, around = (1 if areas[c] > 0 else -1), True, -1
+            sign = 1 if areas[c] > 0 else -1
             for s in range(offsets[c], offsets[c + 1]):
                 x, y, _, _, _, _ = jet(cubics, s, LOOKED_AT)
                 outside, innermost = 0, -1
@@ -178,37 +208,13 @@ def contour_findings(
                     if turns * sign > 0 and (innermost < 0 or abs(areas[d]) < abs(areas[innermost])):
                         innermost = d
                 if outside == 0 or outside + sign == 0:
-                    hidden = False
+                    bounds[c] = True
                     outer[c] = outer[c] or outside == 0
                     if outer[c] or not crosses[c]:
                         break
-                elif around < 0:
-                    around = innermost
-            if hidden and not lies[c]:
-                table = add(table, count, DIRECTION, c, 0.0, abs(areas[c]), np.nan, around)
-                count += 1
-            if outer[c]:
-                most += sign
-                total += areas[c]
-        for c in range(glyphs[g], glyphs[g + 1]):
-            wanted = limits.outer if limits.outer != 0 else (most if most != 0.0 else total)
-            if outer[c] and areas[c] * wanted < 0.0:
-                table = add(table, count, DIRECTION, c, 0.0, abs(areas[c]), np.nan, -1)
-                count += 1
-    return table[:count]
-
-
-@compiled
-def runs_back(cubics: FloatArray, i: int, j: int, degrees: IntArray) -> bool:
-    """Whether the direction reverses from segment i to segment j, but for what rounding to whole units may make."""
-    _, _, ax, ay = directions(cubics, i, NO_HANDLE)
-    bx, by, _, _ = directions(cubics, j, NO_HANDLE)
-    if ax * bx + ay * by >= 0.0:
-        return False
-    before, after = 3 / degrees[i], 3 / degrees[j]  # the segments are raised to cubics
-    first, second = before * length(ax, ay), after * length(bx, by)
-    turn = np.arctan2(abs(ax * by - ay * bx), ax * bx + ay * by)
-    return turn >= np.pi - ROUNDING * (1 / first + 1 / second)
+                elif around[c] < 0:
+                    around[c] = innermost
+    return areas, bounds, outer, around
 
 
 @compiled

@@ -1,18 +1,14 @@
-"""What is looked for in an outline: each kind of finding with its level, its unit, and the limits from which it counts.
-
-The numbers are made in compiled code, :mod:`.joints`, :mod:`.single_segments`, :mod:`.bends` and :mod:`.enclosed`; what
-they mean is said here.
-"""
+"""What is looked for in an outline: kinds of findings, their levels and units, and from which value each counts."""
 
 from __future__ import annotations
 
 from collections import namedtuple
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from math import radians
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..errors import is_positive, require
+from ..errors import OptionError, is_positive
+from ..fields import Rule, check, option, options_of
 
 Level = Literal["WARN", "INFO"]
 LEVELS: tuple[Level, ...] = ("INFO", "WARN")
@@ -20,7 +16,7 @@ LEVELS: tuple[Level, ...] = ("INFO", "WARN")
 (
     KINK, JUMP, LUMP, INFLECTION, STRAIGHT, SLANTED, EXTREMUM, SHORT, HANDLES, OVERLAP, DIRECTION, DOUBLED, CROSSING,
 ) = range(13)  # fmt: skip
-"""Numbers of the kinds in compiled code: their places in ``KINDS``."""
+"""Numbers of the kinds in tables of findings: their places in ``KINDS``."""
 
 
 @dataclass(frozen=True)
@@ -56,83 +52,60 @@ KINDS = (
 )
 
 
-DEGREES, SHARE, PER_EM, THOUSANDTHS = "degrees", "share", "1/em", "em/1000"
-"""Units of thresholds."""
+ABOVE_ZERO = Rule("above 0 and up to a million", lambda value: is_positive(value, 1e6))
 
 
-def _in(unit: str, value: float) -> Any:
-    """A threshold's default in its unit, which :meth:`Thresholds.limits` converts."""
-    return field(default=value, metadata={"unit": unit})
+def _threshold(default: float, unit: str, help: str) -> Any:
+    """A threshold, with its unit as people give it."""
+    return option(default, help, metavar=unit, rule=ABOVE_ZERO)
 
 
 @dataclass(frozen=True)
 class Thresholds:
-    """From which value on each kind counts.
+    """From which value on each kind counts; thousandths are of an em."""
 
-    Attributes:
-        kink: degrees of turn at a joint; from ``corner_angle`` degrees on it is a corner, and meant; of two lines from
-            line_angle degrees on: the chamfer of a serif is no kink.
-        jump: of curvature at a smooth joint, in 1/em; relative_jump: and as a share of the larger curvature.
-        lump: share by which a curvature exceeds the extrema beside it, if that moves the curve by lump_height,
-            in thousandths of an em.
-        inflection: degrees by which a segment bends back.
-        straight: thousandths of an em that a curve may leave its chord and still be called straight, if the chord is as
-            long as straight_length, in thousandths too.
-        slanted: degrees off the horizontal or vertical up to which a line is nearly so, from slanted_offset on, in
-            thousandths of an em between its ends; of one whole unit only if the line is as long as slanted_length.
-        extremum: thousandths of an em by which a curve passes the ends of its segment.
-        short: thousandths of an em below which a segment is very short.
-        handles: share by which a handle reaches beyond the place where both meet.
-        doubled: thousandths of an em for which a contour lies on itself or on another one.
-    """
-
-    kink: float = _in(DEGREES, 0.5)
-    corner_angle: float = _in(DEGREES, 12.0)
-    line_angle: float = _in(DEGREES, 3.0)
-    jump: float = _in(PER_EM, 1.0)
-    relative_jump: float = _in(SHARE, 0.25)
-    lump: float = _in(SHARE, 0.25)
-    lump_height: float = _in(THOUSANDTHS, 0.3)
-    inflection: float = _in(DEGREES, 1.0)
-    straight: float = _in(THOUSANDTHS, 0.5)
-    straight_length: float = _in(THOUSANDTHS, 20.0)
-    slanted: float = _in(DEGREES, 0.5)
-    slanted_offset: float = _in(THOUSANDTHS, 0.25)
-    slanted_length: float = _in(THOUSANDTHS, 100.0)
-    extremum: float = _in(THOUSANDTHS, 1.0)
-    short: float = _in(THOUSANDTHS, 3.0)
-    handles: float = _in(SHARE, 0.01)
-    doubled: float = _in(THOUSANDTHS, 5.0)
+    kink: float = _threshold(0.5, "degrees", "Turn of a joint meant to be smooth.")
+    corner_angle: float = _threshold(12.0, "degrees", "Turn from which a joint is a corner, and meant.")
+    line_angle: float = _threshold(3.0, "degrees", "The same for two lines: the chamfer of a serif is no kink.")
+    jump: float = _threshold(1.0, "1/em", "Difference of the curvatures on both sides of a smooth joint.")
+    relative_jump: float = _threshold(0.25, "share", "The same as a share of the larger curvature.")
+    lump: float = _threshold(0.25, "share", "By which a curvature exceeds the extrema beside it.")
+    lump_height: float = _threshold(0.3, "thousandths", "By which that moves the curve.")
+    inflection: float = _threshold(1.0, "degrees", "By which a segment bends back.")
+    straight: float = _threshold(0.5, "thousandths", "By which a straight curve may leave its chord.")
+    straight_length: float = _threshold(20.0, "thousandths", "Shortest chord of a curve that is called straight.")
+    slanted: float = _threshold(0.5, "degrees", "Off the horizontal or vertical, up to which a line is nearly so.")
+    slanted_offset: float = _threshold(0.25, "thousandths", "Between the ends of such a line, from which it counts.")
+    slanted_length: float = _threshold(100.0, "thousandths", "Shortest such line that is off by one whole unit only.")
+    extremum: float = _threshold(1.0, "thousandths", "By which a curve passes the ends of its segment.")
+    short: float = _threshold(3.0, "thousandths", "Below which a segment is very short.")
+    handles: float = _threshold(0.01, "share", "By which a handle reaches beyond the place where both meet.")
+    doubled: float = _threshold(5.0, "thousandths", "For which a contour lies on itself or on another one.")
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
-            require(is_positive(value, 1e6), f"the threshold {each.name} is above 0 and up to a million", value)
+        try:
+            check(self)
+        except OptionError as error:
+            raise OptionError(f"the threshold {error}") from None
 
-    def limits(self, units_per_em: float, outer: int = 0) -> Limits:
-        """In font units and radians, of a font whose outer contours have the direction ``outer``."""
-        unit = units_per_em / 1000
-        of_unit: dict[str, Callable[[float], float]] = {
-            DEGREES: radians,
-            SHARE: float,
-            PER_EM: lambda value: value / units_per_em,
-            THOUSANDTHS: lambda value: value * unit,
-        }
-        own = {each.name: of_unit[each.metadata["unit"]](getattr(self, each.name)) for each in fields(self)}
-        return Limits(**own, unit=unit, outer=outer)
+    def limits(self, units_per_em: float) -> Limits:
+        """The thresholds in font units and radians, as passes take them."""
+        converted = []
+        for name, _, about in options_of(self):
+            value: float = getattr(self, name)
+            of_unit = {
+                "degrees": radians(value),
+                "share": value,
+                "1/em": value / units_per_em,
+                "thousandths": value * (units_per_em / 1000),
+            }
+            converted.append(of_unit[about.metavar or ""])
+        return Limits(*converted)
 
+
+THRESHOLDS = Thresholds()
 
 if TYPE_CHECKING:
-
-    @dataclass(frozen=True)
-    class Limits(Thresholds):
-        """Thresholds in font units and radians, as compiled code takes them: a named tuple.
-
-        Attributes:
-            unit: a thousandth of an em. outer: direction of outer contours, as in :attr:`.Source.outer`.
-        """
-
-        unit: float = 1.0
-        outer: int = 0
+    Limits = Thresholds
 else:
-    Limits = namedtuple("Limits", [*(each.name for each in fields(Thresholds)), "unit", "outer"])
+    Limits = namedtuple("Limits", [each.name for each in fields(Thresholds)])  # compiled code takes named tuples

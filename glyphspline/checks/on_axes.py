@@ -13,12 +13,12 @@ import numpy as np
 from ..outlines.contour_arrays import ContourArrays, offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
+from .check import measured
 from .finding import Measured
-from .joints import rounding_turn
 from .joints_along import joint_controls, turns_of
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
 from .kinks import AxisKinks, kinks_along
-from .measured import measured
+from .segments import rounding_turn
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 """Kinds that are told once a contour, wherever on it."""

@@ -129,13 +129,14 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
 
 def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:
     """The kinks of outlines, as :func:`glyphspline.check` finds them; points are multiplied by the scales."""
-    from ..checks.joints import CONTOUR, PLACE, VALUE, WHAT, joint_findings
+    from ..checks.segments import CONTOUR, PLACE, VALUE, WHAT, Segments, joint_findings
     from ..outlines.segments import all_cubics
 
     contours = joined([outline.arrays for outline in outlines])
     firsts = offsets_of([len(outline.contours) for outline in outlines])
     cubics = all_cubics(contours)
-    table = joint_findings(cubics, contours, Thresholds().limits(outlines[0].metrics.units_per_em))
+    limits = Thresholds().limits(outlines[0].metrics.units_per_em)
+    table = joint_findings(Segments.of(cubics, contours), limits)
     found: list[list[Turn]] = [[] for _ in outlines]
     for row in table[table[:, WHAT] == KINK]:
         contour, segment = int(row[CONTOUR]), int(row[PLACE])

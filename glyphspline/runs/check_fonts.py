@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..checks.baseline import Baseline
-from ..checks.check import THRESHOLDS
 from ..checks.finding import Finding, severity
-from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
+from ..checks.kinds import KINDS, LEVELS, THRESHOLDS, Level, Thresholds
 from ..checks.kinks import AxisKinks, AxisNumbers, KinkReport, tags_of
 from ..errors import GlyphsplineError
 from ..readers import Source

@@ -13,9 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks.check import THRESHOLDS
 from ..checks.finding import Finding, findings
-from ..checks.kinds import DIRECTION, KINDS, Thresholds
+from ..checks.kinds import DIRECTION, KINDS, THRESHOLDS, Thresholds
 from ..checks.kinks import AxisKinks, AxisNumbers
 from ..errors import FontError
 from ..readers import Source

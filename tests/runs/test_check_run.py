@@ -115,9 +115,9 @@ def test_a_broken_glyph_costs_only_itself(tmp_path: Path) -> None:
 
 
 def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) -> None:
-    from glyphspline.checks import measured
+    from glyphspline.checks import check
 
-    font, real = gs.open_source(KOUZAN), measured.measured
+    font, real = gs.open_source(KOUZAN), check.measured
     most = max(font.outlines(font.glyph_names), key=lambda outline: len(outline.arrays.degrees))
 
     def fails(outlines: Any, *others: Any) -> Any:
@@ -126,7 +126,7 @@ def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) ->
         return real(outlines, *others)
 
     whole = found(KOUZAN, once=False)
-    monkeypatch.setattr(measured, "measured", fails)
+    monkeypatch.setattr(check, "measured", fails)
     glyphs = found(KOUZAN, once=False)
     assert [glyph.gid for glyph in glyphs if glyph.error] == [most.gid]
     assert glyphs[most.gid].error == "ZeroDivisionError: of all things"

@@ -82,7 +82,7 @@ class CheckJob(Job[Task, Checked]):
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[AxisKinks]]:
         """Findings of every kind, and all smooth joints along each axis."""
-        from ...checks.measured import measured
+        from ...checks.check import measured
 
         arrays = [outline.arrays for outline in glyphs]
         return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer), ()

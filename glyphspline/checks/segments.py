@@ -1,0 +1,351 @@
+"""Joints and single segments of contours. Points and vectors are complex numbers: (a* b).imag is the cross product."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled
+from ..outlines.contour_arrays import ContourArrays
+from ..types import ComplexArray, FloatArray, IntArray
+from .kinds import EXTREMUM, HANDLES, INFLECTION, JUMP, KINK, SHORT, SLANTED, STRAIGHT, Limits
+
+NO_HANDLE = 1e-6
+"""Length in font units up to which a handle gives no tangent; the next control point then gives one."""
+
+ROUNDING = np.sqrt(0.5)
+"""How far rounding to whole units moves a point at most. It moves the two ends of a handle."""
+
+CHANCE = 3 * np.sqrt(1 / 12)
+"""Three standard deviations of a coordinate's rounding error: a smooth joint in 300 turns by more than this makes."""
+
+BACK = 0.25
+"""Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
+
+AT_END = 1e-9
+"""Parameter distance within which a root is an end of its segment."""
+
+WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER = range(6)
+"""Columns of the table (n, 6) that passes return: number of the kind; contour; place on it, segment and local
+parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1."""
+
+
+class Segments(NamedTuple):
+    """The m segments of contours.
+
+    Attributes:
+        points: (m, 4) as cubics. degrees: (m,) in the font. offsets: (C + 1,) first segment of each contour, and m.
+        before, behind: (m,) the neighbours of some extent; a segment itself if there are none.
+        first, last: (m,) handles, in the segment's direction and as long as they are in the font; 0 without extent.
+    """
+
+    points: ComplexArray
+    degrees: IntArray
+    offsets: IntArray
+    before: IntArray
+    behind: IntArray
+    first: ComplexArray
+    last: ComplexArray
+
+    @classmethod
+    def of(cls, cubics: FloatArray, contours: ContourArrays) -> Segments:
+        """The segments of contours, of which ``cubics`` (m, 4, 2) are all."""
+        points = cubics.view(np.complex128)[..., 0]
+        return cls(points, contours.degrees, contours.offsets, *arranged(points, contours.degrees, contours.offsets))
+
+
+@compiled
+def arranged(
+    points: ComplexArray, degrees: IntArray, offsets: IntArray
+) -> tuple[IntArray, IntArray, ComplexArray, ComplexArray]:
+    """(m,) neighbours of each segment, and handles; see :class:`Segments`."""
+    m = len(points)
+    before, behind = np.arange(m), np.arange(m)
+    handles = np.zeros((2, m), dtype=np.complex128)
+    for c in range(len(offsets) - 1):
+        start = previous = -1
+        for j in range(offsets[c], offsets[c + 1]):
+            for k in range(3, 0, -1):
+                for end, arm in enumerate((points[j, k] - points[j, 0], points[j, 3] - points[j, 3 - k])):
+                    if abs(arm.real) + abs(arm.imag) > NO_HANDLE:
+                        handles[end, j] = 3 / degrees[j] * arm
+            if handles[0, j] != 0:
+                if previous < 0:
+                    start = j
+                else:
+                    before[j], behind[previous] = previous, j
+                previous = j
+        if previous >= 0:
+            before[start], behind[previous] = previous, start
+    return before, behind, handles[0], handles[1]
+
+
+@compiled
+def put(
+    table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float = np.nan
+) -> int:
+    """Write a row of the table after ``count`` others; return the number of rows."""
+    row = table[count]
+    row[WHAT], row[CONTOUR], row[PLACE], row[VALUE], row[DETAIL], row[OTHER] = what, contour, place, value, detail, -1
+    return count + 1
+
+
+@compiled
+def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
+    """(n, 6) kinks and jumps of curvature; see ``WHAT``.
+
+    A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
+    turns by more than the limit, and, where both handles are in whole units, by more than rounding may make. Curvature
+    jumps are told where both sides are cubics: a chain of quadratics has them everywhere.
+    """
+    points, degrees, offsets, before, _, first, last = segments
+    table, count = np.empty((len(points), 6)), 0
+    for c in range(len(offsets) - 1):
+        for j in range(offsets[c], offsets[c + 1]):
+            i, place = before[j], j - offsets[c]
+            turn = abs(turn_of(last[i], first[j]))
+            lines = degrees[i] == 1 and degrees[j] == 1
+            if not turn < (limits.line_angle if lines else limits.corner_angle):
+                continue
+            if turn >= least_kink(last[i], first[j], limits.kink):
+                count = put(table, count, KINK, c, place, np.degrees(turn))
+            elif degrees[i] == 3 and degrees[j] == 3:
+                p, q = points[i], points[j]
+                arriving, leaving = -end_curvature(p[3], p[2], p[1]), end_curvature(q[0], q[1], q[2])
+                jump, most = abs(leaving - arriving), max(abs(arriving), abs(leaving))
+                if limits.jump <= jump < np.inf and jump >= limits.relative_jump * most:
+                    count = put(table, count, JUMP, c, place, jump, jump / most)
+    return table[:count]
+
+
+@compiled
+def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
+    """(n, 6) what may be wrong with single segments; see ``WHAT``. What concerns a segment as a whole is at its middle.
+
+    A very short segment has no other finding, and a segment whose handles reach too far is not said to bend back: that
+    is what such handles do.
+    """
+    degrees, offsets = segments.degrees, segments.offsets
+    table, count = np.empty((5 * len(degrees), 6)), 0  # four extrema, and one more
+    for c in range(len(offsets) - 1):
+        for j in range(offsets[c], offsets[c + 1]):
+            cubic, place = segments.points[j], j - offsets[c] + 0.5
+            chord = cubic[3] - cubic[0]
+            size = length(chord)
+            if size < limits.short:
+                legs = length(cubic[1] - cubic[0]) + length(cubic[2] - cubic[1]) + length(cubic[3] - cubic[2])
+                if (size + legs) / 2 < limits.short:
+                    count = put(table, count, SHORT, c, place, (size + legs) / 2)
+                    continue
+            if degrees[j] == 1:
+                angle = off_axes(chord, limits)
+                if angle > 0:
+                    count = put(table, count, SLANTED, c, place, np.degrees(angle))
+                continue
+            for p in (cubic.real, cubic.imag):
+                for t in stationary(p):
+                    s = 1 - t
+                    at = s * s * (s * p[0] + 3 * t * p[1]) + t * t * (3 * s * p[2] + t * p[3])
+                    beyond = max(at - max(p[0], p[3]), min(p[0], p[3]) - at)
+                    if beyond > limits.extremum:
+                        count = put(table, count, EXTREMUM, c, j - offsets[c] + t, beyond)
+            if size >= limits.straight_length:
+                off = off_chord(cubic, chord / size)
+                if off < limits.straight and line_would_do(segments, j, chord, limits):
+                    count = put(table, count, STRAIGHT, c, place, off)
+                    continue
+            if degrees[j] == 3:
+                reach, alone = reaches_beyond(cubic, limits)
+                if reach > 0 and not alone:
+                    count = put(table, count, HANDLES, c, place, reach)
+                    continue
+                back, other, t = bends_back(segments, j, limits)
+                if reach > 0 and back > 0:
+                    count = put(table, count, HANDLES, c, place, reach)
+                elif reach == 0 and 0 < back <= BACK * other:
+                    count = put(table, count, INFLECTION, c, j - offsets[c] + t, np.degrees(back))
+    return table[:count]
+
+
+@compiled
+def length(a: complex) -> float:
+    """Length of a vector: in a third of the time of ``hypot``."""
+    return np.sqrt(a.real * a.real + a.imag * a.imag)
+
+
+@compiled
+def turn_of(a: complex, b: complex) -> float:
+    """Angle from one vector to another, positive to the left; NaN if one has no length."""
+    both = a.conjugate() * b
+    return np.arctan2(both.imag, both.real) if a != 0 and b != 0 else np.nan
+
+
+@compiled
+def least_kink(a: complex, b: complex, limit: float) -> float:
+    """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make."""
+    return max(limit, rounding_turn(length(a), length(b))) if is_whole(a) and is_whole(b) else limit
+
+
+@compiled
+def rounding_turn(before: float, behind: float) -> float:
+    """Radians by which rounding to whole units may turn a joint of two handles of these lengths; infinite for one of 0.
+
+    The joint and the two other ends of the handles are rounded each, and the joint moves both handles.
+    """
+    first, second = 1 / before, 1 / behind
+    return CHANCE * np.sqrt(first * first + second * second + (first + second) ** 2)
+
+
+@compiled
+def is_whole(a: complex) -> bool:
+    """Whether both coordinates are whole numbers, but for rounding errors."""
+    return abs(a.real - np.rint(a.real)) < 1e-6 and abs(a.imag - np.rint(a.imag)) < 1e-6
+
+
+@compiled
+def all_whole(cubic: ComplexArray) -> bool:
+    """Whether all control points are in whole units."""
+    return is_whole(cubic[0]) and is_whole(cubic[1]) and is_whole(cubic[2]) and is_whole(cubic[3])
+
+
+@compiled
+def end_curvature(a: complex, b: complex, c: complex) -> float:
+    """Curvature of a cubic at the first of its first three points; not finite where the handle has no length."""
+    own = b - a
+    return 2 / 3 * (own.conjugate() * (c - a)).imag / length(own) ** 3
+
+
+@compiled
+def off_axes(line: complex, limits: Limits) -> float:
+    """Angle of a line that is nearly horizontal or vertical with that direction; 0 of one that is exactly, or is not.
+
+    One unit is all that rounding may make of a line in whole units: it counts where the line is long.
+    """
+    along, off = max(abs(line.real), abs(line.imag)), min(abs(line.real), abs(line.imag))
+    angle = np.arctan2(off, along)
+    if off < limits.slanted_offset or angle >= limits.slanted:
+        return 0.0
+    return 0.0 if off < 1.5 and along < limits.slanted_length and is_whole(line) else angle
+
+
+@compiled
+def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
+    """The roots of a t² + b t + c inside (0, 1), ascending; NaN for those that there are not. None at a double root."""
+    square = b * b - 4 * a * c
+    if not square > 0:
+        return np.nan, np.nan
+    q = -0.5 * (b + (np.sqrt(square) if b >= 0 else -np.sqrt(square)))
+    first, second = c / q, q / a  # one is infinite where the equation is linear
+    first = first if AT_END < first < 1 - AT_END else np.nan
+    second = second if AT_END < second < 1 - AT_END else np.nan
+    return (second, first) if np.isnan(first) or second < first else (first, second)
+
+
+@compiled
+def stationary(p: FloatArray) -> tuple[float, float]:
+    """The parameters inside a cubic where one of its coordinates (4,) is stationary; NaN for none."""
+    a, b, c = p[1] - p[0], p[2] - p[1], p[3] - p[2]
+    if (a >= 0 and b >= 0 and c >= 0) or (a <= 0 and b <= 0 and c <= 0):
+        return np.nan, np.nan
+    return quadratic_roots(a - 2 * b + c, 2 * (b - a), a)
+
+
+@compiled
+def off_chord(cubic: ComplexArray, way: complex) -> float:
+    """How far a cubic leaves its chord, of which ``way`` is the direction."""
+    first, second = (way.conjugate() * (cubic[1] - cubic[0])).imag, (way.conjugate() * (cubic[2] - cubic[0])).imag
+    most = 0.0
+    for t in quadratic_roots(3 * (first - second), 2 * second - 4 * first, first):
+        if not np.isnan(t):
+            most = max(most, abs(3 * t * (1 - t) * ((1 - t) * first + t * second)))
+    return most
+
+
+@compiled
+def line_would_do(segments: Segments, j: int, chord: complex, limits: Limits) -> bool:
+    """Whether a line in a segment's place makes no kink where the segment joins its neighbours smoothly."""
+    arriving, leaving = segments.last[segments.before[j]], segments.first[segments.behind[j]]
+    for other, own in ((arriving, segments.first[j]), (leaving, segments.last[j])):
+        smooth = abs(turn_of(other, own)) < limits.corner_angle
+        if smooth and abs(turn_of(other, chord)) >= least_kink(other, chord, limits.kink):
+            return False
+    return True
+
+
+@compiled
+def reaches_beyond(cubic: ComplexArray, limits: Limits) -> tuple[float, bool]:
+    """Share by which a handle of a cubic reaches beyond where both handles meet, or beyond the other end; else 0.
+
+    And whether only one handle does, and only the former: the cubic then has one inflection, and no cusp or loop.
+
+    Where all points are in whole units, the handle's end and the meeting point may both be off by the rounding.
+    """
+    u, v, chord = cubic[1] - cubic[0], cubic[2] - cubic[3], cubic[3] - cubic[0]
+    first, second, size = length(u), length(v), length(chord)
+    if first == 0 or second == 0 or size == 0:
+        return 0.0, False
+    rounding = 2 * ROUNDING if all_whole(cubic) else 0.0
+    most, alone = 0.0, False
+    cross = (u.conjugate() * v).imag
+    sine = abs(cross) / (first * second)
+    if sine > limits.kink:
+        s, r = (chord.conjugate() * v).imag / cross, (chord.conjugate() * u).imag / cross
+        if s > 0 and r > 0:
+            for own, share in ((first, s), (second, r)):
+                if own * (1 - share) > rounding / sine:
+                    most = max(most, 1 / share - 1)
+            alone = (s < 1) != (r < 1)
+    for beyond in ((u.conjugate() * chord).real, -(v.conjugate() * chord).real):
+        if beyond - size * size > rounding * size:
+            most, alone = max(most, beyond / (size * size) - 1), False
+    return (most, alone) if most >= limits.handles else (0.0, False)
+
+
+@compiled
+def bends_back(segments: Segments, j: int, limits: Limits) -> tuple[float, float, float]:
+    """Radians by which a cubic turns back, by which it turns the other way, and where the former begins or ends; or 0.
+
+    A turn back at an end is meant if the neighbour, smoothly joined, bends that way too: their bend ends inside this
+    segment. Where all points are in whole units, the corner of the control polygon that turns back must be more than
+    rounding may make.
+    """
+    cubic = segments.points[j]
+    a, b, c = cubic[1] - cubic[0], cubic[2] - cubic[1], cubic[3] - cubic[2]
+    before, after = (a.conjugate() * b).imag, (b.conjugate() * c).imag
+    both = (a.conjugate() * c).imag
+    # The cross product of velocity and acceleration: (1-t)² before + t (1-t) both + t² after, but for a factor.
+    low, high = quadratic_roots(before - both + after, both - 2 * before, before)
+    if np.isnan(low):
+        return 0.0, 0.0, 0.0
+    left = right = 0.0
+    turns = np.zeros(3)
+    cuts = (0.0, low, 1.0 if np.isnan(high) else high, 1.0)
+    last = 1 if np.isnan(high) else 2
+    for k in range(last + 1):
+        tangent = 0j
+        for i in range(3):
+            t = cuts[k] + (cuts[k + 1] - cuts[k]) * i / 2
+            s = 1 - t
+            turn, tangent = tangent.conjugate(), s * s * a + 2 * s * t * b + t * t * c
+            turn *= tangent
+            turns[k] += np.arctan2(turn.imag, turn.real) if i else 0.0
+        left, right = left + max(turns[k], 0.0), right + max(-turns[k], 0.0)
+    sign = 1.0 if left < right else -1.0  # of the smaller turn
+    back, other = min(left, right), max(left, right)
+    if back < limits.inflection:
+        return 0.0, 0.0, 0.0
+    if turns[1] * sign > 0 and last == 2:
+        return back, other, (low + high) / 2
+    at_start = turns[0] * sign > turns[last] * sign
+    if all_whole(cubic):
+        corner = turn_of(a, b) if at_start else turn_of(b, c)
+        if sign * corner < ROUNDING * (1 / length(b) + 1 / length(a if at_start else c)):
+            return 0.0, 0.0, 0.0
+    i = segments.before[j] if at_start else segments.behind[j]
+    own, beside = (segments.first[j], segments.last[i]) if at_start else (segments.last[j], segments.first[i])
+    p = segments.points[i]
+    bend = -end_curvature(p[3], p[2], p[1]) if at_start else end_curvature(p[0], p[1], p[2])
+    if abs(turn_of(beside, own)) < limits.corner_angle and segments.degrees[i] > 1 and sign * bend > 0:
+        return 0.0, 0.0, 0.0
+    return back, other, low if at_start or np.isnan(high) else high
