@@ -77,7 +77,7 @@ def outlines(font: Path) -> Iterator[Any]:
 def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
     """The findings in all faces of a font, and glyphs that cannot be checked, with the reasons."""
     from .cli.check_command import project_settings
-    from .runs.check_fonts import check_fonts
+    from .runs.jobs.check import check_fonts
 
     asked, subset, instance = project_settings()
     chosen = subset.of if subset.is_given else None

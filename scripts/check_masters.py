@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 import glyphspline as gs
 from glyphspline.curves.cubics import turns
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
-from glyphspline.runs.masters_run import redrawn_glyph
+from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.variable_font import to_variable_font

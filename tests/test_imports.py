@@ -136,7 +136,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.commands, glyphspline.runs.check_run, glyphspline.runs.font_run\n"
+        "import sys, glyphspline.cli.commands, glyphspline.runs.jobs.check, glyphspline.runs.jobs.convert\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )

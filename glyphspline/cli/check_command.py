@@ -15,8 +15,7 @@ from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError, OutputError
 from ..fields import options_of
 from ..files import writing
-from ..runs.check_fonts import Asked, Face, check_fonts, worst_first
-from ..runs.check_run import STEPS
+from ..runs.jobs.check import STEPS, Asked, Face, check_fonts, worst_first
 from ..writers.figures.images import FigureKind
 from . import arguments as opt
 from .config import CHECK, names_of, settings
@@ -40,7 +39,7 @@ def run_check(
     Raises:
         GlyphsplineError: an option, or a file that it names, is unusable.
     """
-    from ..runs import find_fonts
+    from ..runs.font_search import find_fonts
 
     texts = (report.csv, report.ghmarkdown, report.html)
     piped = texts.count(STDOUT) + run.as_json

@@ -64,7 +64,7 @@ def convert(
         call = replace(call, spec=replace(spec, masters=True))
         check_masters(call, single, each)
     with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
-        from ..runs import find_fonts
+        from ..runs.font_search import find_fonts
 
         found = find_fonts(fonts)
         if not found:
@@ -162,7 +162,7 @@ def report(
 
     A run without the format gallery is named, with the command that adds it.
     """
-    from ..runs import write_gallery
+    from ..runs.jobs.convert import write_gallery
 
     write_gallery(folder)
     typer.echo(folder / "index.html")
@@ -196,7 +196,7 @@ def atlas(
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
     from ..readers import open_source
-    from ..runs import make_atlas, make_axis_atlas
+    from ..runs.jobs.atlas import make_atlas, make_axis_atlas
 
     if axis is not None and (profiles is not None or maps.corner_teeth):
         stop("--profiles and --corner-teeth are of an atlas without --axis")
@@ -266,7 +266,7 @@ def diff(
     one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
     for.
     """
-    from ..runs import compare_fonts
+    from ..runs.jobs.diff import compare_fonts
     from .diff_command import chosen_pairs, open_both, write_page
 
     sources = open_both(old, new, instance)
@@ -319,7 +319,7 @@ def demo(
 ) -> int:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
     from ..readers import open_source
-    from ..runs.preload import kinds_for
+    from ..runs.schedule import kinds_for
     from ..runs.warm import warm as warm_up
 
     failed, shown, spec = 0, [], RunSpec()

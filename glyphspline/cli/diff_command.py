@@ -11,8 +11,7 @@ from .tables import difference_lines
 
 if TYPE_CHECKING:
     from ..readers import Source
-    from ..runs import FontDifference
-    from ..runs.font_difference import Pairs
+    from ..runs.jobs.diff import FontDifference, Pairs
 
 DRAWN = 500
 """Glyphs on a page, the worst first; with more of them a browser takes seconds to open it."""
@@ -47,7 +46,7 @@ def chosen_pairs(old: Source, new: Source, subset: opt.Subset) -> Pairs:
     Raises:
         GlyphsplineError: neither has any of them.
     """
-    from ..runs import pairs_of
+    from ..runs.jobs.diff import pairs_of
 
     if not subset.is_given or subset.all_glyphs:
         return pairs_of(old, new)

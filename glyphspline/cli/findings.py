@@ -20,7 +20,7 @@ from .tables import plain
 if TYPE_CHECKING:
     from ..checks.finding import Finding
     from ..checks.kinds import Thresholds
-    from ..runs.check_fonts import Face
+    from ..runs.jobs.check import Face
 
 MARKDOWN_ROWS = 200
 """Findings in Markdown: GitHub takes 65,536 characters."""

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from ..readers import Source
-    from ..runs import RunSpec, Summary
+    from ..runs.spec import RunSpec
+    from ..runs.summary import Summary
 
 LOOKED_AT = 64
 """Outlines that are looked at to tell type from brush."""
@@ -41,9 +42,10 @@ class Conversion:
 
 def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> AbstractContextManager[Executor]:
     """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
-    from ..runs.schedule import workers
+    from ..runs.schedule import kinds_for, workers
 
-    return workers(jobs, spec.limits.seconds, spec.options, spec.formats, 1, spec.masters, scheduler=scheduler)
+    kinds = kinds_for(spec.options, spec.formats, spec.masters)
+    return workers(jobs, spec.limits.seconds, kinds, 1, scheduler=scheduler)
 
 
 def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, alone: bool) -> list[FontRun]:
@@ -51,8 +53,9 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
-    from ..errors import GlyphsplineError
-    from ..runs import OutputError, faces_of, folders_for, locked
+    from ..errors import GlyphsplineError, OutputError
+    from ..runs.folder import locked
+    from ..runs.font_search import faces_of, folders_for
 
     face_index, folders = call.instance.face_index, [call.out]
     if alone:
@@ -113,7 +116,7 @@ def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None
 def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
     """Convert a variable font, or single fonts that become one, in all masters; whether a glyph failed."""
     from ..readers import open_source
-    from ..runs import convert_font_masters
+    from ..runs.jobs.masters import convert_font_masters
 
     if len(fonts) != 1:
         stop("--masters takes one font")
@@ -142,7 +145,7 @@ def run_face(
 ) -> Summary:
     """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
     from ..report.gallery_files import FOLDER as GALLERY
-    from ..runs import convert_font
+    from ..runs.jobs.convert import convert_font
 
     run, out = call.run, call.out
     with json_lines() if run.json_log else progress(run.quiet) as observer:
@@ -162,9 +165,9 @@ def run_face(
 def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec, executor: Executor) -> bool:
     """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
     from ..errors import GlyphsplineError
-    from ..runs.jobs.glyphs import Task
-    from ..runs.jobs.survey import corners_of
-    from ..runs.places import side_of
+    from ..runs.folder import Task
+    from ..runs.jobs.convert import corners_of
+    from ..runs.schedule import side_of
 
     if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
         return False

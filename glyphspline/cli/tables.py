@@ -14,7 +14,8 @@ from .messages import printable
 
 if TYPE_CHECKING:
     from ..comparing.difference import Difference
-    from ..runs import FontDifference, Summary
+    from ..runs.jobs.diff import FontDifference
+    from ..runs.summary import Summary
 
 WIDE = 1000
 """Columns of text within which no line of a table is broken; terminals break lines themselves."""

@@ -16,7 +16,7 @@ from .messages import say
 
 if TYPE_CHECKING:
     from ..fitting.options import Options
-    from ..runs.text_drawings import TextJob
+    from ..runs.jobs.text import TextJob
     from ..typesetting.placed import Layout
     from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
@@ -54,13 +54,13 @@ def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
         GlyphsplineError: the text cannot be laid out, or a format is unknown.
         OSError: a file cannot be read or written.
     """
-    from ..runs.schedule import workers
+    from ..runs.schedule import kinds_for, workers
 
     files = list(formats_of(out, call.drawings.format_name))
     names = tuple(name for _, name in files)
     # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
-    with workers(1, inf, call.options, names, expected=1) as executor:
-        from ..runs.text_drawings import drawings
+    with workers(1, inf, kinds_for(call.options, names), 1) as executor:
+        from ..runs.jobs.text import drawings
         from ..typesetting.placed import LEFT_OUT
 
         job = job_of(call, names)
@@ -126,7 +126,7 @@ def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
         GlyphsplineError: it cannot be laid out, or options clash.
     """
     from ..readers import open_source
-    from ..runs.text_drawings import TextJob
+    from ..runs.jobs.text import TextJob
     from ..typesetting.lay_out import layout
 
     lines, along, look = call.lines, call.along, call.settings.look

@@ -12,7 +12,7 @@ from ..extras import need
 from ..outlines.outline import FontMetrics, Outline
 from ..runs.engine import Item, Job, reason
 from ..runs.jobs.convert import ConvertJob
-from ..runs.places import Place, sources
+from ..runs.schedule import Place, sources
 from ..runs.spec import Limits
 from .dataset_spec import DatasetSpec
 from .plan import Task

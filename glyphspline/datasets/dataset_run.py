@@ -7,7 +7,6 @@ import re
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
-from contextlib import nullcontext
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from ..errors import OptionError, OutputError
 from ..extras import need
 from ..runs.engine import Observer, run
 from ..runs.font_search import find_fonts
-from ..runs.schedule import workers
+from ..runs.schedule import kinds_for, workers
 from ..runs.spec import Limits, differences
 from . import store
 from .card import card, fonts_file
@@ -81,12 +80,9 @@ def dataset(
         raise OptionError("no fonts found")
     with store.alone(folder):
         options = spec.options
-        unfitted = ["points", "unfitted"] if options is None else ["points"]
+        kinds = ["points", *(["unfitted"] if options is None else kinds_for(options))]
         limits = Limits()
-        pool = executor or workers(
-            jobs, limits.seconds, options, expected=len(found), also=unfitted, scheduler=scheduler
-        )
-        with nullcontext() if executor else pool:
+        with workers(jobs, limits.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool:
             scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
             plan = plan_of(spec, [facts for part in scanned for facts in part.result])
             _prepare(folder, plan, restart)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import GlyphsplineError
 from ..runs.engine import Job, reason
-from ..runs.places import Place
+from ..runs.schedule import Place
 from .dataset_spec import DatasetSpec
 from .licences import UNKNOWN, licence_of
 

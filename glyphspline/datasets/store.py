@@ -11,7 +11,7 @@ from typing import BinaryIO, TypeAlias
 
 from ..files import make_folder, remove_partials, replacing, writing
 from ..runs import remote
-from ..runs.lock import locked
+from ..runs.folder import locked
 
 Content: TypeAlias = bytes | Callable[[BinaryIO], None]
 """What is in a file, or what writes it."""

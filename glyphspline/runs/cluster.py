@@ -27,7 +27,6 @@ from ..errors import GlyphsplineError
 from ..extras import need
 from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
-from .preload import code_for
 from .spec import Limits
 
 Files = dict[str, bytes]
@@ -64,22 +63,18 @@ class ClusterExecutor(Executor):
     Args:
         address: of the scheduler, as in ``tcp://10.0.0.1:8786``.
         seconds: time limit between signs of life, after which a call is ended.
-        preload: modules to import before the first call; None: all that have compiled code in them.
+        preload: what to load before the first call, see :func:`.pool.load`.
 
     Raises:
         GlyphsplineError: distributed is not installed, or nothing answers at the address.
     """
 
-    def __init__(self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] | None = None) -> None:
+    def __init__(self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] = ()) -> None:
         distributed = need("cluster")
         try:
             self._client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
-        if preload is None:
-            from .warm import WORK
-
-            preload = code_for(WORK)
         self._processes = Processes(seconds, tuple(preload))
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()

@@ -51,11 +51,12 @@ class Item(NamedTuple):
 
 @dataclass(frozen=True)
 class Part(Generic[Task, Result]):
-    """Tasks that were done together; ``seconds`` is what they took without reading."""
+    """Tasks that were done together: ``failed`` of them failed; ``seconds`` is what they took without reading."""
 
     tasks: Sequence[Task]
     result: Result
     seconds: float = 0.0
+    failed: int = 0
 
 
 class Job(ABC, Generic[Task, Result]):
@@ -86,7 +87,7 @@ class Job(ABC, Generic[Task, Result]):
         """The result of a task that could not be read or done, or whose worker was lost."""
 
     def failures(self, result: Result) -> int:
-        """Number of tasks of a result that failed."""
+        """Number of tasks that failed in a batch that was done together."""
         return 0
 
 
@@ -126,7 +127,7 @@ def run(
     done, failed = before, 0
     for number, parts in _spread(job, numbered(), pool):
         done += sum(len(part.tasks) for part in parts)
-        failed += sum(job.failures(part.result) for part in parts)
+        failed += sum(part.failed for part in parts)
         if ordered:
             for part in parts:
                 waiting[number] = part
@@ -173,7 +174,7 @@ def _spread(
                     if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < TRIALS):
                         again.extend((k, [task], trial + 1) for k, task in enumerate(chunk, number))
                         continue
-                    parts = [Part(chunk, job.failed(chunk[0], error))]
+                    parts = [_failed(job, chunk[0], error)]
                 yield number, parts
     finally:
         for future in pending:
@@ -187,22 +188,21 @@ def work(job: Job[Task, Result], tasks: Sequence[Task]) -> list[Part[Task, Resul
     cost = 0.0
 
     def finish() -> None:
-        nonlocal cost
         if batch:
             parts.extend(_done(job, batch))
             batch.clear()
-            cost = 0.0
             sign_of_life()
 
     for task, item in zip(tasks, job.read(tasks), strict=True):
         if isinstance(item, Exception):
             finish()
-            parts.append(Part([task], job.failed(task, item)))
+            parts.append(_failed(job, task, item))
             continue
-        if batch and (cost + item.cost > job.budget or item.kind != batch[0][1].kind):
+        cost = (cost if batch else 0.0) + item.cost
+        if batch and (cost > job.budget or item.kind != batch[0][1].kind):
             finish()
+            cost = item.cost
         batch.append((task, item))
-        cost += item.cost
     finish()
     return parts
 
@@ -218,8 +218,12 @@ def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Pa
     except Exception as error:  # broken data raises anything
         if len(batch) > 1:
             return [part for one in batch for part in _done(job, [one])]
-        result = job.failed(tasks[0], error)
-    return [Part(tasks, result, time.perf_counter() - started)]
+        return [_failed(job, tasks[0], error, time.perf_counter() - started)]
+    return [Part(tasks, result, time.perf_counter() - started, job.failures(result))]
+
+
+def _failed(job: Job[Task, Result], task: Task, error: Exception, seconds: float = 0.0) -> Part[Task, Result]:
+    return Part([task], job.failed(task, error), seconds, 1)
 
 
 def reason(error: Exception) -> str:

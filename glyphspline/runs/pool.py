@@ -18,15 +18,15 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import suppress
+from importlib import import_module
 from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from ..errors import GlyphsplineError
-from . import preload as preloading
 
 POLL = 0.25
 """Seconds between checks for hung processes."""
@@ -58,8 +58,25 @@ def pool_size(pool: Executor) -> int:
 ORPHANED = 2.0
 """Times the time limit after which a process ends itself: the one that would have ended it has been killed."""
 
+ASKED = "GLYPHSPLINE_PRELOAD"
+"""Environment variable of the process from which workers are forked: what it loads, separated by spaces."""
+
 _last_sign: Any = None
 _limit = 0.0
+
+
+def code_for(kinds: Iterable[str]) -> list[str]:
+    """What to load for kinds of work of :mod:`.warm`."""
+    return [f"{__package__}.warm:{kind}" for kind in kinds]
+
+
+def load(items: Iterable[str]) -> None:
+    """Import modules, and call what follows a colon: ``prepare`` of the module with it."""
+    for item in items:
+        name, _, kind = item.partition(":")
+        module = import_module(name)
+        if kind:
+            module.prepare(kind)
 
 
 def sign_of_life() -> None:
@@ -69,14 +86,11 @@ def sign_of_life() -> None:
         _end_after(ORPHANED * _limit)
 
 
-LONGEST_TIMER = 1e8
-"""Seconds, three years: what a timer of any system can hold."""
-
-
 def _end_after(seconds: float) -> None:
     """Have the system end this process; 0: not any more. It does so in the midst of native code too."""
     if hasattr(signal, "setitimer"):
-        signal.setitimer(signal.ITIMER_REAL, 0.0 if seconds == math.inf else min(seconds, LONGEST_TIMER))
+        # A timer of any system can hold three years.
+        signal.setitimer(signal.ITIMER_REAL, 0.0 if seconds == math.inf else min(seconds, 1e8))
 
 
 def start_forkserver(preload: Sequence[str]) -> None:
@@ -88,12 +102,12 @@ def start_forkserver(preload: Sequence[str]) -> None:
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     kept = os.environ.pop("PYTHONSAFEPATH", None)
-    os.environ["PYTHONSAFEPATH"], os.environ[preloading.ASKED] = "1", " ".join(preload)
+    os.environ["PYTHONSAFEPATH"], os.environ[ASKED] = "1", " ".join(preload)
     try:
-        forkserver.set_forkserver_preload([preloading.__name__])
+        forkserver.set_forkserver_preload([__name__])
         forkserver.ensure_running()
     finally:
-        del os.environ["PYTHONSAFEPATH"], os.environ[preloading.ASKED]
+        del os.environ["PYTHONSAFEPATH"], os.environ[ASKED]
         if kept is not None:
             os.environ["PYTHONSAFEPATH"] = kept
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
@@ -122,7 +136,7 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     global _last_sign, _limit
     _last_sign, _limit = sign, seconds
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
-    preloading.load(preload)
+    load(preload)
     if compiled := sys.modules.get("glyphspline.compiled"):
         compiled.observe(sign_of_life)  # a font has no say in how long compiling takes
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
@@ -173,7 +187,7 @@ class WorkerPool(Executor):
     Args:
         size: how many processes.
         seconds: time limit between signs of life.
-        preload: what to load before the first call, as :func:`.preload.load` takes it: once, in the process from which
+        preload: what to load before the first call, as :func:`load` takes it: once, in the process from which
             the workers are forked. If that runs already, for an earlier pool, each worker loads what it lacks.
         expected: number of calls known to come; processes for them start at once.
     """
@@ -296,3 +310,8 @@ class WorkerPool(Executor):
         self._queue.clear()
         for future in left:
             future.set_exception(error)
+
+
+if ASKED in os.environ:  # the process from which workers are forked imports this module, and takes no arguments
+    gc.disable()  # there is no garbage yet, and looking for it takes a sixth of the time; workers enable it again
+    load(os.environ.pop(ASKED).split())

@@ -5,11 +5,13 @@ from __future__ import annotations
 import base64
 import json
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeVar, overload
+from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..curves.bspline import Spline
+from ..errors import OutputError
 from ..fitting.convert_masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
@@ -18,30 +20,15 @@ from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, FontMetrics, Outline
 from ..types import Views
 
-KINDS: dict[str, type] = {
-    kind.__name__: kind
-    for kind in (
-        Contour,
-        ContourResult,
-        DesignAxis,
-        FontMetrics,
-        GlyphResult,
-        Interpolation,
-        MasterContour,
-        Masters,
-        MastersContourResult,
-        MastersResult,
-        Measures,
-        Options,
-        Outline,
-        Spline,
-    )
-}
+KINDS: dict[str, type] = {kind.__name__: kind for kind in (
+    Contour, ContourResult, DesignAxis, FontMetrics, GlyphResult, Interpolation, MasterContour, Masters,
+    MastersContourResult, MastersResult, Measures, Options, Outline, Spline,
+)}  # fmt: skip
 """The classes in a result. Reading a file creates objects of these classes only."""
 
 TYPES = {"float64": "<f8", "int64": "<i8", "bool": "|b1"}
 
-Result = TypeVar("Result")
+Result = TypeVar("Result", GlyphResult, MastersResult)
 
 
 def to_text(result: GlyphResult | MastersResult) -> str:
@@ -49,11 +36,7 @@ def to_text(result: GlyphResult | MastersResult) -> str:
     return json.dumps(_plain(result), separators=(",", ":")) + "\n"
 
 
-@overload
-def from_text(text: str) -> GlyphResult: ...
-@overload
-def from_text(text: str, kind: type[Result]) -> Result: ...
-def from_text(text: str, kind: type[Any] = GlyphResult) -> Any:
+def from_text(text: str, kind: type[Result]) -> Result:
     """The result that was written, of that kind.
 
     Raises:
@@ -66,6 +49,18 @@ def from_text(text: str, kind: type[Any] = GlyphResult) -> Any:
     if not isinstance(result, kind):
         raise ValueError("not a stored result")
     return result
+
+
+def stored(path: Path, kind: type[Result]) -> Result:
+    """The result in a file.
+
+    Raises:
+        OutputError: the file cannot be read, or holds no such result.
+    """
+    try:
+        return from_text(path.read_text(encoding="utf-8"), kind)
+    except (OSError, ValueError) as error:
+        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
 
 
 def _plain(value: Any) -> Any:

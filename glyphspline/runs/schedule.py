@@ -1,17 +1,75 @@
-"""What calls are made in: worker processes, this process, or a cluster."""
+"""Where calls are made, in worker processes, this process or a cluster; and how a process opens sources: once."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, Future
-from typing import Any
+from contextlib import AbstractContextManager, nullcontext
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..fitting.options import Options
-from .places import forget_opened
-from .pool import WorkerPool
-from .preload import code_for, kinds_for
-from .spec import Limits
+from .pool import WorkerPool, code_for
+from .spec import Limits, needs_fit
+
+if TYPE_CHECKING:
+    from ..outlines.outline import FontMetrics
+    from ..readers import Source
+    from ..readers.source import OutlineOrError
+
+Place = tuple[Path, int, tuple[tuple[str, float], ...]]
+"""A file, a face and a location."""
+
+Head = tuple[str, int, tuple[int, ...]]
+"""Name, glyph index and code points of a glyph."""
+
+Read = Callable[[Sequence[Head]], "Sequence[OutlineOrError]"]
+"""Reads outlines: of each glyph its outline, or its error."""
+
+
+class Side(NamedTuple):
+    """A source whose outlines are read; ``metrics`` are those of a font file, which is read in bulk."""
+
+    place: Place
+    metrics: FontMetrics | None
+
+
+def place_of(source: Source) -> Place:
+    """Where a source is opened again."""
+    return source.path.absolute(), source.face_index, tuple(source.location.items())
+
+
+def side_of(source: Source) -> Side:
+    """A source as workers read its outlines."""
+    from ..readers import Font
+
+    return Side(place_of(source), source.metrics if type(source) is Font else None)
+
+
+@lru_cache(maxsize=1)
+def sources(*places: Place) -> list[Source]:
+    """The sources of a job, opened once; only those of one job are kept, each of which may take 100 MB."""
+    from ..readers import open_source
+
+    return [open_source(path, face_index, dict(location)) for path, face_index, location in places]
+
+
+@lru_cache(maxsize=1)
+def readers(*sides: Side) -> list[Read]:
+    """The readers of a job's sources, opened once. One in bulk opens much faster than the font."""
+    return [_reader(*side) for side in sides]
+
+
+def _reader(place: Place, metrics: FontMetrics | None) -> Read:
+    if metrics is None:
+        (source,) = sources(place)
+        return lambda heads: source.outlines([gid for _, gid, _ in heads], errors="return")
+    from ..readers.opentype.bulk import BulkReader
+
+    bulk = BulkReader(*place)
+    return lambda heads: bulk.outlines(heads, metrics)
 
 
 class InProcess(Executor):
@@ -27,37 +85,53 @@ class InProcess(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Forget the source that is open: its file may have been edited when the next one is made."""
-        forget_opened()
+        """Forget the sources that are open: their files may have been edited when they are opened again."""
+        sources.cache_clear()
+        readers.cache_clear()
+
+
+def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
+    """The kinds of work of :mod:`.warm` in a run with these options; None: nothing is converted."""
+    if options is None:
+        return []
+    if masters:
+        return ["masters"]
+    rest = ["rest"] if options.remove_overlaps else []
+    if formats and not needs_fit(formats):
+        return ["unfitted", *rest]
+    fit = "g1" if (options.corners, options.continuity) == ("sharp", "g1") else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
 
 
 def workers(
     jobs: int | None,
     seconds: float = Limits.seconds,
-    options: Options | None = None,
-    formats: Sequence[str] = (),
+    kinds: Iterable[str] = (),
     expected: int = 0,
-    masters: bool = False,
-    also: Sequence[str] = (),
+    *,
     scheduler: str | None = None,
-) -> Executor:
+    executor: Executor | None = None,
+) -> AbstractContextManager[Executor]:
     """A pool of worker processes; None: one a core, 0: no processes, calls are made in this one.
 
     Args:
         seconds: time limit of a batch, after which its worker is killed.
-        options, formats, masters: of the run; the compiled code that they need is loaded before the first call.
+        kinds: of work, see :func:`kinds_for`; the compiled code that it needs is loaded before the first call.
         expected: number of calls known to come.
-        also: kinds of work of :mod:`.warm` besides.
         scheduler: address of a dask cluster, whose workers are used instead.
+        executor: used instead of all these; it is not closed.
 
     Raises:
         GlyphsplineError: nothing answers at the address.
     """
-    loaded = code_for([*kinds_for(options, formats, masters), *also])
+    if executor is not None:
+        return nullcontext(executor)
     if scheduler is not None:
         from .cluster import ClusterExecutor
 
-        return ClusterExecutor(scheduler, seconds, loaded)
+        return ClusterExecutor(scheduler, seconds, code_for(kinds))
     if jobs == 0:
         return InProcess()
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, loaded, expected)
+    return WorkerPool(jobs or os.cpu_count() or 1, seconds, code_for(kinds), expected)

@@ -8,9 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
 
-from ..fitting.results import MeasureColumns
+from ..fitting.results import MEASURES, MeasureColumns
 from ..types import counted
-from .entry import columns_of
 
 SHOWN = 10
 """Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
@@ -62,7 +61,8 @@ def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) 
 
 def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
     """The facts of a glyph from its line of the manifest."""
-    facts = facts_of(columns_of(entry["contours"] or ()))
+    contours = entry["contours"] or ()
+    facts = facts_of({name: [contour.get(name) for contour in contours] for name in MEASURES})
     return facts._replace(notes=tuple(entry.get("notes") or ())) if entry["status"] == "empty" else facts
 
 

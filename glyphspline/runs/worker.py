@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -13,64 +13,45 @@ from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.convert import convert_many, unfitted
 from ..fitting.options import Options
-from ..fitting.results import GlyphResult, end_to_end
+from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end_to_end
 from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
-from ..report.data import encoded, glyph_text, row_of
+from ..report.data import DECIMALS, glyph_text, plain, row_of
 from ..report.gallery_files import FOLDER as GALLERY
-from ..writers.figures.images import ImageKind
+from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
 from ..writers.svg.curvature_map import curves_of, map_document
 from ..writers.svg.document import svg_document
 from ..writers.svg.path_data import PathData, curves_data
 from ..writers.svg.polygon_drawing import PolygonData, polygon_data, polygon_document, source_data
 from .engine import Item
-from .entry import contour_entries, journal_line, manifest_entry
-from .jobs.glyphs import Done, Output, Task, failed
-from .places import Side, readers
+from .folder import Done, Output, Task, done
 from .result_text import to_text
-from .spec import POLYGON, RESULTS, Limits, RunSpec, suffix_of
+from .spec import MAPS, POLYGON, RESULTS, Limits, suffix_of
 from .summary import NO_FACTS, Facts, facts_of
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
 
 
-def read(side: Side, tasks: Sequence[Task], spec: RunSpec) -> list[Item | Exception]:
-    """Outlines of one em to a batch, whose costs are segments and vertices; those too large are errors."""
-    (reader,) = readers(side)
-    found = reader([task.head for task in tasks])
-    return items(found, spec.options, spec.limits)
-
-
 def items(found: Sequence[OutlineOrError], options: Options | None, limits: Limits) -> list[Item | Exception]:
-    """Outlines to be fitted, or without options none of them, as a job's items."""
+    """Outlines to be fitted, or without options none of them, as a job's items of one em to a batch.
+
+    Their costs are segments and vertices; those that have more than any real glyph are errors.
+    """
     good = [outline for outline in found if isinstance(outline, Outline)]
     vertices = iter([0.0] * len(good) if options is None else vertices_of(good, options))
-    read: list[Item | Exception] = []
-    for outline in found:
-        try:
-            if isinstance(outline, GlyphsplineError):
-                raise outline
-            read.append(Item(outline, cost_of(outline, next(vertices), limits), outline.metrics))
-        except GlyphsplineError as error:
-            read.append(error)
-    return read
+    return [one if isinstance(one, GlyphsplineError) else _item(one, next(vertices), limits) for one in found]
 
 
-def cost_of(outline: Outline, vertices: float, limits: Limits) -> float:
-    """Segments of an outline and vertices together.
-
-    Raises:
-        GlyphsplineError: more than any real glyph has.
-    """
+def _item(outline: Outline, vertices: float, limits: Limits) -> Item | GlyphsplineError:
     segments = len(outline.arrays.degrees)
     if segments > limits.segments:
-        raise GlyphsplineError(f"{segments} segments, more than the {limits.segments} allowed")
+        return GlyphsplineError(f"{segments} segments, more than the {limits.segments} allowed")
     if not vertices <= limits.vertices:
-        raise GlyphsplineError(f"about {vertices:.3g} vertices, more than the {limits.vertices} allowed")
-    return segments + vertices
+        return GlyphsplineError(f"about {vertices:.3g} vertices, more than the {limits.vertices} allowed")
+    return Item(outline, segments + vertices, outline.metrics)
 
 
 def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
@@ -86,8 +67,8 @@ def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
         return [float(sides[a:b].sum()) / options.step for a, b in pairwise(ends.tolist())]
 
 
-def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Outline]) -> list[Done]:
-    """Convert a batch and write its files."""
+def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Outline]) -> list[Done | GlyphsplineError]:
+    """Convert a batch and write its files; a glyph that cannot be converted has its error."""
     if job.spec.is_fitted:
         options = job.spec.fitting(outlines[0].metrics.units_per_em)
         results = convert_many(outlines, options, errors="return")
@@ -95,7 +76,7 @@ def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Out
         results = unfitted(outlines, job.spec.options)
     glyphs = iter(drawn(job, [result for result in results if isinstance(result, GlyphResult)]))
     return [
-        write_files(job, task, next(glyphs)) if isinstance(result, GlyphResult) else failed(task, result)
+        write_files(job, task, next(glyphs)) if isinstance(result, GlyphResult) else result
         for task, result in zip(tasks, results, strict=True)
     ]
 
@@ -104,8 +85,7 @@ class Glyph(NamedTuple):
     """The input of the writers.
 
     Attributes:
-        path: of the result. source: of the source; None if no format shows it.
-        polygons: None without a gallery.
+        path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
         measures: of the contours; None if nothing is fitted. facts: for the summary.
     """
 
@@ -133,83 +113,73 @@ def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
     return list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets), facts))
 
 
+def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[dict[str, Any]]]:
+    """The measures of each glyph's contours as JSON has them, bounds rounded up; null is not known, or not finite.
+
+    Args:
+        measures: columns of all contours. offsets: (G + 1,) where the contours of each glyph begin.
+    """
+    columns = []
+    for name in MEASURES:
+        column = measures.get(name, [None] * int(offsets[-1]))
+        if name in BOUNDS:
+            column = [value if value is None else rounded_up(value, DECIMALS) for value in column]
+        columns.append([plain(value) for value in column])
+    entries = [dict(zip(MEASURES, row, strict=True)) for row in zip(*columns, strict=True)]
+    return [entries[a:b] for a, b in pairwise(offsets.tolist())]
+
+
 def write_files(job: Output, task: Task, glyph: Glyph) -> Done:
     """Write a glyph's files, none if it is empty."""
-    empty, formats = not glyph.result.contours, job.spec.folders
+    result, formats = glyph.result, job.spec.folders
+    empty = not result.contours
     files = {} if empty else {name: f"{name}/{task.stem}{suffix_of(name)}" for name in formats}
     sizes = [write_whole(f"{job.out}/{path}", written(name, job, glyph, files)) for name, path in files.items()]
-    status, advance = "empty" if empty else "ok", glyph.result.outline.advance
-    notes = tuple(dict.fromkeys([*glyph.result.outline.notes, *glyph.result.notes]))
-    facts = glyph.facts._replace(notes=notes if empty else ())
-    entry = manifest_entry(
-        task.name, task.gid, task.unicodes, advance, status, files, glyph.measures,
-        deviation=facts.deviation, notes=notes,
-    )  # fmt: skip
-    row = row_of(entry) if GALLERY in formats else ""
-    return Done(task.gid, task.name, status, journal_line(sizes, encoded(entry)), facts, row)
+    notes = tuple(dict.fromkeys([*result.outline.notes, *result.notes]))
+    entry = {
+        "advance": plain(result.outline.advance), "status": "empty" if empty else "ok", "files": files,
+        "deviation": plain(glyph.facts.deviation), "contours": glyph.measures, "notes": notes, "error": None,
+    }  # fmt: skip
+    facts = glyph.facts._replace(notes=notes) if empty else glyph.facts
+    return done(task, entry, sizes, facts, row_of if GALLERY in formats else None)
 
 
 def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str | bytes:
-    """A glyph's file of a format."""
-    writer = SHARING.get(name)
-    if writer is not None:
-        return writer(job, glyph, files)
-    return format_named(name).write(glyph.result, job.spec.settings.scaled(glyph.result.outline.metrics))
+    """A glyph's file of a format.
 
+    Path data, measures and the scale of maps are made once for a batch or run, and shared by the formats named here;
+    all others are written by their own ``write``.
+    """
+    spec, result, source, polygons = job.spec, glyph.result, glyph.source, glyph.polygons
+    look, maps = spec.settings.look, spec.maps
+    if name == "svg":
+        return svg_document(result, glyph.path, look)
+    if name == RESULTS:
+        return to_text(result)
+    kind: Any = name.removeprefix("curvature-")
+    if name in ("png", "pdf"):
+        from ..writers.figures.drawing import drawing_image  # imports matplotlib
 
-def _source(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
-    assert glyph.source is not None
-    return svg_document(glyph.result, glyph.source, job.spec.settings.look)
+        return drawing_image(result, kind, look, glyph.path.box)
+    if name == "curvature":
+        assert job.curvature_scale is not None
+        path = glyph.path
+        if maps.comb != "result":
+            path = curves_data(curves_of(result, maps.comb), result.options.precision)[0]
+        return map_document(result, path, job.curvature_scale, maps.comb, in_corners=maps.corner_teeth)
+    if name in MAPS:
+        from ..writers.figures.raster import map_image
 
-
-def _polygon(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
-    assert glyph.source is not None
-    assert glyph.polygons is not None
-    return polygon_document(glyph.result, glyph.source, glyph.polygons)
-
-
-def _curvature(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
-    assert job.curvature_scale is not None
-    result, whose = glyph.result, job.spec.maps.comb
-    path = glyph.path if whose == "result" else curves_data(curves_of(result, whose), result.options.precision)[0]
-    return map_document(result, path, job.curvature_scale, whose, in_corners=job.spec.maps.corner_teeth)
-
-
-def _drawing(job: Output, glyph: Glyph, kind: ImageKind) -> bytes:
-    from ..writers.figures.drawing import drawing_image  # imports matplotlib
-
-    return drawing_image(glyph.result, kind, job.spec.settings.look, glyph.path.box)
-
-
-def _map(job: Output, glyph: Glyph, kind: ImageKind) -> bytes:
-    from ..writers.figures.raster import map_image
-
-    spec = job.spec
-    return map_image(
-        glyph.result, kind, comb=spec.maps.comb, scale=job.curvature_scale, in_corners=spec.maps.corner_teeth
-    )
-
-
-def _gallery(job: Output, glyph: Glyph, files: dict[str, str]) -> bytes:
-    assert glyph.source is not None
-    assert glyph.polygons is not None
-    assert glyph.measures is not None
-    polygon, control = (part.text for part in glyph.polygons)
-    shown = {"source": glyph.source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
-    return glyph_text(shown, files, glyph.measures)
-
-
-SHARING: dict[str, Callable[[Output, Glyph, dict[str, str]], str | bytes]] = {
-    "source": _source,
-    "svg": lambda job, glyph, files: svg_document(glyph.result, glyph.path, job.spec.settings.look),
-    "curvature": _curvature,
-    "png": lambda job, glyph, files: _drawing(job, glyph, "png"),
-    "pdf": lambda job, glyph, files: _drawing(job, glyph, "pdf"),
-    "curvature-png": lambda job, glyph, files: _map(job, glyph, "png"),
-    "curvature-pdf": lambda job, glyph, files: _map(job, glyph, "pdf"),
-    GALLERY: _gallery,
-    POLYGON: _polygon,
-    RESULTS: lambda job, glyph, files: to_text(glyph.result),
-}
-"""Writers that share what is made for a whole batch or run, such as path data or the scale of maps, and those of
-formats that only a run has. All other formats are written by their own ``write``."""
+        return map_image(result, kind, comb=maps.comb, scale=job.curvature_scale, in_corners=maps.corner_teeth)
+    if name == "source":
+        assert source is not None
+        return svg_document(result, source, look)
+    if name in (POLYGON, GALLERY):
+        assert source is not None
+        assert polygons is not None
+        if name == POLYGON:
+            return polygon_document(result, source, polygons)
+        polygon, control = (part.text for part in polygons)
+        shown = {"source": source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
+        return glyph_text(shown, files, glyph.measures or ())
+    return format_named(name).write(result, spec.settings.scaled(result.outline.metrics))

@@ -14,7 +14,8 @@ import pytest
 from playwright.sync_api import expect, sync_playwright
 
 import glyphspline as gs
-from glyphspline.runs import RunSpec, convert_font, write_gallery
+from glyphspline.runs.jobs.convert import convert_font, write_gallery
+from glyphspline.runs.spec import RunSpec
 from tests.places import FONTS
 
 from ..variable_fonts import WEIGHT, quadratic, variable_font

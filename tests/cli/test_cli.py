@@ -25,7 +25,8 @@ from glyphspline.datasets.dataset_spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.joins import share_of_corners
-from glyphspline.runs import RunSpec, locked
+from glyphspline.runs.folder import locked
+from glyphspline.runs.spec import RunSpec
 from glyphspline.runs.summary import Facts, Summary
 from glyphspline.writers.settings import Maps, Settings
 from glyphspline.writers.svg.appearance import Appearance

@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.outlines.joins import joins
-from glyphspline.runs import atlas_run
+from glyphspline.runs.jobs import atlas
 from glyphspline.writers.figures.atlas import overview, profile
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
 from tests.places import ROOT
@@ -128,7 +128,7 @@ def test_the_atlas_is_made_and_captioned_by_the_options(
     given: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     drawn: list[gs.GlyphResult] = []
-    monkeypatch.setattr(atlas_run, "write_atlas", lambda path, glyphs, scale, **_: len(drawn.__iadd__(glyphs)))
+    monkeypatch.setattr(atlas, "write_atlas", lambda path, glyphs, scale, **_: len(drawn.__iadd__(glyphs)))
     font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
     run = CliRunner().invoke(app, ["atlas", font, "--text", "O", *given, "--out", str(tmp_path / "a.pdf")])
     assert run.exit_code == 0, run.output

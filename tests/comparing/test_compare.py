@@ -16,7 +16,8 @@ from glyphspline.cli import app
 from glyphspline.comparing.compare import compare_many
 from glyphspline.curves.bezier import evaluate, split
 from glyphspline.readers.svg_drawings import SvgDrawings, open_svg
-from glyphspline.runs import compare_fonts, entries_of, pairs_of
+from glyphspline.runs.folder import entries_of
+from glyphspline.runs.jobs.diff import compare_fonts, pairs_of
 from tests.drawings import result
 from tests.places import FONTS
 from tests.polygons import square_contour

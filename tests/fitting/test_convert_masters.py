@@ -23,7 +23,7 @@ from glyphspline.fitting.stacked_distance import pair_stacks, regular
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.readers.single_fonts import masters_of_fonts
-from glyphspline.runs.masters_run import MastersSummary, redrawn_glyph
+from glyphspline.runs.jobs.masters import MastersSummary, redrawn_glyph
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.types import FloatArray, MadeOnDemand
 from glyphspline.writers.designspace_folder import write_designspace

@@ -17,26 +17,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from glyphspline.errors import GlyphsplineError
+from glyphspline.errors import GlyphsplineError, OutputError
 from glyphspline.files import write_whole
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
-from glyphspline.runs import (
-    Limits,
-    OutputError,
-    RunSpec,
-    convert_font,
-    entries_of,
-    find_fonts,
-    folders_for,
-    worker,
-    write_gallery,
-)
-from glyphspline.runs.entry import contour_entries
+from glyphspline.runs import worker
 from glyphspline.runs.file_names import LONGEST_NAME, file_names
-from glyphspline.runs.manifest import JOURNAL
+from glyphspline.runs.folder import JOURNAL, entries_of
+from glyphspline.runs.font_search import find_fonts, folders_for
+from glyphspline.runs.jobs.convert import convert_font, write_gallery
+from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.runs.summary import Facts, facts_of
+from glyphspline.runs.worker import contour_entries
 from glyphspline.writers.settings import Settings
 from glyphspline.writers.svg.appearance import Appearance
 from tests.places import FONTS
@@ -330,7 +323,8 @@ def test_fonts_are_found_in_folders_globs_and_lists(tree: Path) -> None:
 KILL_ME = """
 import os, signal, sys
 from pathlib import Path
-from glyphspline.runs import RunSpec, convert_font
+from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.spec import RunSpec
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
 

@@ -18,10 +18,8 @@ from glyphspline.checks.kinds import Thresholds
 from glyphspline.checks.kinks import kinks
 from glyphspline.errors import FontError
 from glyphspline.outlines.masters import MasterContour, Masters
-from glyphspline.runs import check_run
-from glyphspline.runs.check_fonts import Asked, check_fonts
-from glyphspline.runs.check_run import GlyphFindings, check_font
-from glyphspline.runs.jobs.check import AxesJob, CheckJob
+from glyphspline.runs.jobs import check as check_run
+from glyphspline.runs.jobs.check import Asked, AxesJob, CheckJob, GlyphFindings, check_font, check_fonts
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS
 from tests.variable_fonts import quadratic, variable_font
@@ -47,7 +45,7 @@ def variable(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Executor]:
-    with workers(2, 60.0, expected=2, also=("checks",)) as made:
+    with workers(2, 60.0, kinds=["checks"], expected=2) as made:
         yield made
 
 
@@ -143,7 +141,7 @@ class Slow(CheckJob):
 def test_a_glyph_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = found(KOUZAN)
     monkeypatch.setattr(check_run, "CheckJob", Slow)
-    with workers(2, 8.0, expected=2, also=("checks",)) as pool:
+    with workers(2, 8.0, kinds=["checks"], expected=2) as pool:
         glyphs = found(KOUZAN, executor=pool)
     assert [glyph.gid for glyph in glyphs if glyph.error] == [3]
     assert glyphs[3].error == "took longer than 8 s"

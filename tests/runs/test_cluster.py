@@ -15,11 +15,11 @@ import pytest
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
-from glyphspline.runs import RunSpec, convert_font
 from glyphspline.runs.cluster import KEPT, ClusterExecutor
+from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.pool import TimeLimitError, WorkerLostError
-from glyphspline.runs.schedule import workers
-from glyphspline.runs.spec import Limits
+from glyphspline.runs.schedule import kinds_for, workers
+from glyphspline.runs.spec import Limits, RunSpec
 from tests.places import GYOSHO as FONT
 from tests.runs.test_hostile import endless_font
 
@@ -65,7 +65,7 @@ def test_a_glyph_that_never_ends_is_ended_there_too(cluster: Any, tmp_path: Path
     font = open_font(tmp_path / "endless.otf")
     spec = RunSpec(Options(step=50.0), limits=Limits(seconds=2.0))
     convert_font(font, font.glyph_names, tmp_path / "here", spec, jobs=2)
-    with workers(None, 2.0, spec.options, spec.formats, scheduler=cluster.scheduler_address) as executor:
+    with workers(None, 2.0, kinds_for(spec.options, spec.formats), scheduler=cluster.scheduler_address) as executor:
         summary = convert_font(font, font.glyph_names, tmp_path / "there", spec, executor=executor)
     assert summary.statuses == {"ok": 2, "failed": 1}
     assert summary.failures == [("endless", "took longer than 2 s")]

@@ -20,8 +20,9 @@ from fontTools.ttLib import TTFont
 
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
-from glyphspline.runs import RunSpec, convert_font, entries_of
-from glyphspline.runs.spec import Limits
+from glyphspline.runs.folder import entries_of
+from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.spec import Limits, RunSpec
 from tests.places import ROOT
 
 NASTY = ["../../etc/passwd", "CON", "<&\"'>]]>", "x" * 250, "a\nb\x1b[31m", "-rf", "A", "a", "..", "%s%n", "\udc80"]

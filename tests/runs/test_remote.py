@@ -21,7 +21,8 @@ from glyphspline.datasets import plan, store
 from glyphspline.datasets.dataset_run import dataset
 from glyphspline.datasets.dataset_spec import DatasetSpec
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
-from glyphspline.runs import find_fonts, remote
+from glyphspline.runs import remote
+from glyphspline.runs.font_search import find_fonts
 from tests.places import GYOSHO as FONT
 
 pytestmark = pytest.mark.needs("fsspec", "s3fs", "localbucket")

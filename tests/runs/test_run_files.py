@@ -12,12 +12,13 @@ from typing import Any
 
 import pytest
 
-from glyphspline.errors import GlyphsplineError
+from glyphspline.errors import GlyphsplineError, OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font, open_source
-from glyphspline.runs import OutputError, RunSpec, convert_font, entries_of
 from glyphspline.runs.file_names import file_names
-from glyphspline.runs.lock import LOCK, locked
+from glyphspline.runs.folder import LOCK, entries_of, locked
+from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.spec import RunSpec
 from glyphspline.types import Names
 from glyphspline.writers.settings import Maps, Settings
 from glyphspline.writers.svg.appearance import Appearance
@@ -155,7 +156,7 @@ def test_a_drawing_that_came_out_empty_says_why(tmp_path: Path) -> None:
 HOLD = """
 import sys, time
 from pathlib import Path
-from glyphspline.runs.lock import locked
+from glyphspline.runs.folder import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)

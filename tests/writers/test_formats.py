@@ -24,13 +24,15 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.curves.bezier import evaluate
-from glyphspline.errors import GlyphsplineError, OptionError
+from glyphspline.errors import GlyphsplineError, OptionError, OutputError
 from glyphspline.fitting.results import as_glyph
 from glyphspline.outlines.flattening import flattened
 from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
 from glyphspline.outlines.uncrossing import uncrossed
-from glyphspline.runs import OutputError, RunSpec, convert_font, entries_of
 from glyphspline.runs import worker as batch_worker
+from glyphspline.runs.folder import entries_of
+from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.spec import RunSpec
 from glyphspline.types import FloatArray
 from glyphspline.writers import formats as registry
 from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats

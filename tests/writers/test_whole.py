@@ -11,13 +11,15 @@ import pyarrow.parquet as pq
 import pytest
 
 import glyphspline as gs
+from glyphspline.errors import OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
 from glyphspline.readers.svg_drawings import open_svg
 from glyphspline.readers.ufo import open_ufo
-from glyphspline.runs import OutputError, RunSpec, convert_font
+from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.result_text import from_text, to_text
+from glyphspline.runs.spec import RunSpec
 from tests.places import FONTS
 from tests.runs.test_batch import content
 from tests.writers.test_font import largest_distance
@@ -92,7 +94,7 @@ def test_a_stored_result_is_read_back_to_the_last_bit() -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
     glyph = gs.convert(source.outline("O"), Options(tolerance=3.0))
     text = to_text(glyph)
-    read = from_text(text)
+    read = from_text(text, gs.GlyphResult)
     assert to_text(read) == text
     assert (read.options, read.outline.name, read.notes) == (glyph.options, "O", glyph.notes)
     for a, b in zip(glyph.contours, read.contours, strict=True):
@@ -105,7 +107,7 @@ def test_a_stored_result_is_read_back_to_the_last_bit() -> None:
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"kind":"Path"}', '{"array":"object","shape":[1],"data":""}'])
 def test_nothing_else_is_made_of_a_stored_result(text: str) -> None:
     with pytest.raises(ValueError, match=r"not a stored result|Expecting value"):
-        from_text(text)
+        from_text(text, gs.GlyphResult)
 
 
 def test_a_stored_result_that_was_changed_is_an_error(out: Path, tmp_path: Path) -> None:

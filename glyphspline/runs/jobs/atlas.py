@@ -1,18 +1,32 @@
-"""Glyphs converted one by one for the pages of an atlas."""
+"""Glyphs converted one by one to the pages of an atlas."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from ...checks.kinks import tags_of
+from ...errors import GlyphsplineError
+from ...files import make_folder
+from ...fitting.convert_masters import check_options
 from ...fitting.options import Options
-from ..engine import Job, reason
-from ..places import Place, sources
+from ...fitting.results import GlyphResult, as_glyph
+from ...readers import Source
+from ...writers.figures.atlas import write_atlas
+from ...writers.figures.axis_pages import write_axis_atlas
+from ...writers.svg.appearance import Whose
+from ...writers.svg.curvature_map import curvature_scale
+from ..engine import Job, Observer, reason, run
+from ..schedule import InProcess, Place, place_of, sources
+from .convert import SCALE_SAMPLE
 
 if TYPE_CHECKING:
     from ...fitting.convert_masters import MastersResult
-    from ...fitting.results import GlyphResult
+
+PROFILED = 12
+"""Up to this number of glyphs, each has a profile page by default."""
 
 Converted: TypeAlias = "GlyphResult | MastersResult | tuple[str, str]"
 """A result, or a glyph's name and why it could not be converted."""
@@ -43,6 +57,92 @@ class AtlasJob(Job[str, Converted]):
         """Why a glyph could not be converted."""
         return task, reason(error)
 
-    def failures(self, result: Converted) -> int:
-        """Whether the glyph failed."""
-        return int(isinstance(result, tuple))
+
+def make_atlas(
+    source: Source,
+    names: Sequence[str],
+    path: Path,
+    options: Options,
+    *,
+    profiles: Sequence[str] | None = None,
+    comb: Whose = "result",
+    in_corners: bool = False,
+    observer: Observer | None = None,
+) -> tuple[int, int]:
+    """Write the atlas of some glyphs.
+
+    Args:
+        source: the opened font. names: its glyphs, in order. path: the PDF.
+        options: of the conversion.
+        profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
+        comb: whose curvature the pages of combs show. in_corners: see :func:`to_curvature_svg`.
+        observer: called with the number of glyphs done, of all, and of those that failed.
+
+    Returns:
+        Pages written, and glyphs that failed.
+    """
+    make_folder(path.parent)
+    chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
+    job, total, failed = AtlasJob(place_of(source), options), len(names), list[str]()
+    with InProcess() as pool:
+        sample = names[:: -(-total // SCALE_SAMPLE) or 1]
+        kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
+        scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
+        left = [name for name in names if name not in kept]
+        others = run(job, left, pool, ordered=True, observer=observer, before=len(kept), total=total)
+        made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
+        pages = write_atlas(
+            path, _shown(made, failed), scale or 1 / source.metrics.units_per_em,
+            heading=f"{source.family} {source.style}", whose=comb, in_corners=in_corners,
+            profiled=lambda glyph: glyph.outline.name in chosen,
+        )  # fmt: skip
+    return pages, len(failed)
+
+
+def make_axis_atlas(
+    source: Source,
+    names: Sequence[str],
+    path: Path,
+    options: Options,
+    axis: str,
+    *,
+    observer: Observer | None = None,
+) -> tuple[int, int]:
+    """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
+
+    Args:
+        source: the opened font; its location is that of the other axes. names: its glyphs, in order. path: the PDF.
+        options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
+        observer: called with the number of glyphs done, of all, and of those that failed.
+
+    Returns:
+        Pages written, and glyphs that failed.
+
+    Raises:
+        GlyphsplineError: the font is not variable, or has no such axis.
+        OptionError: options that masters cannot be converted with.
+    """
+    tags_of(source, axis)
+    make_folder(path.parent)
+    options = replace(options, corners="sharp")
+    sources = source.outlines(names[:: -(-len(names) // SCALE_SAMPLE) or 1], errors="return")
+    scale = curvature_scale(as_glyph(outline) for outline in sources if not isinstance(outline, GlyphsplineError))
+    check_options(options)
+    failed: list[str] = []
+    with InProcess() as pool:
+        parts = run(AtlasJob(place_of(source), options, masters=True), names, pool, ordered=True, observer=observer)
+        made: Iterator[Any] = (part.result for part in parts)
+        pages = write_axis_atlas(
+            path, _shown(made, failed), axis, source.location, scale or 1 / source.metrics.units_per_em,
+            f"{source.family} {source.style}",
+        )  # fmt: skip
+    return pages, len(failed)
+
+
+def _shown(glyphs: Iterator[Any], failed: list[str]) -> Iterator[Any]:
+    """Results, and names and errors of glyphs that failed, without those that are empty; ``failed`` gets the names."""
+    for glyph in glyphs:
+        if isinstance(glyph, tuple):
+            failed.append(glyph[0])
+        if isinstance(glyph, tuple) or glyph.contours:
+            yield glyph

@@ -1,28 +1,49 @@
-"""Glyphs checked; what is found goes between processes as columns of numbers."""
+"""Fonts checked: glyph by glyph in workers, in glyph index order; which findings are kept, counted, or known already.
+
+Between processes findings are columns of numbers; they become values one glyph at a time, when their glyph's turn has
+come.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, ExitStack, nullcontext
+from dataclasses import dataclass, field
 from hashlib import blake2b
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...checks.finding import Measured
-from ...checks.kinds import KINDS, Thresholds
-from ...checks.kinks import AxisKinks, AxisNumbers
-from ...errors import GlyphsplineError
-from ..engine import Item, Job, reason
-from ..places import Side, readers, sources
+from ...checks.baseline import Baseline
+from ...checks.finding import Finding, Measured, findings, severity
+from ...checks.kinds import DIRECTION, KINDS, LEVELS, THRESHOLDS, Level, Thresholds
+from ...checks.kinks import AxisKinks, AxisNumbers, KinkReport, tags_of
+from ...errors import FontError, GlyphsplineError
+from ...readers import Source
+from ...readers.opentype.tables import Location
+from ...report.findings_page import home_of
+from ...types import BoolArray, IntArray
+from ..engine import Item, Job, Observer, reason, run
+from ..font_search import faces_of
+from ..schedule import Side, readers, side_of, sources, workers
 
 if TYPE_CHECKING:
     from ...outlines.masters import Masters
     from ...outlines.outline import Outline
-    from ...types import FloatArray, IntArray
+    from ...types import FloatArray
 
 DECIMALS = 2
 """Decimals of coordinates up to which two contours have one shape."""
+
+STEPS = 8
+"""Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
+
+POOL_FROM = 2000
+POOL_FROM_ALONG_AXES = 100
+"""Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
 
 
 class Task(NamedTuple):
@@ -91,10 +112,6 @@ class CheckJob(Job[Task, Checked]):
         """Why a glyph could not be checked."""
         return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), error=reason(error))
 
-    def failures(self, result: Checked) -> int:
-        """Number of glyphs that could not be checked."""
-        return int(result.error is not None)
-
 
 @dataclass(frozen=True)
 class AxesJob(CheckJob):
@@ -142,3 +159,276 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
             known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
         found[k] = known[key]
     return found
+
+
+class GlyphFindings(NamedTuple):
+    """What was found in a glyph.
+
+    Attributes:
+        findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
+        axes: its kinks along each axis in numbers; () if it is not looked at along axes, or could not be checked.
+    """
+
+    glyph: str
+    gid: int
+    findings: list[Finding]
+    error: str | None
+    axes: tuple[AxisNumbers, ...]
+
+
+def check_font(
+    source: Source,
+    names: Sequence[str],
+    thresholds: Thresholds = THRESHOLDS,
+    *,
+    kinds: frozenset[str] | None = None,
+    axes: Sequence[str] | None = None,
+    steps: int = STEPS,
+    executor: Executor | None = None,
+    observer: Observer | None = None,
+    once: bool = True,
+    kinks: list[Sequence[AxisKinks]] | None = None,
+) -> Iterator[GlyphFindings]:
+    """Check glyphs of a font; yield them in glyph index order. Nothing is fitted.
+
+    The result does not depend on the number of workers. A glyph that cannot be read, or takes longer than the workers'
+    time limit, has an error, and costs no other glyph.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        names: of its glyphs. thresholds: from which values on it counts. kinds: names of those looked for; None: all.
+        axes: tags of the axes along which glyphs of a variable font are checked; without it all, of () none: glyphs
+            are checked where the font is open.
+        steps: of each axis, at whose ends glyphs are checked besides the masters.
+        executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
+        observer: called after each chunk of glyphs.
+        once: a contour that stands in several glyphs, as components do, is reported in the first one only, and so are
+            two that touch or cross. Directions, which depend on all contours of a glyph, are reported in each.
+        kinks: gets the smooth joints of each batch of glyphs along each axis.
+
+    Raises:
+        FontError: the source has no such glyph, or no such axis.
+    """
+    tags = tuple(axis.tag for axis in source.axes)
+    chosen = tags if axes is None else tuple(axes)
+    if unknown := [tag for tag in chosen if tag not in tags]:
+        raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
+    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    if unknown := [name for name in names if name not in index]:
+        raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
+    tasks = sorted({Task(index[name], name) for name in names})
+    looked = frozenset(kind.name for kind in KINDS) if kinds is None else kinds
+    job = CheckJob(side_of(source), thresholds, looked, source.outer)
+    if chosen:
+        job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps, kinks is not None)
+    return _found(job, tasks, tags if chosen else (), executor, observer, once, kinks)
+
+
+def _found(
+    job: CheckJob,
+    tasks: list[Task],
+    tags: Sequence[str],
+    executor: Executor | None,
+    observer: Observer | None,
+    once: bool,
+    kinks: list[Sequence[AxisKinks]] | None,
+) -> Iterator[GlyphFindings]:
+    """Findings glyph by glyph, without those of a shape that was reported for an earlier glyph."""
+    reported = _Reported() if once else None
+    with workers(0, executor=executor) as pool:
+        for part in run(job, tasks, pool, ordered=True, observer=observer):
+            rows, axes, shapes, along, error = part.result
+            if kinks is not None and along:
+                kinks.append(along)
+            if reported is not None:
+                rows = rows.chosen(np.flatnonzero(reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
+            found = findings([(task.name, task.gid) for task in part.tasks], rows, tags)
+            for task, own, numbers in zip(part.tasks, found, axes, strict=True):
+                yield GlyphFindings(task.name, task.gid, own, error, numbers)
+
+
+class _Reported:
+    """Sorted array of the hashes of shapes that were reported; it uses a tenth of the memory of a set."""
+
+    def __init__(self) -> None:
+        self._shapes = np.zeros(0, dtype=np.int64)
+
+    def fresh(self, shapes: IntArray, glyphs: IntArray) -> BoolArray:
+        """(n,) whether the shape of a row's contour stands in no glyph before the row's glyph; adds them."""
+        unique, rows = np.unique(shapes, return_inverse=True)
+        first = np.full(len(unique), np.iinfo(np.int64).max)
+        np.minimum.at(first, rows, glyphs)
+        at = np.searchsorted(self._shapes, unique)
+        new = np.searchsorted(self._shapes, unique, side="right") == at
+        self._shapes = np.insert(self._shapes, at[new], unique[new])
+        found: BoolArray = new[rows] & (first[rows] == glyphs)
+        return found
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is looked for, and what is kept of it.
+
+    Attributes:
+        kinds: names. kept: findings of this level or above are kept, others only counted.
+        axis: tag of the only one, or None. steps: see :func:`check_font`.
+        baseline: known findings, or None. written: where all findings are added, or None.
+        drawn: whether sources are kept, for drawings. joints: whether all smooth joints are kept, for a diagram.
+    """
+
+    thresholds: Thresholds = THRESHOLDS
+    kinds: frozenset[str] = frozenset(kind.name for kind in KINDS)
+    kept: Level = "INFO"
+    axis: str | None = None
+    steps: int = STEPS
+    baseline: Baseline | None = None
+    written: Baseline | None = None
+    drawn: bool = False
+    joints: bool = False
+
+
+@dataclass
+class Face:
+    """What was found in one face of a font.
+
+    Attributes:
+        font: its path as given, with the number of the face if there are several. family, style: of the font.
+        source: of it, where places are to be drawn. home: user-space value of each axis where the font is open.
+        findings: those that are kept, the worst first. counts: of all new ones, by kind. known: number of those that
+            the baseline has. levels: those of new findings.
+        glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
+        axes: kinks along each axis in numbers, of all glyphs checked. kinks: all smooth joints, if they are asked for.
+        remark: what was left undone, or None. error: why the font could not be read, or None.
+    """
+
+    font: str
+    family: str = ""
+    style: str = ""
+    source: Source | None = None
+    home: Mapping[str, float] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+    known: int = 0
+    levels: set[Level] = field(default_factory=set)
+    glyphs: int = 0
+    failed: list[tuple[str, str]] = field(default_factory=list)
+    axes: list[AxisNumbers] = field(default_factory=list)
+    kinks: KinkReport | None = None
+    remark: str | None = None
+    error: str | None = None
+
+    @property
+    def name(self) -> str:
+        """Family and style, by which a baseline knows the font."""
+        return f"{self.family} {self.style}".strip()
+
+    def reaches(self, level: Level) -> bool:
+        """Whether a new finding is of a level or above."""
+        return any(LEVELS.index(own) >= LEVELS.index(level) for own in self.levels)
+
+    def keep(self, findings: Sequence[Finding], asked: Asked) -> None:
+        """Sort the findings of a glyph into what is known, counted and kept."""
+        if asked.written is not None:
+            asked.written.add(self.name, findings)
+        if asked.baseline is not None:
+            fresh = asked.baseline.new(self.name, findings)
+            self.known += len(findings) - len(fresh)
+            findings = fresh
+        self.counts.update([item.kind for item in findings])
+        self.levels.update([item.level for item in findings])
+        self.findings += [item for item in findings if LEVELS.index(item.level) >= LEVELS.index(asked.kept)]
+
+
+def worst_first(faces: Sequence[Face]) -> list[tuple[Face, Finding]]:
+    """The findings of all faces in one list."""
+    every = [(face, finding) for face in faces for finding in face.findings]
+    return sorted(every, key=lambda pair: severity(pair[1])) if len(faces) > 1 else every
+
+
+def check_fonts(
+    fonts: Sequence[Path],
+    asked: Asked,
+    *,
+    chosen: Callable[[Source], Sequence[str]] | None = None,
+    face_index: int | None = None,
+    location: Location = None,
+    jobs: int | None = None,
+    watch: Callable[[], AbstractContextManager[Observer | None]] = nullcontext,
+    alone: bool = False,
+) -> Iterator[Face]:
+    """Check the faces of fonts, one after the other. A font that cannot be read has an error instead of findings.
+
+    Args:
+        fonts: files. asked: what is looked for. chosen: the glyphs of each font; without it, all.
+        face_index: the only face of each file; without it, all. location: of variable fonts.
+        jobs: worker processes; None takes all cores if there are many glyphs, 0 does everything in this process.
+        watch: opened for each face; yields its observer, see :data:`.engine.Observer`.
+        alone: there is one font, of which one face is checked; its errors are raised.
+    """
+    if alone:
+        face_index = face_index or 0
+    with ExitStack() as stack:
+        pool: Executor | None = None
+        for font in fonts:
+            try:
+                for source in faces_of(font, location, face_index):
+                    names = source.glyph_names if chosen is None else chosen(source)
+                    least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
+                    if pool is None and (jobs or (jobs is None and len(names) >= least)):
+                        pool = stack.enter_context(workers(jobs, kinds=["checks"]))
+                    name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
+                    with watch() as observer:
+                        face = check_face(source, name, names, asked, pool, observer, alone=alone)
+                    yield face
+            except GlyphsplineError as error:
+                if alone:
+                    raise
+                yield Face(str(font), error=str(error))
+
+
+def check_face(
+    source: Source,
+    name: str,
+    names: Sequence[str],
+    asked: Asked,
+    pool: Executor | None,
+    observer: Observer | None,
+    *,
+    alone: bool,
+) -> Face:
+    """Check glyphs of one face of the font called ``name``.
+
+    Raises:
+        GlyphsplineError: of a font ``alone``: no glyph is chosen or can be checked, or it lacks the axis asked for.
+    """
+    if alone and not names:
+        raise GlyphsplineError("none of the glyphs asked for is in the font")
+    face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
+    tags = [axis.tag for axis in source.axes]
+    if asked.axis is not None or (alone and asked.joints):
+        try:
+            tags = [tag for tag in tags_of(source, asked.axis) if asked.axis in (None, tag)]
+        except GlyphsplineError as error:
+            if alone:
+                raise
+            face.remark, tags = f"{error}; checked without it", []
+    face.axes = [AxisNumbers(axis.tag, 0, (axis.default,)) for axis in source.axes if axis.tag in tags]
+    kinks: list[Sequence[AxisKinks]] | None = [] if asked.joints else None
+    for row in check_font(
+        source, names, asked.thresholds, kinds=asked.kinds, axes=tags, steps=asked.steps, executor=pool,
+        observer=observer, kinks=kinks,
+    ):  # fmt: skip
+        face.glyphs += row.error is None
+        if row.error is not None:
+            face.failed.append((row.glyph, row.error))
+        if row.axes:
+            face.axes = [known + own for known, own in zip(face.axes, row.axes, strict=True)]
+        face.keep(row.findings, asked)
+    if alone and face.failed and not face.glyphs:
+        glyph, why = face.failed[0]
+        raise GlyphsplineError(f"{name}, glyph {glyph!r}: {why}")
+    face.findings.sort(key=severity)
+    if kinks:
+        found = tuple(AxisKinks.joined(parts) for parts in zip(*kinks, strict=True))
+        face.kinks = KinkReport(found, face.glyphs, asked.thresholds.corner_angle, tuple(face.failed))
+    return face

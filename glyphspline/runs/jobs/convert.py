@@ -1,36 +1,366 @@
-"""Glyphs converted, drawn and written to files, each with a line of the manifest."""
+"""A run that converts the glyphs of a font: the job, what is left to do, the curvature scale, manifest and gallery."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import json
+import re
+import shlex
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from ..engine import Item, Job
-from .glyphs import Done, Output, Task, failed
+from ...curves.curvature import robust_scale
+from ...errors import OutputError
+from ...extras import need
+from ...files import make_folder, remove_partials, replacing, write_whole, writing
+from ...fitting.results import GlyphResult
+from ...readers import Source
+from ...readers.svg_drawings import SvgDrawings
+from ...report.data import row_of
+from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
+from ...report.gallery_files import FOLDER as GALLERY
+from ...types import Names, rounded_up
+from ...writers.formats import format_named
+from ..engine import Item, Job, Observer, Part, reason, run
+from ..file_names import file_names
+from ..folder import (
+    JOURNAL,
+    MANIFEST,
+    SIZES,
+    Done,
+    Journal,
+    Output,
+    Record,
+    Task,
+    done,
+    entries_of,
+    finish,
+    locked,
+    read_record,
+    remove_written,
+)
+from ..result_text import stored
+from ..schedule import Side, kinds_for, readers, side_of, workers
+from ..spec import MAPS, OF_RUNS, REQUEST, RESULTS, RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from ..summary import Summary
+
+if TYPE_CHECKING:
+    from ...curves.curvature import Comb
+
+SCALE_SAMPLE = 200
+"""Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
 
 
 class ConvertJob(Output, Job[Task, list[Done]]):
-    """A run over the glyphs of one font."""
+    """Glyphs converted, drawn and written to files, each with a line of the manifest."""
 
     budget = 40_000
     """Segments and vertices converted at once: some 40 glyphs of a CJK face."""
 
     def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
         """Outlines; one that is too large is an error."""
-        from ..worker import read
+        from ..worker import items
 
-        return read(self.side, tasks, self.spec)
+        (read,) = readers(self.side)
+        return items(read([task.head for task in tasks]), self.spec.options, self.spec.limits)
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert outlines and write their files."""
         from ..worker import convert_and_write
 
-        return convert_and_write(self, tasks, contents)
+        made = zip(tasks, convert_and_write(self, tasks, contents), strict=True)
+        return [one if isinstance(one, Done) else self.failed(task, one)[0] for task, one in made]
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
         """The line of a glyph that could not be converted."""
-        return [failed(task, error)]
+        entry: dict[str, Any]
+        entry = {"advance": None, "status": "failed", "files": {}, "deviation": None, "contours": (), "notes": ()}
+        return [done(task, {**entry, "error": reason(error)})]
 
     def failures(self, result: list[Done]) -> int:
         """Number of glyphs that failed."""
-        return sum(done.status == "failed" for done in result)
+        return sum(glyph.status == "failed" for glyph in result)
+
+
+@dataclass(frozen=True)
+class SurveyJob(Job[Task, "list[Comb]"]):
+    """The combs of outlines, for a run's curvature scale; glyphs that fail are reported when they are converted.
+
+    Chunks are small, so that a run over few glyphs uses all workers.
+    """
+
+    side: Side
+    spec: RunSpec
+
+    chunk = 4
+    budget = 1.0
+
+    read = ConvertJob.read
+
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Comb]:
+        """The combs of outlines."""
+        from ...fitting.results import as_glyph
+        from ...writers.svg.curvature_map import combs
+
+        return [comb for outline in contents for comb in combs(as_glyph(outline))]
+
+    def failed(self, task: Task, error: Exception) -> list[Comb]:
+        """None."""
+        return []
+
+
+def corners_of(side: Side, tasks: Sequence[Task]) -> float:
+    """:func:`..outlines.joins.share_of_corners` of the glyphs that can be read, in a worker."""
+    from ...outlines.joins import share_of_corners
+    from ...outlines.outline import Outline
+
+    (read,) = readers(side)
+    return share_of_corners([each for each in read([task.head for task in tasks]) if isinstance(each, Outline)])
+
+
+def convert_font(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec | None = None,
+    *,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> Summary:
+    """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and a gallery.
+
+    An earlier run in the folder with the same options is continued; its other glyphs remain.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        glyphs: names, as :meth:`Source.select` gives them.
+        out: the folder; it is created if it does not exist.
+        spec: how to convert and what to write.
+        jobs: worker processes; None takes all cores, 0 does everything in this process.
+        executor: used instead of worker processes, such as a :class:`.cluster.ClusterExecutor`; it is not closed.
+        restart: remove the files of an earlier run first.
+        observer: called after each chunk of glyphs.
+
+    Raises:
+        OutputError: the folder cannot be written, another run writes to it, or it was made with other options and
+            ``restart`` is not given.
+        GlyphsplineError: the options are out of range.
+    """
+    started = time.perf_counter()
+    spec = spec or RunSpec()
+    require_libraries(spec)
+    with locked(out):
+        record = prepare(source, glyphs, out, spec, restart)
+        finished = record.finished()
+        summary = Summary()
+        # Workers start while the tasks are listed; none do if all glyphs are finished.
+        expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
+        kinds = kinds_for(spec.options, spec.formats)
+        with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
+            tasks = tasks_of(source, glyphs, spec.names)
+            left = [task for task in tasks if task.gid not in finished]
+            job = with_scale(ConvertJob(side_of(source), out.absolute(), spec), source, glyphs, tasks, pool)
+            for part in recorded(job, left, pool, record, out, observer):
+                for glyph in part.result:
+                    summary.time(part.seconds / len(part.tasks), glyph.name)
+            for name in spec.folders if left else ():
+                remove_partials(out / name)
+        gallery = GALLERY in spec.formats
+        concluded = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
+        if left or not concluded or (gallery and not is_whole(out, len(record.where))):
+            conclude(out, record, summary, gallery)
+        else:
+            summary = record.counts
+        if left or not all(path.exists() for path in font_files(source, out, spec)):
+            summary.remarks += write_fonts(source, out, spec)
+    summary.missing = getattr(glyphs, "missing", ())
+    if not spec.options.is_fixed:
+        each_its_em = spec.options.tolerance is None and isinstance(source, SvgDrawings)
+        tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+        summary.aim = "1/1000 em" if each_its_em else f"{tolerance:.3g} units"
+    summary.seconds = time.perf_counter() - started
+    return summary
+
+
+def require_libraries(spec: RunSpec) -> None:
+    """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
+    extras = [format_named(name).extra for name in spec.folders if name not in OF_RUNS]
+    extras += ["parquet"] * ("parquet" in spec.whole) + ["overlaps"] * spec.options.remove_overlaps
+    for extra in filter(None, extras):
+        need(extra)
+
+
+def prepare(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    restart: bool,
+    others: Sequence[Source] = (),
+    axis: str | None = None,
+) -> Record:
+    """Make the folders, and read the record of an earlier run; see :func:`.spec.describe`."""
+    old = None if restart else read_run(out)
+    if old is None:
+        remove_written(out)
+        remove_gallery(out)
+        for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
+            (out / name).unlink(missing_ok=True)
+    elif changed := differences(old, describe(source, spec, glyphs, None, others, axis)):
+        raise OutputError(
+            "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
+        )
+    for name in spec.folders:
+        make_folder(out / name)
+        remove_partials(out / name)
+    remove_partials(out)
+    return read_record(out) if old is not None else Record()
+
+
+def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
+    """A task for each glyph, in glyph index order."""
+    stems = file_names(source.glyph_names, names, source.cmap)
+    unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
+    for code, name in source.cmap.items():
+        if name in unicodes:
+            unicodes[name].append(code)
+    chosen = [(gid, name) for gid, name in enumerate(source.glyph_names) if name in unicodes]
+    return [Task(gid, name, stems[gid], tuple(sorted(unicodes[name]))) for gid, name in chosen]
+
+
+def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:
+    """The job with the run's curvature scale: from the folder's run.json, or computed now. Writes run.json."""
+    old = read_run(job.out)
+    if old is not None:
+        job = replace(job, curvature_scale=old["curvature_scale"])
+    elif MAPS & set(job.spec.formats):
+        chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
+        found = run(SurveyJob(job.side, job.spec), chosen, pool, ordered=True)
+        scale = robust_scale([comb for part in found for comb in part.result]) or 1 / source.metrics.units_per_em
+        job = replace(job, curvature_scale=float(f"{scale:.6g}"))
+    now = describe(source, job.spec, glyphs, job.curvature_scale)
+    if old is None or any(old.get(name) != now[name] for name in REQUEST):
+        write_run(job.out, now)
+    return job
+
+
+def recorded(
+    job: Job[Task, list[Done]],
+    tasks: Sequence[Task],
+    pool: Executor,
+    record: Record,
+    out: Path,
+    observer: Observer | None,
+) -> Iterator[Part[Task, list[Done]]]:
+    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on."""
+    if not tasks:
+        return
+    journal = Journal(out, record)
+    try:
+        for part in run(job, tasks, pool, observer=observer, before=len(record.finished())):
+            journal.add(part.result)
+            yield part
+    finally:
+        journal.close()
+
+
+def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:
+    """Write the manifest with the gallery's page and tables, and count its glyphs in the summary."""
+    gallery = Gallery(out) if with_gallery else None
+    with finish(out, record) as lines:
+        for gid, line in lines:
+            if gid in record.new:
+                glyph = record.new[gid]
+                error = json.loads(line)["error"] if glyph.status == "failed" else None
+                summary.count(glyph.name, glyph.status, error, glyph.facts)
+                row = glyph.row
+            else:
+                summary.add(json.loads(line))
+                row = ""
+            if gallery:
+                gallery.add(row or row_of(json.loads(line)))
+        if gallery:
+            gallery.close(read_run(out) or {})
+
+
+def write_gallery(folder: Path) -> None:
+    """Write ``index.html`` for a run's folder, or for all runs in the folders below it.
+
+    Raises:
+        OutputError: there is no finished run, or one that cannot be read; or a run without the format "gallery". The
+            message has the command that adds it.
+    """
+    is_one = (folder / MANIFEST).is_file()
+    below = [folder] if is_one else sorted(path.parent for path in folder.glob(f"**/{MANIFEST}"))
+    if not below:
+        raise OutputError("holds no finished run, nor do the folders in it", font=str(folder))
+    for path in below:
+        made = read_run(path) or {}
+        drawn: dict[str, str] = next((files for entry in entries_of(path) if (files := entry.get("files"))), {})
+        if drawn and GALLERY not in drawn:
+            words = re.sub(r" --format \S+", "", made.get("command", "glyphspline convert FONT"))
+            words += f" --format {','.join([*drawn, GALLERY])} --out {shlex.quote(str(path))} --restart"
+            raise OutputError(f"was made without the format gallery; add it by: {words}", font=str(path))
+        write_report(path, entries_of(path), made)
+    if not is_one:
+        write_index(folder, [path.relative_to(folder).as_posix() for path in below], f"{len(below)} fonts")
+
+
+def font_files(source: Source, out: Path, spec: RunSpec) -> list[Path]:
+    """The run's files of the formats with one file a font."""
+    stem = (re.sub(r"[^\w-]+", "", source.family)[:50] or "font") + "-spline"
+    return [out / f"{stem}.{name}" for name in spec.whole]
+
+
+def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
+    """Write the formats with one file a font, of all glyphs of the folder's manifest; returns remarks for the summary.
+
+    Raises:
+        OutputError: a file cannot be written, or a stored result cannot be read.
+        GlyphsplineError: the source cannot become such a font.
+    """
+    remarks = []
+    for path in font_files(source, out, spec):
+        glyphs = results_of(source, out, spec)
+        with writing(path):
+            if path.suffix == ".ufo":
+                from ...writers.ufo_folder import write_ufo
+
+                remarks.append(f"{path.name}: {write_ufo(source, glyphs, path)} glyphs")
+            elif path.suffix == ".parquet":
+                from ...writers.parquet import write_table
+
+                with replacing(path) as file:
+                    remarks.append(f"{path.name}: {write_table(source, glyphs, file)} contours")
+            else:
+                remarks.append(_write_font(source, glyphs, path, spec))
+    return remarks
+
+
+def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult]:
+    """The results of a finished run in glyph index order, with empty glyphs and without failed ones."""
+    for entry in entries_of(out):
+        if entry["status"] == "empty":
+            yield GlyphResult(source.outline(entry["glyph"]), spec.options, ())
+        elif RESULTS in entry["files"]:
+            yield stored(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)
+
+
+def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> str:
+    from ...writers.font.font_file import to_font
+
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    data, summary = to_font(source, glyphs, "otf" if path.suffix == ".otf" else "ttf", tolerance=tolerance)
+    write_whole(str(path), data, durable=True)
+    remark = f"{path.name}: {summary.replaced} glyphs replaced"
+    if summary.largest_error is not None:
+        remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
+    remark += f", {summary.extrema} points added at extrema"
+    if summary.beyond:
+        remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
+    return remark

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..engine import Item, Job, Observer, run
-from ..places import Place, sources
+from ..schedule import Place, sources
 
 Glyph = tuple[int, int]
 """The number of a face, and a glyph's index."""

@@ -1,26 +1,46 @@
-"""Glyphs converted in all masters at once, each with its result in a file and a line of the manifest."""
+"""A run over the masters of a variable font, or of single fonts that become one: a variable font or designspace out.
+
+Each glyph's result is a file, and a line of the journal, so that an interrupted run goes on where it was. The fonts are
+written from these files at the end, glyph by glyph: results of a whole CJK font need not fit into memory.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...errors import GlyphsplineError
-from ...files import make_folder, write_whole
+from ...errors import GlyphsplineError, OutputError
+from ...files import make_folder, remove_partials, write_whole, writing
+from ...fitting.convert_masters import MastersResult, check_options
 from ...fitting.options import Options
-from ...types import rounded_up
-from ..engine import Job, reason
-from ..entry import journal_line
-from ..places import Place, sources
-from ..spec import RESULTS
-from .glyphs import Done, Task
+from ...readers import Font, Source
+from ...readers.single_fonts import axis_of
+from ...types import MadeOnDemand, counted, rounded_up
+from ...writers.font.font_glyphs import Flavour
+from ...writers.font.master_deltas import Redrawn
+from ..engine import Job, Observer, reason
+from ..folder import Done, Record, Task, done, finish, locked, recorded_lines
+from ..result_text import stored
+from ..schedule import Place, place_of, sources
+from ..spec import RESULTS, RunSpec, describe, write_run
+from ..summary import CHANGED, NAMED, listed
+from .convert import font_files, prepare, recorded, tasks_of
 
 if TYPE_CHECKING:
-    from ...fitting.convert_masters import MastersContourResult, MastersResult
+    from ...fitting.convert_masters import MastersContourResult
     from ...outlines.masters import Masters
+
+FORMATS = ("ufo", "otf", "ttf")
+"""Formats of a run over masters: a designspace with its UFOs, and variable fonts."""
+
+SHARE = 0.5
+"""Share of the tolerance that the curves may use where quadratics are fitted to them, which take the rest."""
 
 UNMATCHED = "unmatched"
 """The folder of pictures of glyphs whose outlines in single fonts cannot be matched."""
@@ -44,17 +64,24 @@ class MastersJob(Job[Task, list[Done]]):
 
         (task,) = tasks
         result = convert_masters(self._masters(task), self.options)
-        return [_done(task, result, write_whole(f"{self.out}/{_file(task)}", to_text(result)))]
+        file = f"{RESULTS}/{task.stem}.json"
+        size = write_whole(f"{self.out}/{file}", to_text(result))
+        entry = {
+            "status": "ok" if result.contours else "empty", "files": {RESULTS: file}, "masters": len(result.masters),
+            "contours": [_measures(contour) for contour in result.contours], "notes": list(result.notes),
+            "kept": None, "error": None,
+        }  # fmt: skip
+        return [done(task, entry, [size], encode=_encoded)]
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
         """The line of a glyph that has no result; it names the font that is at fault, if that is not the first."""
         others = {str(path): path.name for path, _, _ in self.places[1:]}
         where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
-        return [_done(task, error=f"{where}: {reason(error)}" if where else reason(error))]
-
-    def failures(self, result: list[Done]) -> int:
-        """Number of glyphs that failed."""
-        return sum(done.status == "failed" for done in result)
+        entry: dict[str, Any] = {
+            "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [], "kept": None,
+            "error": f"{where}: {reason(error)}" if where else reason(error),
+        }  # fmt: skip
+        return [done(task, entry, encode=_encoded)]
 
     def _masters(self, task: Task) -> Masters:
         from ...readers.single_fonts import Unmatched, masters_of_fonts
@@ -74,27 +101,7 @@ class MastersJob(Job[Task, list[Done]]):
         return found
 
 
-def _file(task: Task) -> str:
-    return f"{RESULTS}/{task.stem}.json"
-
-
-def _done(task: Task, result: MastersResult | None = None, size: int = 0, error: str | None = None) -> Done:
-    """A glyph's line of the manifest: with its result, or why it has none."""
-    status = "failed" if result is None else ("ok" if result.contours else "empty")
-    line = {
-        "glyph": task.name,
-        "gid": task.gid,
-        "unicodes": [f"U+{code:04X}" for code in task.unicodes],
-        "status": status,
-        "files": {} if result is None else {RESULTS: _file(task)},
-        "masters": None if result is None else len(result.masters),
-        "contours": [] if result is None else [_measures(contour) for contour in result.contours],
-        "notes": [] if result is None else list(result.notes),
-        "kept": None,
-        "error": error,
-    }
-    text = json.dumps(line, ensure_ascii=False)
-    return Done(task.gid, task.name, status, journal_line([] if result is None else [size], text))
+_encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def _measures(contour: MastersContourResult) -> dict[str, Any]:
@@ -111,3 +118,219 @@ def _measures(contour: MastersContourResult) -> dict[str, Any]:
         "new_crossings": contour.new_crossings,
         "collapsed": contour.collapsed,
     }
+
+
+@dataclass
+class MastersSummary:
+    """The summary of a run over masters: of all glyphs of its folder.
+
+    Attributes:
+        glyphs: those that have a result. failed: the others, and why.
+        outside, stopping: glyphs outside the tolerance; and not proven free of cusps.
+        crossing, collapsed: glyphs that cross, or have a contour that lost its area, at a corner of the design space
+            where the source does not.
+        segments, source_segments: of all glyphs. kept: of the segments those that stay as the source has them.
+        bound: largest certified distance; None if there is no contour.
+    """
+
+    glyphs: int = 0
+    failed: dict[str, str] = field(default_factory=dict)
+    outside: list[str] = field(default_factory=list)
+    stopping: list[str] = field(default_factory=list)
+    crossing: list[str] = field(default_factory=list)
+    collapsed: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    segments: int = 0
+    source_segments: int = 0
+    kept: int = 0
+    bound: float | None = None
+    seconds: float = 0.0
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Count one line of the manifest."""
+        if entry["status"] == "failed":
+            self.failed[entry["glyph"]] = entry["error"]
+            return
+        self.glyphs += 1
+        contours = entry["contours"]
+        for contour in contours:
+            self.segments += contour["segments"]
+            self.source_segments += contour["source_segments"]
+            self.kept += contour["source_segments_kept"]
+            self.bound = max(self.bound or 0.0, contour["deviation_bound"])
+        for named, holds in (
+            (self.outside, any(not contour["within_tolerance"] for contour in contours)),
+            (self.stopping, any(not contour["regular"] for contour in contours)),
+            (self.crossing, any(contour["new_crossings"] for contour in contours)),
+            (self.collapsed, any(contour["collapsed"] for contour in contours)),
+        ):
+            named += [entry["glyph"]] * holds
+
+    def facts(self) -> dict[str, Any]:
+        """The summary as JSON data."""
+        return asdict(self)
+
+    def lines(self) -> Iterator[str]:
+        """The lines printed at the end of a run."""
+        head = f"{counted(self.glyphs, 'glyph')} in all masters at once, {counted(self.segments, 'segment')}"
+        head += f" for {self.source_segments} of the source"
+        yield head if self.bound is None else f"{head}, certified within {rounded_up(self.bound, 3):g} units"
+        if self.kept:
+            yield f"{counted(self.kept, 'segment')} of them stay as the source has them: no curve for all masters there"
+        if self.outside:
+            yield f"{counted(len(self.outside), 'glyph')} outside the tolerance: {_few(self.outside)}"
+        if self.stopping:
+            yield f"{counted(len(self.stopping), 'glyph')} not proven free of cusps everywhere: {_few(self.stopping)}"
+        for names, words in ((self.crossing, CHANGED["new_crossings"]), (self.collapsed, CHANGED["collapsed"])):
+            if names:
+                yield f"{words}: {listed(names[:NAMED], len(names))}"
+        for name, error in list(self.failed.items())[:NAMED]:
+            yield f"failed: {name}: {error}"
+        if len(self.failed) > NAMED:
+            yield f"failed: {len(self.failed) - NAMED} more, which the manifest lists"
+        yield from self.remarks
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names[:NAMED]) + (", …" if len(names) > NAMED else "")
+
+
+def convert_font_masters(
+    sources: Sequence[Source],
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    executor: Executor,
+    *,
+    axis: str | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> MastersSummary:
+    """Convert glyphs in all masters, and write variable fonts and a designspace.
+
+    An earlier run in the folder with the same fonts and options is continued; its other glyphs remain.
+
+    Args:
+        sources: a variable font or designspace alone; or, with an ``axis``, the single fonts that become one.
+        glyphs: names in the first of them. out: the folder.
+        spec: its formats are among ``FORMATS``. executor: see :func:`.schedule.workers`.
+        axis: like "wght=300:700", a value for each single font.
+        restart: remove the files of an earlier run first.
+
+    Raises:
+        OutputError: the folder cannot be written, or was made with other options; a format that the font cannot have.
+        GlyphsplineError: options that are not for masters.
+    """
+    began, first = time.perf_counter(), sources[0]
+    _check(sources, spec, axis)
+    if axis is None and "ttf" in spec.formats and isinstance(first, Font):  # its composites stay composites
+        from ...writers.font.variable_font import components
+
+        wanted = list(dict.fromkeys([*glyphs, *components(first, tuple(glyphs))]))
+    else:
+        wanted = list(glyphs)
+    summary = MastersSummary()
+    with locked(out):
+        record = prepare(first, glyphs, out, spec, restart, sources[1:], axis)
+        write_run(out, describe(first, spec, glyphs, None, sources[1:], axis))
+        options = spec.options
+        if "ttf" in spec.formats:
+            options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
+        job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options)
+        finished = record.finished()
+        left = [task for task in tasks_of(first, wanted, spec.names) if task.gid not in finished]
+        for _ in recorded(job, left, executor, record, out, observer):
+            pass
+        remove_partials(out / RESULTS)
+        kept = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
+        with finish(out, record, partial(_with_kept, kept)) as lines:
+            for _, line in lines:
+                summary.add(json.loads(line))
+    summary.seconds = time.perf_counter() - began
+    return summary
+
+
+def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:
+    """A line of the manifest that says why a font has the glyph's old outline."""
+    entry = json.loads(line)
+    return f"{_encoded(entry | {'kept': kept.get(entry['glyph'])})}\n".encode()
+
+
+def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
+    """Raise before the run if its options are not for masters, or a format cannot be written."""
+    font = sources[0]
+    if unknown := [name for name in spec.formats if name not in FORMATS]:
+        raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
+    check_options(spec.options)
+    if axis is not None:
+        axis_of(axis, len(sources))
+        if "otf" in spec.formats:
+            raise OutputError("single fonts become a variable font with quadratic outlines: ask for ttf, or ufo")
+        return
+    for flavour in _flavours(spec):
+        from ...writers.font.variable_font import check_flavour
+
+        if not isinstance(font, Font):
+            raise OutputError("a designspace has no font whose outlines could be replaced: ask for ufo")
+        check_flavour(font, flavour)
+
+
+def _flavours(spec: RunSpec) -> list[Flavour]:
+    return [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
+
+
+def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redrawn]:
+    """The new contours of the folder's glyphs by name, each read from its file when it is asked for."""
+    files = {}
+    for _, _, line in recorded_lines(out, record):
+        entry = json.loads(line)
+        if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
+            files[entry["glyph"]] = entry["files"][RESULTS]
+    return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult)))
+
+
+def redrawn_glyph(result: MastersResult) -> Redrawn:
+    """A result as the writers of variable fonts take it."""
+    contours = result.contours
+    return Redrawn(result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours))
+
+
+def _write_fonts(
+    sources: Sequence[Source],
+    redrawn: Mapping[str, Redrawn],
+    out: Path,
+    spec: RunSpec,
+    summary: MastersSummary,
+    axis: str | None,
+) -> dict[str, str]:
+    """Write the run's fonts; returns why glyphs of them have their old outlines."""
+    source, stays = sources[0], dict[str, str]()
+    tolerance = (1 - SHARE) * spec.options.tolerance_for(source.metrics.units_per_em)
+    paths = {path.suffix[1:]: path for path in font_files(source, out, spec)}
+    for flavour in _flavours(spec):
+        path = paths[flavour]
+        with writing(path):
+            if axis is None:
+                from ...writers.font.variable_font import to_variable_font
+
+                assert isinstance(source, Font)
+                data, facts = to_variable_font(source, redrawn, flavour, tolerance=tolerance, with_contours=False)
+            else:
+                from ...writers.font.new_variable_font import to_new_variable_font
+
+                data, facts = to_new_variable_font(sources, axis, redrawn, tolerance=tolerance, with_contours=False)
+            write_whole(str(path), data, durable=True)
+        remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
+        if facts.largest_distance is not None:
+            remark += f", stored within {rounded_up(facts.largest_distance, 3):g} units of the curves"
+        summary.remarks.append(remark)
+        stays |= facts.left
+    if "ufo" in spec.formats:
+        from ...writers.designspace_folder import write_designspace
+
+        left = write_designspace(source, redrawn, paths["ufo"])
+        summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")
+        stays |= left
+    if stays:
+        summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {_few(list(stays))}; the manifest says why")
+    return stays

@@ -1,24 +1,78 @@
-"""Two fonts compared glyph by glyph: which glyph is which, the workers, and what they find."""
+"""Two fonts compared glyph by glyph: which glyph is which, pairs compared in workers, and what differs."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from ..comparing.difference import PER_EM, Difference
-from ..errors import is_positive, require
-from ..readers import Source
-from .engine import Observer, run
-from .jobs.compare import CompareJob, Pair, Unread
-from .places import Head, side_of
-from .schedule import workers
-from .spec import Limits
+from ...comparing.difference import PER_EM, Difference
+from ...errors import GlyphsplineError, is_positive, require
+from ...readers import Source
+from ..engine import Item, Job, Observer, reason, run
+from ..schedule import Head, Side, readers, side_of, workers
+from ..spec import Limits
 
-FORMAT = 1
-"""Version of the JSON data; it grows when a name changes its meaning."""
+if TYPE_CHECKING:
+    from ...readers.source import OutlineOrError
+
+
+class Pair(NamedTuple):
+    """A glyph of both sources."""
+
+    old: Head
+    new: Head
+
+
+class Unread(NamedTuple):
+    """A glyph that could not be compared: its name in the old font, and why."""
+
+    glyph: str
+    gid: int
+    error: str
+
+
+Found: TypeAlias = "list[Difference | Unread]"
+
+
+@dataclass(frozen=True)
+class CompareJob(Job[Pair, Found]):
+    """Both sources, and the tolerance in units of the old em."""
+
+    old: Side
+    new: Side
+    tolerance: float
+
+    budget = 20_000
+    """Segments of both fonts compared at once."""
+
+    def read(self, tasks: Sequence[Pair]) -> list[Item | Exception]:
+        """The outlines of both glyphs."""
+        old, new = readers(self.old, self.new)
+        return list(map(_item, old([pair.old for pair in tasks]), new([pair.new for pair in tasks])))
+
+    def together(self, tasks: Sequence[Pair], contents: Sequence[Any]) -> Found:
+        """The differences of a batch."""
+        from ...comparing.compare import compare_many
+
+        return [*compare_many([one for one, _ in contents], [other for _, other in contents], self.tolerance)]
+
+    def failed(self, task: Pair, error: Exception) -> Found:
+        """Why a glyph was not compared."""
+        return [Unread(*task.old[:2], reason(error))]
+
+
+def _item(old: OutlineOrError, new: OutlineOrError) -> Item | GlyphsplineError:
+    """Both outlines of a glyph, or why one of them cannot be compared."""
+    most = Limits.segments
+    for which, outline in (("old", old), ("new", new)):
+        if isinstance(outline, GlyphsplineError):
+            return GlyphsplineError(f"{which}: {reason(outline)}")
+        if len(outline.arrays.degrees) > most:
+            return GlyphsplineError(f"{which}: {len(outline.arrays.degrees)} segments, more than the {most} allowed")
+    pair: tuple[Any, Any] = old, new
+    return Item(pair, sum(len(outline.arrays.degrees) for outline in pair))
 
 
 @dataclass(frozen=True)
@@ -81,7 +135,7 @@ class FontDifference:
     def facts(self) -> dict[str, Any]:
         """As JSON data: counts first; differences by glyph index. It does not depend on the number of workers."""
         return {
-            "format": FORMAT,
+            "format": 1,  # grows when a name changes its meaning
             **self.fonts,
             "tolerance": self.tolerance,
             "scale": self.scale,
@@ -173,8 +227,7 @@ def compare_fonts(
         fonts={"old": about(old), "new": about(new)},
     )  # fmt: skip
     job, total = CompareJob(side_of(old), side_of(new), found.tolerance), len(glyphs.pairs)
-    opened = executor or workers(jobs if total else 0, Limits().seconds, expected=total, also=("comparing",))
-    with nullcontext(opened) if executor else opened as pool:
+    with workers(jobs if total else 0, Limits.seconds, ["comparing"], total, executor=executor) as pool:
         for part in run(job, glyphs.pairs, pool, ordered=True, observer=observer):
             for each in part.result:
                 if isinstance(each, Unread):

@@ -1,0 +1,315 @@
+"""The folder of a run: its lock, and the manifest with its journal, by which an interrupted run is resumed.
+
+During a run each finished glyph appends a line to the journal, in any order: the sizes of its files, a tab, its
+manifest line. At the end the manifest is written in glyph index order, and the journal is removed. A truncated line, or
+one whose files are missing or differ in size, is ignored.
+
+Only ``run.json`` and, at the end, the manifest and ``SIZES`` are synced to the disk. A power cut may lose other files;
+``SIZES`` has the sizes of the files of each glyph of the manifest, by which such a loss is found.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import logging
+import os
+import re
+import socket
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from filelock import FileLock, Timeout
+
+from ..errors import OutputError
+from ..files import O_BINARY, make_folder, replacing, sizes, writing
+from ..report.data import encoded
+from .schedule import Head, Side
+from .spec import RunSpec, is_folder
+from .summary import NO_FACTS, Facts, Summary
+
+LOCK = ".lock"
+MANIFEST = "manifest.jsonl"
+JOURNAL = ".journal.jsonl"
+SIZES = ".sizes.txt"
+
+UNSUPPORTED = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
+"""Errors of file systems that know no locks."""
+
+log = logging.getLogger(__name__)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder, which is made if it does not exist: one run at a time writes to it.
+
+    The system holds the lock for the open file, not the file's presence: it ends with the process, however that ends,
+    so a file left by ``kill -9`` locks nothing. On a network drive its server holds it for all machines.
+
+    Raises:
+        OutputError: another run holds it; the message has its process id. Or folder or file cannot be made.
+    """
+    make_folder(folder)
+    path = folder / LOCK
+    lock = FileLock(path, timeout=0)
+    try:
+        lock.acquire()
+    except Timeout:
+        note = "a process that has not yet said which"
+        with suppress(OSError):  # the file may be anybody's
+            text = path.read_bytes()[:200].decode(errors="replace").strip()
+            note = text if text.isprintable() and text else note
+        raise OutputError(f"another run is writing to it: {note}", font=str(folder)) from None
+    except OSError as error:
+        if error.errno not in UNSUPPORTED:
+            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
+        log.warning("%s: its file system has no locks: no other run may write to it now", folder)
+    try:
+        with suppress(OSError):  # Windows: the lock is of the byte written first
+            path.write_text(f"process {os.getpid()} on {socket.gethostname()}\n")
+        yield
+    finally:
+        # Elsewhere than on Windows, once released it may be another run's.
+        for step in (lock.release, path.unlink) if os.name == "nt" else (path.unlink, lock.release):
+            with suppress(OSError):
+                step()
+
+
+class Task(NamedTuple):
+    """One glyph of a run: its index, name, file name without suffix, and code points."""
+
+    gid: int
+    name: str
+    stem: str
+    unicodes: tuple[int, ...]
+
+    @property
+    def head(self) -> Head:
+        """What its outline is read by."""
+        return self.name, self.gid, self.unicodes
+
+
+@dataclass(frozen=True)
+class Output:
+    """What a worker needs to convert glyphs and write their files: the source, the folder, and how."""
+
+    side: Side
+    out: Path
+    spec: RunSpec
+    curvature_scale: float | None = None
+
+
+class Done(NamedTuple):
+    """A finished glyph.
+
+    Attributes:
+        line: of the journal. facts: for the summary. row: of the gallery's table; "" if not made yet.
+    """
+
+    gid: int
+    name: str
+    status: str
+    line: bytes
+    facts: Facts = NO_FACTS
+    row: str = ""
+
+
+def done(
+    task: Task,
+    entry: Mapping[str, Any],
+    sizes: Sequence[int] = (),
+    facts: Facts = NO_FACTS,
+    row: Callable[[Mapping[str, Any]], str] | None = None,
+    encode: Callable[[Any], str] = encoded,
+) -> Done:
+    """A finished glyph with its line of the manifest: the glyph, then ``entry``.
+
+    Args:
+        entry: with status and files. sizes: of the files. row: makes the gallery's row of the whole line.
+    """
+    whole = {"glyph": task.name, "gid": task.gid, "unicodes": [f"U+{code:04X}" for code in task.unicodes], **entry}
+    line = f"{','.join(map(str, sizes))}\t{encode(whole)}\n".encode()
+    return Done(task.gid, task.name, entry["status"], line, facts, row(whole) if row else "")
+
+
+@dataclass
+class Record:
+    """An index of finished glyphs; their lines stay on disk.
+
+    Attributes:
+        where: glyph index to the file and the offset of its line. failed: indices of glyphs that failed.
+        counts: summary of an earlier run's lines. new: glyphs of this run, without their lines.
+        sizes: of the files of each glyph of the manifest, in the journal's format.
+    """
+
+    where: dict[int, tuple[str, int]] = field(default_factory=dict)
+    failed: set[int] = field(default_factory=set)
+    counts: Summary = field(default_factory=Summary)
+    new: dict[int, Done] = field(default_factory=dict)
+    sizes: dict[int, bytes] = field(default_factory=dict)
+
+    def finished(self) -> set[int]:
+        """Glyphs that are not converted again. Glyphs that failed are: the cause may be gone."""
+        return self.where.keys() - self.failed
+
+
+def read_record(out: Path) -> Record:
+    """Read the record of an earlier run from the manifest and journal of a folder."""
+    record = Record()
+    with suppress(FileNotFoundError):
+        line = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
+        found = map(line.fullmatch, (out / SIZES).read_bytes().splitlines())
+        record.sizes = {int(match[1]): match[2] for match in found if match}
+    present: dict[str, dict[str, int]] = {}
+    for name in (MANIFEST, JOURNAL):
+        for offset, lengths, entry in _lines(out / name):
+            gid = entry["gid"]
+            if not _written(out, entry["files"], record.sizes.get(gid) if lengths is None else lengths, present):
+                continue
+            record.where[gid] = (name, offset)
+            record.counts.add(entry)
+            (record.failed.add if entry["status"] == "failed" else record.failed.discard)(gid)
+    return record
+
+
+def _lines(path: Path) -> Iterator[tuple[int, bytes | None, dict[str, Any]]]:
+    """Offset, file sizes (None in a manifest) and parsed content of each whole line of a manifest or journal."""
+    with suppress(FileNotFoundError), open(path, "rb") as file:
+        offset = 0
+        for line in file:
+            head, tab, text = line.rpartition(b"\t")
+            entry = None
+            with suppress(ValueError):  # a truncated line that the next run continued
+                entry = json.loads(text) if line.endswith(b"\n") else None
+            if isinstance(entry, dict) and isinstance(entry.get("gid"), int) and isinstance(entry.get("files"), dict):
+                yield offset, head if tab else None, entry
+            offset += len(line)
+
+
+def _written(out: Path, files: dict[str, str], lengths: bytes | None, present: dict[str, dict[str, int]]) -> bool:
+    """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None.
+
+    ``present``: sizes of files by folder, as far as they are known; folders are added.
+    """
+    there = []
+    for path in files.values():
+        folder, _, name = path.rpartition("/")
+        if folder not in present:
+            present[folder] = sizes(out / folder) if is_folder(folder) else {}
+        there.append(present[folder].get(name))
+    if not (all(there) if lengths is None else lengths == ",".join(map(str, there)).encode()):
+        return False
+    return all(_stored(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
+
+
+def _stored(path: str, size: int) -> bool:
+    """Whether a file's last byte is not 0. Data lost in a power cut may read as zeros; no output file ends with 0."""
+    try:
+        with open(path, "rb", buffering=0) as file:
+            file.seek(size - 1)
+            return file.read(1) not in (b"\0", b"")
+    except OSError:
+        return False
+
+
+def remove_written(out: Path) -> None:
+    """Remove the files listed in the manifest and journal of an earlier run, only inside the folders of formats."""
+    for name in (MANIFEST, JOURNAL):
+        for _, _, entry in _lines(out / name):
+            for path in entry["files"].values():
+                folder, _, file = str(path).partition("/")
+                if is_folder(folder) and file == Path(file).name and not (out / folder).is_symlink():
+                    (out / folder / file).unlink(missing_ok=True)
+
+
+class Journal:
+    """The journal, open for appending. A symbolic link of its name is not followed."""
+
+    def __init__(self, out: Path, record: Record) -> None:
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
+        self.path = out / JOURNAL
+        self.record = record
+        with writing(self.path):
+            self._file = open(os.open(self.path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
+            self._offset = os.fstat(self._file.fileno()).st_size
+            self._write(b"\n")  # ends a truncated line
+
+    def _write(self, data: bytes) -> None:
+        view = memoryview(data)
+        while view:
+            written = self._file.write(view) or 0
+            self._offset += written
+            view = view[written:]
+
+    def add(self, done: list[Done]) -> None:
+        """Record glyphs whose files are written."""
+        at = self._offset
+        for glyph in done:
+            self.record.where[glyph.gid] = (JOURNAL, at)
+            self.record.new[glyph.gid] = glyph._replace(line=b"")
+            at += len(glyph.line)
+        with writing(self.path):
+            self._write(b"".join([glyph.line for glyph in done]))
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def entries_of(out: Path) -> Iterator[dict[str, Any]]:
+    """The entries of a finished folder's manifest, in glyph index order.
+
+    Raises:
+        OutputError: there is no manifest, or a line of it cannot be read.
+    """
+    path = out / MANIFEST
+    try:
+        with open(path, encoding="utf-8") as file:
+            for line in file:
+                yield json.loads(line)
+    except FileNotFoundError:
+        raise OutputError("no manifest: the folder holds no finished run", font=str(path)) from None
+    except ValueError as error:
+        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+
+
+def recorded_lines(out: Path, record: Record) -> Iterator[tuple[int, bytes | None, bytes]]:
+    """Index, sizes of files (None if they are not known) and line of each glyph, in glyph index order."""
+    with ExitStack() as opened:
+        files: dict[str, BinaryIO] = {}
+        for gid in sorted(record.where):
+            name, offset = record.where[gid]
+            if name not in files:
+                files[name] = opened.enter_context(open(out / name, "rb"))
+            files[name].seek(offset)
+            head, tab, line = files[name].readline().rpartition(b"\t")
+            yield gid, head if tab else record.sizes.get(gid), line
+
+
+@contextmanager
+def finish(
+    out: Path, record: Record, changed: Callable[[bytes], bytes] = bytes
+) -> Iterator[Iterator[tuple[int, bytes]]]:
+    """Write manifest and sizes in glyph index order, yielding each glyph's index and line.
+
+    Args:
+        changed: from a line, as it was recorded, to the one that is written.
+
+    The manifest gets its name, and the journal is removed, when the block ends without an error. All other files of
+    the end of a run have to be written inside the block; otherwise an interruption would leave them missing.
+    """
+
+    def written() -> Iterator[tuple[int, bytes]]:
+        for gid, known, recorded in recorded_lines(out, record):
+            line = changed(recorded)
+            manifest.write(line)
+            if known is not None:
+                lengths.write(b"%d\t%s\n" % (gid, known))
+            yield gid, line
+
+    with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
+        yield written()
+    (out / JOURNAL).unlink(missing_ok=True)
