@@ -13,8 +13,8 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
 from ..outlines.sampling_limits import CORNER_ANGLE
 from ..types import FloatArray
-from .joints_along import LEAST
 from .kinks import AxisKinks, Kink, kinks_along
+from .turns import LEAST
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,13 +2,14 @@
 
 A joint that is smooth in every master need not be so between them: the tangents on its two sides are mixed, not their
 directions. Every joint is a row of findings at its worst place; :func:`glyphspline.kinks` shows all rows, and
-:func:`.on_axes.on_axes` takes those that count. Joints are measured by :mod:`.joints_along`.
+:func:`.on_axes.on_axes` takes those that count. The mathematics is in :mod:`.turns`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from typing import Protocol, overload
@@ -18,12 +19,13 @@ import numpy as np
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.sampling_limits import CORNER_ANGLE
-from ..types import FloatArray, IntArray, counted
+from ..types import BoolArray, FloatArray, IntArray, counted
 from .finding import Measured
-from .joints_along import Joints, grid_of, joint_controls, joints_along, turns_of
+from .kinds import KINK
+from .turns import joint_controls, largest_jumps, largest_turns, turns_of
 
-AT_ONCE = 64
-"""Glyphs that are measured in one pass."""
+PROFILE = 96
+"""Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
 
 
 class Source(Protocol):
@@ -110,22 +112,38 @@ class AxisKinks(Sequence[Kink]):
     """All smooth joints of the glyphs along one axis, the largest turn first.
 
     Attributes:
-        axis: which axis. axes: of the font. glyphs: name and glyph index of each glyph that was measured.
+        axes: of the font. number: which of them. glyphs: name and glyph index of each glyph that was measured.
         rows: (n,) the joints as findings: the value is the largest turn, the detail what interpolation makes of it.
         at_masters: of each joint (2, P) normalised values of the masters on the axis, and the turns there.
         jumps: (n,) largest relative jumps of curvature, as in :class:`Kink`; jumps_at: user-space values of the axis.
-        profile: (v, 2) user-space values of the axis, ascending, and the largest turn of any joint there; even steps,
-            and where joints turn most.
+        on_grid: largest turn of any joint at each value of :func:`grid_of` the axis.
     """
 
-    axis: DesignAxis
     axes: tuple[DesignAxis, ...]
+    number: int
     glyphs: Sequence[tuple[str, int]]
     rows: Measured
     at_masters: Sequence[FloatArray]
     jumps: FloatArray
     jumps_at: FloatArray
-    profile: FloatArray
+    on_grid: FloatArray
+
+    @property
+    def axis(self) -> DesignAxis:
+        """Which axis."""
+        return self.axes[self.number]
+
+    @cached_property
+    def profile(self) -> FloatArray:
+        """(v, 2) user-space values of the axis, ascending, and the largest turn of any joint there.
+
+        Even steps, and where joints turn most.
+        """
+        grid = np.array([self.axis.user(x) for x in grid_of(self.axis).tolist()])
+        at = self.rows.locations[:, self.number]
+        above = self.turns > np.interp(at, grid, self.on_grid)  # where its largest turn lies between the grid's values
+        profile = np.column_stack([np.append(grid, at[above]), np.append(self.on_grid, self.turns[above])])
+        return profile[np.argsort(profile[:, 0], kind="stable")]
 
     @property
     def joints(self) -> IntArray:
@@ -194,16 +212,17 @@ class AxisKinks(Sequence[Kink]):
     @classmethod
     def joined(cls, parts: Sequence[AxisKinks]) -> AxisKinks:
         """The joints of all parts along their axis, as if their glyphs had been measured at once."""
-        first = parts[0]
-        before = np.cumsum([0, *(len(part.glyphs) for part in parts[:-1])]).tolist()
-        rows = [part.rows._replace(glyphs=part.rows.glyphs + n) for part, n in zip(parts, before, strict=True)]
-        grid = users_of_grid(first.axis)  # a profile has its grid's values before others at the same place
-        return _sorted(
-            first.axes, [axis.tag for axis in first.axes].index(first.axis.tag),
-            [glyph for part in parts for glyph in part.glyphs], Measured.joined(rows, len(first.axes)),
-            [item for part in parts for item in part.at_masters], np.concatenate([part.jumps for part in parts]),
-            np.concatenate([part.jumps_at for part in parts]),
-            [part.profile[np.searchsorted(part.profile[:, 0], grid), 1] for part in parts],
+        first, glyphs, rows = parts[0], list[tuple[str, int]](), []
+        for part in parts:
+            rows.append(part.rows._replace(glyphs=part.rows.glyphs + len(glyphs)))
+            glyphs += part.glyphs
+        every = Measured.joined(rows, len(first.axes))
+        order = np.argsort(-every.numbers[:, 1], kind="stable")
+        at_masters = [item for part in parts for item in part.at_masters]
+        jumps, jumps_at = (np.concatenate(each) for each in zip(*((p.jumps, p.jumps_at) for p in parts), strict=True))
+        return cls(
+            first.axes, first.number, glyphs, every.chosen(order), [at_masters[k] for k in order], jumps[order],
+            jumps_at[order], np.max([part.on_grid for part in parts], axis=0),
         )  # fmt: skip
 
     def __repr__(self) -> str:
@@ -280,7 +299,7 @@ def kinks(
 
 def kinks_along(
     glyphs: Iterable[Masters], axes: tuple[DesignAxis, ...], location: Mapping[str, float], chosen: Sequence[int],
-    corner_angle: float, at_once: int = AT_ONCE,
+    corner_angle: float, at_once: int = 64,
 ) -> list[AxisKinks]:  # fmt: skip
     """The smooth joints of glyphs along the ``chosen`` of a font's axes, by their numbers.
 
@@ -288,19 +307,18 @@ def kinks_along(
         glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
         location: user-space values of the other axes. at_once: number of glyphs that are measured in one pass.
     """
-    parts: list[list[AxisKinks]] = [[] for _ in chosen]
+    none = np.zeros(0)
+    parts = [
+        [AxisKinks(axes, k, [], Measured.joined((), len(axes)), [], none, none, np.zeros(len(grid_of(axes[k]))))]
+        for k in chosen
+    ]
     each = iter(glyphs)
     while batch := list(islice(each, at_once)):
-        axes, base = batch[0].axes, batch[0].normalised(location)
-        joints = [Joints(item, corner_angle) for item in batch]
-        names = [(item.name, item.gid) for item in batch]
+        base = batch[0].normalised(location)
+        joints = [_smooth_joints(masters, corner_angle) for masters in batch]
         for k, part in zip(chosen, parts, strict=True):
-            part.append(_sorted(axes, k, names, *joints_along(joints, k, base)))
-    empty: FloatArray = np.zeros(0)
-    return [
-        AxisKinks.joined(part) if part else _sorted(axes, k, [], Measured.joined((), len(axes)), [], empty, empty, [])
-        for k, part in zip(chosen, parts, strict=True)
-    ]
+            part.append(_joints_along(batch, joints, k, base))
+    return [AxisKinks.joined(part[1:] or part) for part in parts]
 
 
 def tags_of(source: Source, axis: str | None = None) -> list[str]:
@@ -319,32 +337,98 @@ def tags_of(source: Source, axis: str | None = None) -> list[str]:
 
 def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
     """(v,) the turn of a kink's joint, in degrees without sign, at (v,) user-space values of its axis."""
-    tags = [axis.tag for axis in masters.axes]
-    at = np.tile(masters.normalised(kink.location), (len(values), 1))
-    axis = tags.index(kink.axis)
-    at[:, axis] = [masters.axes[axis].normalised(float(value)) for value in values]
+    axis = [axis.tag for axis in masters.axes].index(kink.axis)
+    along = np.array([masters.axes[axis].normalised(float(value)) for value in values])
+    at = _at(masters.normalised(kink.location), axis, along)
     controls = joint_controls(masters.contours[kink.contour])[:, kink.joint]
     turns: FloatArray = np.abs(turns_of(np.tensordot(masters.weights_at(at), controls, axes=1)))
     return turns
 
 
-def _sorted(
-    axes: tuple[DesignAxis, ...], axis: int, glyphs: Sequence[tuple[str, int]], rows: Measured,
-    at_masters: Sequence[FloatArray], jumps: FloatArray, jumps_at: FloatArray, on_grid: Sequence[FloatArray],
-) -> AxisKinks:  # fmt: skip
-    """Joints along an axis, the largest turn first; ``on_grid``: largest turns of parts of them on the grid."""
-    grid = users_of_grid(axes[axis])
-    largest = np.max([np.zeros(len(grid)), *on_grid], axis=0)
-    turns, at = rows.numbers[:, 1], rows.locations[:, axis]
-    above = turns > np.interp(at, grid, largest)  # where a joint's largest turn lies between the grid's values
-    profile = np.column_stack([np.append(grid, at[above]), np.append(largest, turns[above])])
-    order = np.argsort(-turns, kind="stable")
-    return AxisKinks(
-        axes[axis], axes, glyphs, rows.chosen(order), [at_masters[k] for k in order], jumps[order], jumps_at[order],
-        profile[np.argsort(profile[:, 0], kind="stable")],
+def grid_of(axis: DesignAxis) -> FloatArray:
+    """Normalised values of an axis, even in user space, with those where its mapping bends."""
+    users = [*np.linspace(axis.minimum, axis.maximum, PROFILE + 1).tolist(), axis.default]
+    low, high = axis.normalised(axis.minimum), axis.normalised(axis.maximum)
+    bends = [after for _, after in axis.mapping if low <= after <= high]
+    return np.unique([*(axis.normalised(value) for value in users), *bends])
+
+
+def _smooth_joints(masters: Masters, corner_angle: float) -> tuple[FloatArray, IntArray]:
+    """(K, J, 2, 4, 2) a glyph's smooth joints in each master, and (J, 2) contour and segment of each."""
+    controls, places = [np.zeros((len(masters), 0, 2, 4, 2))], [np.zeros((0, 2), dtype=np.int64)]
+    for number, contour in enumerate(masters.contours):
+        controls.append(joint_controls(contour))
+        places.append(np.stack([np.full(len(contour), number), np.arange(len(contour))], axis=1))
+    every = np.concatenate(controls, axis=1)
+    kept = (np.abs(turns_of(every)) < corner_angle).all(axis=0)  # false where there is no direction
+    return every[:, kept], np.concatenate(places)[kept]
+
+
+def _joints_along(
+    glyphs: Sequence[Masters], smooth: Sequence[tuple[FloatArray, IntArray]], axis: int, base: FloatArray
+) -> AxisKinks:
+    """The smooth joints of glyphs along an axis, unsorted; ``base``: their normalised location, but for the axis."""
+    axes, user = glyphs[0].axes, glyphs[0].axes[axis].user
+    ticks = [glyph.ticks(axis) for glyph in glyphs]
+    ends = []  # (T, J, 2, 4, 2) the joints of each glyph at its ticks
+    for glyph, (controls, _), values in zip(glyphs, smooth, ticks, strict=True):
+        ends.append(np.tensordot(glyph.weights_at(_at(base, axis, values)), controls, axes=1))
+    # A row for each joint and each interval of its glyph; those of a joint are neighbours.
+    start = np.concatenate([np.swapaxes(item[:-1], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
+    end = np.concatenate([np.swapaxes(item[1:], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
+    joints = [len(places) for _, places in smooth]
+    intervals = np.repeat([len(values) - 1 for values in ticks], joints)  # of each joint
+    low = np.concatenate([np.tile(values[:-1], count) for values, count in zip(ticks, joints, strict=True)])
+    high = np.concatenate([np.tile(values[1:], count) for values, count in zip(ticks, joints, strict=True)])
+    em = np.repeat(np.repeat([glyph.metrics.units_per_em for glyph in glyphs], joints), intervals)
+    (turns, ways), (jumps, jump_ways) = largest_turns(start, end), largest_jumps(start, end, em)
+    owners, begins = np.repeat(np.arange(len(intervals)), intervals), np.cumsum(intervals) - intervals
+    row, jump_row = (np.lexsort((-values, owners))[begins] for values in (turns, jumps))  # the first largest of each
+    at, jumps_at = low + ways * (high - low), low + jump_ways * (high - low)
+    owners = np.repeat(np.arange(len(glyphs)), joints)
+    between, at_masters = np.empty((len(row), 2)), list[FloatArray]()
+    grid = grid_of(axes[axis])
+    on_grid = np.zeros(len(grid))
+    for g, (glyph, values, at_ticks) in enumerate(zip(glyphs, ticks, ends, strict=True)):
+        on = _masters_on(glyph, axis, _at(base, axis, values))
+        at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
+        between[owners == g] = _around(values[on], at[row][owners == g])
+        k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
+        way = ((grid - values[k]) / (values[k + 1] - values[k]))[:, None, None, None, None]
+        there = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
+        on_grid = np.maximum(on_grid, np.nan_to_num(there).max(axis=1, initial=0.0))
+    made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
+    locations = np.tile([each.user(x) for each, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
+    locations[:, axis] = [user(x) for x in at[row].tolist()]
+    contours, segments = np.concatenate([places for _, places in smooth]).T
+    rows = Measured(
+        owners, contours, segments, np.full(len(row), KINK),
+        np.column_stack([np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0)]),
+        start[row, 0, 0] + ways[row, None] * (end - start)[row, 0, 0], locations,
+        np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
     )  # fmt: skip
+    jumps_at = np.array([user(x) for x in jumps_at[jump_row].tolist()])
+    names = [(glyph.name, glyph.gid) for glyph in glyphs]
+    return AxisKinks(axes, axis, names, rows, at_masters, jumps[jump_row], jumps_at, on_grid)
 
 
-def users_of_grid(axis: DesignAxis) -> FloatArray:
-    """The values of :func:`grid_of` in user space, ascending."""
-    return np.array([axis.user(x) for x in grid_of(axis).tolist()])
+def _at(base: FloatArray, axis: int, values: FloatArray) -> FloatArray:
+    """(v, A) a normalised location with other values (v,) of an axis."""
+    at = np.tile(base, (len(values), 1))
+    at[:, axis] = values
+    return at
+
+
+def _masters_on(masters: Masters, axis: int, at: FloatArray) -> BoolArray:
+    """Which locations along an axis are at a master: at the default, or at the peak of a region that acts there."""
+    peaks = masters.regions[:, axis, 1]
+    acts = (masters.scalars(at)[:, 1:] > 0) & (peaks != 0) & (at[:, axis, None] == peaks)
+    found: BoolArray = acts.any(axis=1) | (at[:, axis] == 0)
+    return found
+
+
+def _around(masters: FloatArray, at: FloatArray) -> FloatArray:
+    """(n, 2) the masters before and behind (n,) places; a place itself where there is none."""
+    bounds = np.concatenate([[-np.inf], masters, [np.inf]])
+    found = np.column_stack([bounds[np.searchsorted(bounds, at, "right") - 1], bounds[np.searchsorted(bounds, at)]])
+    return np.where(np.isfinite(found), found, at[:, None])

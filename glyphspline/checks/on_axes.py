@@ -15,10 +15,10 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .check import measured
 from .finding import Measured
-from .joints_along import joint_controls, turns_of
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
 from .kinks import AxisKinks, kinks_along
 from .segments import rounding_turn
+from .turns import joint_controls, turns_of
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 """Kinds that are told once a contour, wherever on it."""
