@@ -44,7 +44,7 @@ from glyphspline.curves.bezier import as_cubic, evaluate, split
 from glyphspline.matching.match import match_masters
 from glyphspline.outlines.joins import joins
 from glyphspline.outlines.masters import DesignAxis, Masters
-from glyphspline.outlines.sampling_limits import CORNER_ANGLE
+from glyphspline.outlines.sampling import CORNER_ANGLE
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.unmatched import to_unmatched_svg
 

@@ -11,7 +11,7 @@ from ..curves.integrals import integrals
 from ..errors import GlyphsplineError
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Outline
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray
 from .kinks import AxisKinks, Kink, kinks_along
 from .turns import LEAST

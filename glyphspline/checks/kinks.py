@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, Masters
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
 from .finding import Measured
 from .kinds import KINK

@@ -16,7 +16,7 @@ from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_
 from ..outlines.canonical_outlines import canonical_outlines
 from ..outlines.outline import Outline
 from ..outlines.resampling import Resampled, at_vertices, resampled
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
 from .dataset_spec import DatasetSpec

@@ -11,7 +11,7 @@ from ..errors import GlyphsplineError
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ..outlines.places import sampled
-from ..outlines.sampling_limits import MOST_VERTICES
+from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
 from .certified_distance import SHARPNESS, pair_stretches

@@ -16,7 +16,7 @@ from ..errors import GlyphsplineError
 from ..interpolation.polygon import LARGEST, clean_polygon
 from ..interpolation.result import BatchedInterpolation
 from ..outlines.contour_arrays import ContourArrays
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
 from .results import ConvertedContours

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from ..errors import OptionError
 from ..fields import CLOSENESS, CORNERS, METHOD, WRITTEN, check, option, positive, whole
 from ..interpolation.method import Fallback, Method
-from ..outlines.sampling_limits import CORNER_ANGLE, MAX_RATIO, check_sampling
+from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]

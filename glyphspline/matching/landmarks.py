@@ -11,7 +11,7 @@ from ..curves.bezier import evaluate
 from ..curves.cubics import bernstein
 from ..outlines.extrema import extremal_places
 from ..outlines.outline import Contour
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray
 
 STEPS = 16

@@ -12,7 +12,7 @@ from ..curves.comb import end_curvatures
 from ..curves.cubics import turns
 from ..types import BoolArray, FloatArray
 from .outline import Contour, Outline
-from .sampling_limits import CORNER_ANGLE
+from .sampling import CORNER_ANGLE
 
 TANGENT_ANGLE = 0.5
 """Degrees of turn from which a tangent is broken: rounding to whole units turns smooth joins by less."""

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ..errors import GlyphsplineError
-from ..types import FloatArray, IntArray, counted
+from ..types import BoolArray, FloatArray, IntArray, counted
 from .outline import Contour, FontMetrics, Outline
 
 Region: TypeAlias = tuple[tuple[float, float, float], ...]
@@ -118,6 +118,13 @@ class Masters:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "contours", tuple(self.contours))
+
+    @classmethod
+    def of(cls, outline: Outline) -> Masters:
+        """A glyph of a font that is not variable: one master, no axes."""
+        contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
+        head, advances = (outline.name, outline.gid, outline.unicodes), np.array([outline.advance])
+        return cls(*head, contours=contours, advances=advances, metrics=outline.metrics, notes=outline.notes)
 
     def __repr__(self) -> str:
         tags = " ".join([axis.tag for axis in self.axes])
@@ -262,10 +269,26 @@ def _cut(region: Region, ticks: Sequence[Sequence[float]]) -> list[Region]:
     return [tuple(piece) for piece in product(*pieces)]
 
 
-def alone(outline: Outline) -> Masters:
-    """A glyph of a font that is not variable: one master, no axes."""
-    contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
-    return Masters(
-        outline.name, outline.gid, outline.unicodes, contours=contours, advances=np.array([outline.advance]),
-        metrics=outline.metrics, notes=outline.notes,
-    )  # fmt: skip
+def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray, BoolArray]:
+    """A TrueType contour in K masters as quadratics and lines: points on the curve that are implied are made explicit.
+
+    As rasterisers draw it, it begins at its first point; if this is a control point, at the last or midway to it.
+
+    Args:
+        points: (K, n, 2). on: (n,) which of them are on the curve; one between two control points is implied.
+
+    Returns:
+        Points and degrees, as in :class:`MasterContour`; (m,) whether a segment begins at an implied point.
+    """
+    if on[-1] and not on[0]:
+        points, on = np.roll(points, 1, axis=1), np.roll(on, 1)
+    implied = ~on & ~np.roll(on, 1)
+    places = np.arange(len(on)) + np.cumsum(implied)
+    midway = places[implied] - 1
+    kinds = np.zeros(len(on) + len(midway))
+    kinds[places], kinds[midway] = on, -1
+    whole = np.empty((len(points), len(kinds), 2))
+    whole[:, places] = points
+    whole[:, midway] = (points[:, implied] + np.roll(points, 1, axis=1)[:, implied]) / 2
+    starts = np.flatnonzero(kinds)
+    return whole, np.diff([*starts, len(kinds)]), kinds[starts] < 0

@@ -1,4 +1,4 @@
-"""The segments of contours end to end, compiled."""
+"""The segments of contours, compiled: as cubics, without those of no length, in canonical order."""
 
 from __future__ import annotations
 
@@ -41,3 +41,97 @@ def lasting(cubics: FloatArray) -> IntArray:
                 count += 1
                 break
     return found[:count]
+
+
+@compiled
+def keep_lasting(points: FloatArray, degrees: IntArray, coincident: float) -> tuple[int, int, float]:
+    """Leave, at the front of both arrays, what a contour in K masters has without segments of no length.
+
+    Such a segment has all its points within ``coincident``, in x and in y, of the end of the last one kept, in every
+    master.
+
+    Args:
+        points: (K, N, 2) and degrees: (m,), as in :class:`.masters.MasterContour`.
+
+    Returns:
+        The numbers of points and of segments left, 0 if the contour encloses nothing: its points lie on one line in all
+        masters. They are -1 if a coordinate is not finite. The largest distance of a point that was dropped.
+    """
+    K, N, _ = points.shape
+    n = m = first = 0
+    dropped = 0.0
+    for j in range(len(degrees)):
+        end, lasts, away = first + degrees[j], False, 0.0
+        for k in range(K):
+            for i in range(first + 1, end + 1):
+                to = i if i < N else 0
+                x, y = points[k, to, 0] - points[k, n, 0], points[k, to, 1] - points[k, n, 1]
+                lasts = lasts or not (abs(x) <= coincident and abs(y) <= coincident)
+                away = max(away, x * x + y * y)
+        if lasts:
+            for k in range(K):
+                for i in range(1, min(end, N - 1) - first + 1):
+                    points[k, n + i, 0], points[k, n + i, 1] = points[k, first + i, 0], points[k, first + i, 1]
+            degrees[m] = degrees[j]
+            n, m = n + degrees[j], m + 1
+        else:
+            dropped = max(dropped, away)
+        first = end
+    encloses = False
+    for k in range(K):
+        square = far_x = far_y = 0.0
+        for i in range(n):
+            x, y = points[k, i, 0] - points[k, 0, 0], points[k, i, 1] - points[k, 0, 1]
+            if not x * x + y * y < np.inf:
+                return -1, -1, 0.0
+            if x * x + y * y > square:
+                square, far_x, far_y = x * x + y * y, x, y
+        i = 0
+        while not encloses and i < n:
+            x, y = points[k, i, 0] - points[k, 0, 0], points[k, i, 1] - points[k, 0, 1]
+            encloses = abs(x * far_y - y * far_x) > coincident * np.sqrt(square)
+            i += 1
+    return n if encloses else 0, m if encloses else 0, np.sqrt(dropped)
+
+
+@compiled
+def farthest_joint(joints: FloatArray) -> int:
+    """Index of the joint (m, 2) farthest from the mean of all; ties go to the rightmost, then the uppermost."""
+    m = len(joints)
+    x = y = 0.0
+    for j in range(m):
+        x += joints[j, 0]
+        y += joints[j, 1]
+    x, y = x / m, y / m
+    best, reached = 0, -1.0
+    for j in range(m):
+        reach = np.rint(np.hypot(joints[j, 0] - x, joints[j, 1] - y) * 1e6)
+        x_ahead, y_ahead = joints[j, 0] - joints[best, 0], joints[j, 1] - joints[best, 1]
+        if reach > reached or (reach == reached and (x_ahead > 0 or (x_ahead == 0 and y_ahead > 0))):
+            best, reached = j, reach
+    return best
+
+
+@compiled
+def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
+    """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether it was reversed.
+
+    The sign of a sum over the segments' chords decides. It changes with the direction, but not with the start point,
+    nor with shift, rotation or reflection of the contour: the fit does not depend on how the font stores it.
+    """
+    total = 0.0
+    before = np.hypot(cubics[0, 3, 0] - cubics[0, 0, 0], cubics[0, 3, 1] - cubics[0, 0, 1])
+    for j in range(len(cubics)):
+        k = (j + 1) % len(cubics)
+        after = np.hypot(cubics[k, 3, 0] - cubics[k, 0, 0], cubics[k, 3, 1] - cubics[k, 0, 1])
+        total += before * after * (before - after)
+        before = after
+    if not total < 0:
+        return cubics, False
+    return cubics[::-1, ::-1].copy(), True
+
+
+@compiled
+def begun_at(cubics: FloatArray, first: int) -> FloatArray:
+    """A closed chain of cubics (m, 4, 2) from joint ``first`` on."""
+    return np.concatenate((cubics[first:], cubics[:first]))

@@ -1,5 +1,7 @@
 """Designspaces: variable sources, whose masters are UFOs or layers of them, through fontTools' designspaceLib.
 
+Glyphs files are among them: glyphsLib turns one into a designspace with its UFOs.
+
 A glyph may be missing in some of the masters; then it has regions of its own, as its components may have. Between the
 masters it is interpolated by fontTools' model of variations, from which variable fonts are built.
 """
@@ -7,11 +9,11 @@ masters it is interpolated by fontTools' model of variations, from which variabl
 from __future__ import annotations
 
 import hashlib
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -23,13 +25,13 @@ from fontTools.varLib.errors import VariationModelError
 from fontTools.varLib.models import VariationModel, normalizeValue
 
 from ..errors import FontError, GlyphsplineError
+from ..extras import need
 from ..outlines.masters import DesignAxis, Masters, Region, told_apart
 from ..outlines.outline import Outline
 from ..types import FloatArray
-from .opentype.tables import Location, location_within
-from .pens import MAX_COMPONENTS, ContourPen
-from .source import Head, OutlineOrError, Source, attempt, opening
-from .ufo import Ufo, open_ufo, parsed
+from .pens import MAX_COMPONENTS, ContourPen, enter_component
+from .source import Head, Location, Source, parsed
+from .ufo import Ufo
 
 
 @dataclass(frozen=True)
@@ -43,16 +45,16 @@ class _Master:
 
 
 class Designspace(Source):
-    """A designspace at one location; made by :func:`open_designspace`.
+    """A designspace at one location.
 
     Attributes:
         path: the file, as given. location: axis tag to user-space value; empty at the default.
         axes: its axes. family, style, metrics, glyph_names, cmap: those of the default master.
     """
 
-    format = "designspace"
+    format = kind = "designspace"
 
-    def __init__(self, path: Path, location: Location, file: Path | None = None) -> None:
+    def __init__(self, path: Path, location: Location = None, file: Path | None = None) -> None:
         """Open the masters that ``file`` names, which is at ``path`` unless it was made of what is there."""
         self.path, file = path, file or path
         parsed(file.read_bytes())
@@ -65,9 +67,8 @@ class Designspace(Source):
         self.axes = tuple(_axis(axis) for axis in document.axes)
         instances = {item.name: item.getFullUserLocation(document) for item in document.instances if item.name}
         tags = {axis.name: axis.tag for axis in document.axes}
-        named = {name: {tags[axis]: value for axis, value in at.items()} for name, at in instances.items()}
-        self.instances = named
-        self.location = MappingProxyType(location_within(location, self.axes, named, path))
+        self.instances = {n: {tags[axis]: value for axis, value in at.items()} for n, at in instances.items()}
+        self.location = self.clamped(location)
         default = document.findDefault()
         if default is None:
             raise FontError("no master at the default of all axes")
@@ -77,21 +78,17 @@ class Designspace(Source):
             if source.path is None:
                 raise FontError(f"source {number} names no file")
             if source.path not in ufos:
-                ufos[source.path] = open_ufo(source.path)
+                ufos[source.path] = Ufo.opened(source.path)
             ufo, full = ufos[source.path], source.getFullDesignLocation(document)
             at = {axis.tag: _normalised(axis, full[axis.name]) for axis in document.axes}
             name = source.styleName or source.name or Path(source.path).stem
             glyphs = ufo.default_layer if source.layerName is None else ufo.layer(source.layerName)
             name = name if source.layerName is None else f"{name}, layer {source.layerName}"
             self._masters_of_all.append(_Master(name, at, glyphs, frozenset(source.mutedGlyphNames)))
-        self._ufos, self._default = tuple(ufos.values()), ufos[default.path]
-        self.family, self.style = self._default.family, self._default.style
-        self.metrics, self.cmap = self._default.metrics, self._default.cmap
-        self.glyph_names = self._default.glyph_names
+        self._ufos, at_default = tuple(ufos.values()), ufos[default.path]
+        self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
+        self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
         self._components: dict[str, Masters] = {}
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return open_designspace, (self.path, dict(self.location))
 
     @cached_property
     def sha256(self) -> str:
@@ -101,25 +98,20 @@ class Designspace(Source):
             digest.update(ufo.sha256.encode())
         return digest.hexdigest()
 
-    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
-        return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
-
     def _outline(self, head: Head) -> Outline:
         """The glyph at the location, by the pen of all readers: it drops what has no length there."""
         instance, pen = self._masters(head).instance(self.location), ContourPen()
         for contour in instance.contours:
-            contour.draw(pen)
-        pen.finish()
+            pen.contour(contour.points[None], contour.degrees)
         notes = (*instance.notes, *pen.notes)
         return replace(instance, contours=pen.contours, notes=notes, snapped=pen.snapped)
 
     def _masters(self, head: Head) -> Masters:
-        return replace(self._mixed(head.name, ()), name=head.name, gid=head.gid, unicodes=head.unicodes)
+        return replace(self._mixed(head.name, []), name=head.name, gid=head.gid, unicodes=head.unicodes)
 
-    def _mixed(self, name: str, above: tuple[str, ...]) -> Masters:
+    def _mixed(self, name: str, above: list[str | None]) -> Masters:
         """A glyph in its masters and in those of its components."""
-        if name in above:
-            raise GlyphsplineError("components in a loop: " + " > ".join([*above[above.index(name) :], name]))
+        nesting = enter_component(above, name)
         if name in self._components:
             return self._components[name]
         drawn = [(master, *_drawing(master, name)) for master in self._masters_of_all if name in master.glyphs]
@@ -136,8 +128,8 @@ class Designspace(Source):
         names = [part.base for part in drawn[0][1] if part.base is not None]
         if len(names) > MAX_COMPONENTS:
             raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
-        children = {base: self._mixed(base, (*above, name)) for base in dict.fromkeys(names)}
-        regions = [_key(region) for masters in (own, *children.values()) for region in masters.regions]
+        children = {base: self._mixed(base, nesting) for base in dict.fromkeys(names)}
+        regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
         found = replace(own, regions=self._stacked(told_apart(regions)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
         pen = ContourPen(masters=len(found))
@@ -146,7 +138,11 @@ class Designspace(Source):
             points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
             points = np.tensordot(weights, points, axes=1)  # (K, N, 2)
             if part.base is None:
-                _replay(pen, part.operations, points)
+                at = 0
+                for operation, count in part.operations:
+                    getattr(pen, operation)(*[points[:, n].T for n in range(at, at + count)])
+                    at += count
+                pen.closePath()
                 continue
             child = children[part.base]
             of_child = child.weights_at(found.peaks)
@@ -174,7 +170,7 @@ class Designspace(Source):
 class _Part:
     """A contour, as names of a segment pen's operations and their points, or a component of another glyph.
 
-    Of a component the points (3, 2) are the rows of its matrix and its offset. A point of None is one that is implied.
+    Of a component the points (3, 2) are the rows of its matrix and its offset.
     """
 
     operations: tuple[tuple[str, int], ...]
@@ -200,10 +196,14 @@ def _parts(recorded: Sequence[tuple[str, tuple[Any, ...]]]) -> Iterator[_Part]:
         elif operation in ("closePath", "endPath"):
             yield _Part(tuple(operations), points)
             operations, points = [], []
+        elif given[-1] is None:  # quadratics without a point on the curve begin midway between control points
+            (ax, ay), (bx, by) = given[-2], given[0]
+            start = ((ax + bx) / 2, (ay + by) / 2)
+            operations += [("moveTo", 1), (operation, len(given))]
+            points += [start, *given[:-1], start]
         else:
-            implied = given[-1:] == (None,)
-            operations.append(("all implied" if implied else operation, len(given) - implied))
-            points += given[:-1] if implied else given
+            operations.append((operation, len(given)))
+            points += given
 
 
 def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str) -> None:
@@ -220,14 +220,8 @@ def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str)
             raise GlyphsplineError(f"master {name!r} is unlike {default!r}: {words}", contour=number)
 
 
-# What the operations of a segment pen draw.
-KINDS = {
-    "moveTo": "start",
-    "lineTo": "line",
-    "qCurveTo": "quadratic",
-    "curveTo": "cubic",
-    "all implied": "closed quadratic",
-}
+KINDS = {"moveTo": "start", "lineTo": "line", "qCurveTo": "quadratic", "curveTo": "cubic"}
+"""What the operations of a segment pen draw."""
 
 
 def _difference(operations: Sequence[tuple[str, int]], expected: Sequence[tuple[str, int]]) -> str:
@@ -239,23 +233,6 @@ def _difference(operations: Sequence[tuple[str, int]], expected: Sequence[tuple[
     if one == other:
         return f"segment {k - 1} has {count} points, not {expected_count}"
     return f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[other]}"
-
-
-def _replay(pen: ContourPen, operations: Sequence[tuple[str, int]], points: FloatArray) -> None:
-    """Draw a contour of (K, N, 2) points."""
-    at = 0
-    for operation, count in operations:
-        given = [(points[:, n, 0], points[:, n, 1]) for n in range(at, at + count)]
-        at += count
-        if operation == "all implied":
-            pen.qCurveTo(*given, None)
-        else:
-            getattr(pen, operation)(*given)
-    pen.closePath()
-
-
-def _key(region: FloatArray) -> Region:
-    return tuple((low, peak, high) for low, peak, high in region.tolist())
 
 
 def _axis(axis: AxisDescriptor) -> DesignAxis:
@@ -274,16 +251,22 @@ def _normalised(axis: AxisDescriptor, value: float) -> float:
     return float(normalizeValue(value, (low, default, high)))
 
 
-def open_designspace(path: str | Path, location: Location = None) -> Designspace:
-    """Open a designspace file, whose masters are UFOs.
+class GlyphsFile(Designspace):
+    """A Glyphs file at one location, which needs the extra ``sources``.
 
-    Args:
-        path: the file. location: as in :func:`.opentype.font.open_font`.
-
-    Raises:
-        FontError: the file or one of its UFOs cannot be read, there is no such axis or instance, or axes depend on
-            each other.
+    Its UFOs are in a folder among the temporary files, which lasts as long as the source.
     """
-    path = Path(path)
-    with opening(path, "designspace"):
-        return Designspace(path, location)
+
+    format, kind = "Glyphs", "Glyphs file"
+
+    def __init__(self, path: Path, location: Location = None) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="glyphspline-")
+        made = need("sources").build_masters(
+            path, self._folder.name, minimal=True, write_skipexportglyphs=True, designspace_path=None
+        )
+        super().__init__(path, location, Path(made.designspace_path))
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the file's bytes, in hexadecimal."""
+        return hashlib.sha256(self.path.read_bytes()).hexdigest()

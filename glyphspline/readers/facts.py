@@ -11,9 +11,8 @@ from ..extras import has
 from ..outlines.masters import DesignAxis
 from ..outlines.outline import Outline
 from .open import STDIN, is_font, open_source, standard_input
-from .opentype.face import Face, open_faces
-from .opentype.tables import Location
-from .source import Source
+from .opentype.font import open_faces
+from .source import Location, Source
 
 OVERLAP = 1e-5
 """Share of a square em below which the area of an overlap counts as rounding."""
@@ -25,9 +24,9 @@ def file_facts(path: str | Path, face_index: int | None = None, location: Locati
     Raises:
         FontError: as in :func:`open_source`.
     """
+    faces: list[Source]
     if is_font(path):
-        file = standard_input() if str(path) == STDIN else path
-        faces: list[Face | Source] = [*open_faces(file, face_index, location)]
+        faces = [*open_faces(standard_input() if str(path) == STDIN else path, face_index, location)]
     else:
         faces = [open_source(path, face_index or 0, location)]
     return {
@@ -38,9 +37,9 @@ def file_facts(path: str | Path, face_index: int | None = None, location: Locati
     }
 
 
-def face_facts(face: Face | Source) -> dict[str, Any]:
+def face_facts(face: Source) -> dict[str, Any]:
     """The facts of one face: names, metrics, axes, instances, and the numbers of glyphs and characters."""
-    glyphs, characters = face.counts() if isinstance(face, Face) else (len(face.glyph_names), len(face.cmap))
+    glyphs, characters = face.counts()
     return {
         "face_index": face.face_index,
         "family": face.family,

@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, TypeAlias
 from ..errors import FontError
 from .opentype.containers import FORMATS
 from .opentype.font import Font, open_font
-from .opentype.tables import Location
-from .source import opening
+from .source import Location, opening
 
 if TYPE_CHECKING:
-    from .designspace import Designspace
-    from .glyphs_file import GlyphsFile
-    from .svg_drawings import SvgDrawings
+    from .designspace import Designspace, GlyphsFile
+    from .svg import SvgDrawings
     from .ufo import Ufo
 
 AnySource: TypeAlias = "Font | Ufo | Designspace | GlyphsFile | SvgDrawings"
@@ -47,32 +45,25 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     if is_font(path):
         return open_font(_place(path), face_index, location)
     path = _place(path)
-    # Here and not above: a font file needs none of them, and they import a third of fontTools.
-    from .svg_drawings import open_svg
-    from .ufo import open_ufo
-
-    if path.is_dir():
-        is_ufo = (path / "metainfo.plist").exists()
-        if not is_ufo and next(path.glob("*.svg"), None) is None:
-            raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
-        reader = open_ufo if is_ufo else open_svg
-    else:
-        reader = open_svg
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
-    if path.is_file():
-        head = beginning(path)
-        if is_glyphs(head):
-            from .glyphs_file import open_glyphs
+    # Here and not above: a font file needs none of them, and they import a third of fontTools.
+    from .designspace import Designspace, GlyphsFile
+    from .svg import SvgDrawings
+    from .ufo import Ufo
 
-            return open_glyphs(path, location)
-        if b"<designspace" in head:
-            from .designspace import open_designspace
-
-            return open_designspace(path, location)
+    head = b"" if path.is_dir() else beginning(path)
+    if is_glyphs(head):
+        return GlyphsFile.opened(path, location)
+    if b"<designspace" in head:
+        return Designspace.opened(path, location)
     if location:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))
-    return reader(path)
+    if (path / "metainfo.plist").exists():
+        return Ufo.opened(path)
+    if path.is_dir() and next(path.glob("*.svg"), None) is None:
+        raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
+    return SvgDrawings.opened(path)
 
 
 def is_font(path: str | Path) -> bool:
@@ -124,6 +115,6 @@ def standard_input() -> Path:
 
 
 def forget_standard_input() -> None:
-    """Remove the copy of standard input, for a process that ends without the usual ceremony."""
+    """Remove the copy of standard input, for exits that skip atexit handlers."""
     while _kept:
         _kept.pop().cleanup()

@@ -1,4 +1,4 @@
-"""The pens that turn the drawing operations of a glyph into contours, in one master or in several at once."""
+"""The pen that turns the drawing operations of a glyph into contours, in one master or in several at once."""
 
 # The names of a pen's methods are fontTools' own.
 # ruff: noqa: N802, N815
@@ -30,6 +30,18 @@ MAX_SEGMENTS, MAX_COMPONENTS = 200_000, 10_000
 def notes_of(left_out: Sequence[int]) -> tuple[str, ...]:
     """One sentence for each contour that encloses nothing, by its number."""
     return tuple(f"contour {number} left out: it encloses nothing" for number in left_out)
+
+
+def enter_component(nesting: Sequence[str | None], name: str) -> list[str | None]:
+    """The names of a glyph and its components, from the outermost to this one.
+
+    Raises:
+        GlyphsplineError: the component is in a loop.
+    """
+    if name in nesting:
+        loop = [*nesting[nesting.index(name) :], name]
+        raise GlyphsplineError("components in a loop: " + " > ".join(map(str, loop)))
+    return [*nesting, name]
 
 
 class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
@@ -66,7 +78,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     @property
     def contours(self) -> list[Contour]:
         """The contours in the first master."""
-        return [Contour(stack.points[0], stack.degrees) for stack in self.stacks]
+        return [Contour.trusted(stack.points[0], stack.degrees) for stack in self.stacks]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -76,16 +88,13 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     def addComponent(self, glyphName: str, transformation: Any) -> None:
         """Draw another glyph of the set in place; a loop of components, or too many, is an error."""
         self._components += 1
-        if glyphName in self._nesting:
-            loop = [*self._nesting[self._nesting.index(glyphName) :], glyphName]
-            raise GlyphsplineError("components in a loop: " + " > ".join(map(str, loop)))
+        before, self._nesting = self._nesting, enter_component(self._nesting, glyphName)
         if self._components > MAX_COMPONENTS:
             raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
         if self.glyphSet is None or glyphName not in self.glyphSet:
             raise GlyphsplineError(f"component {glyphName!r} does not exist")
-        self._nesting.append(glyphName)
         super().addComponent(glyphName, transformation)
-        self._nesting.pop()
+        self._nesting = before
 
     def _moveTo(self, pt: Any) -> None:
         self.finish()
@@ -112,46 +121,24 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
                 points[:, n, 0], points[:, n, 1] = x, y
         degrees = np.array([*self._degrees, 1], dtype=np.int64)
         self._points, self._degrees = [], []
-        self.contour(points, degrees)
+        self._keep(points, degrees)
 
     _closePath = _endPath = finish
 
     def contour(self, points: FloatArray, degrees: IntArray) -> None:
         """Add a closed contour of (K, N, 2) points and segments of (m,) degrees."""
-        if not np.isfinite(points).all():
+        self._keep(points.copy(), degrees.copy())
+
+    def _keep(self, points: FloatArray, degrees: IntArray) -> None:
+        """Add what is left of a contour, whose arrays are no longer needed."""
+        from ..outlines.segments import keep_lasting  # imports the compiler, which opening does not need
+
+        n, m, distance = keep_lasting(points, degrees, self._coincident)
+        if n < 0:
             raise GlyphsplineError("coordinates that are not finite", contour=self.drawn)
-        points, degrees = self._lasting(points, degrees)
-        if len(degrees) and not all(self._is_flat(master) for master in points):
-            self.stacks.append(MasterContour(points, degrees))
+        self.snapped = max(self.snapped, distance)
+        if n:
+            self.stacks.append(MasterContour(np.ascontiguousarray(points[:, :n]), degrees[:m]))
         else:
             self.left_out.append(self.drawn)
         self.drawn += 1
-
-    def _lasting(self, points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
-        """The contour without segments all of whose points coincide with the end of the last one that is kept."""
-        closed = np.concatenate([points, points[:, :1]], axis=1)
-        starts = np.cumsum(degrees) - degrees
-        kept = np.zeros(len(degrees), dtype=np.bool_)
-        for k in (1, 2, 3):
-            longer = degrees >= k
-            steps = np.abs(closed[:, starts[longer] + k] - closed[:, starts[longer]])
-            kept[longer] |= (steps > self._coincident).any(axis=(0, 2))
-        index, at = np.arange(points.shape[1]), 0
-        for j in range(len(degrees) if not kept[:-1].all() else 0):
-            index[starts[j]] = at
-            steps = closed[:, starts[j] + 1 : starts[j] + degrees[j] + 1] - closed[:, at : at + 1]
-            kept[j] = (np.abs(steps) > self._coincident).any()
-            at = starts[j] + degrees[j] if kept[j] else at
-        if kept.all():
-            return points, degrees
-        for j in np.flatnonzero(~kept).tolist():
-            steps = closed[:, starts[j] + 1 : starts[j] + degrees[j] + 1] - points[:, index[starts[j]], None]
-            self.snapped = max(self.snapped, float(np.hypot(steps[..., 0], steps[..., 1]).max()))
-        return np.ascontiguousarray(points[:, index[np.repeat(kept, degrees)]]), degrees[kept]
-
-    def _is_flat(self, points: FloatArray) -> bool:
-        """Whether all (N, 2) points lie on the line from the first to the farthest."""
-        arms = points - points[0]
-        lengths = np.hypot(arms[:, 0], arms[:, 1])
-        far = arms[lengths.argmax()]
-        return bool(np.abs(arms[:, 0] * far[1] - arms[:, 1] * far[0]).max() <= self._coincident * lengths.max())

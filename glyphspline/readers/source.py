@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import logging
+import math
 from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 from ..errors import FontError, GlyphsplineError
-from ..outlines.masters import DesignAxis, Masters, alone
+from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import FontMetrics, Outline
 from ..types import counted
 from .selection import Request, Selection, select
 
 OutlineOrError: TypeAlias = Outline | GlyphsplineError
+
+Location: TypeAlias = Mapping[str, float] | str | None
+"""A location as an argument: axis tag to user-space value, the name of an instance, or None for the default."""
+
 Read = TypeVar("Read")
+Own = TypeVar("Own", bound="Source")
+
+log = logging.getLogger(__name__)
 
 
 class Head(NamedTuple):
@@ -36,6 +45,7 @@ class Source(ABC):
 
     Attributes:
         path: the file, as given. format: the kind of file.
+        kind: what a file that cannot be read is called in its error.
         face_index: which font of a collection; 0 otherwise. num_faces: number of fonts.
         location: place in the design space, axis tag to user-space value; empty at the default.
         axes: of the design space; empty if there is none. Their mappings are known to :meth:`masters`.
@@ -51,6 +61,7 @@ class Source(ABC):
 
     path: Path
     format: str
+    kind = "font"
     face_index: int = 0
     num_faces: int = 1
     location: Mapping[str, float] = MappingProxyType({})
@@ -71,14 +82,68 @@ class Source(ABC):
         em = f"{self.metrics.units_per_em:g} units per em"
         return f"<{type(self).__name__} {name!r} from {self.path.name!r}{face}{place}: {counts}, {em}>"
 
+    @classmethod
+    def opened(cls: type[Own], path: str | Path, *location: Location) -> Own:
+        """Open a file or folder of this kind, at a location if it has axes.
+
+        Raises:
+            FontError: it cannot be read, is broken, or has no such axis or instance.
+        """
+        path = Path(path)
+        with opening(path, cls.kind):
+            return cls(path, *location)  # type: ignore[call-arg]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self).opened, (self.path, dict(self.location)) if self.axes else (self.path,)
+
     @property
     @abstractmethod
     def sha256(self) -> str:
         """Hash of the bytes read, in hexadecimal."""
 
-    @abstractmethod
+    def counts(self) -> tuple[int, int]:
+        """The numbers of glyphs and of characters."""
+        return len(self.glyph_names), len(self.cmap)
+
+    def clamped(self, asked: Location) -> Mapping[str, float]:
+        """A location within the limits of the axes, in their order.
+
+        Args:
+            asked: axis tag to user-space value, or the name of an instance without regard to case.
+
+        Raises:
+            FontError: there is no such axis or instance, or a value is not finite.
+        """
+        location, known = asked or {}, [axis.tag for axis in self.axes]
+        if isinstance(location, str):
+            named = [place for name, place in self.instances.items() if name.casefold() == location.strip().casefold()]
+            if not named:
+                has = f"it has {', '.join(self.instances)}" if self.instances else "it has none"
+                raise FontError(f"no named instance {asked!r}: {has}")
+            location = named[0]
+        for tag, value in location.items():
+            if tag not in known:
+                has = f"it has {', '.join(known)}" if known else "it is not a variable font"
+                raise FontError(f"no axis {tag!r}: {has}")
+            if not math.isfinite(value):
+                raise FontError(f"axis {tag!r} cannot be at {value}")
+        within = {}
+        for axis in self.axes:
+            if axis.tag in location:
+                wanted = float(location[axis.tag])
+                within[axis.tag] = value = min(max(wanted, axis.minimum), axis.maximum)
+                if value != wanted:
+                    limits = f"{axis.minimum:g} to {axis.maximum:g}"
+                    log.warning("%s: axis %s goes from %s: %g taken for %g", self.path, axis.tag, limits, value, wanted)
+        return MappingProxyType(within)
+
     def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
         """Read glyphs; the result has an error in place of each broken glyph."""
+        return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
+
+    def _outline(self, head: Head) -> Outline:
+        """Read one glyph, where :meth:`_read` is not overridden."""
+        raise NotImplementedError
 
     def outline(self, name: str) -> Outline:
         """Read the outline of a glyph, components decomposed, at the font's location.
@@ -131,13 +196,13 @@ class Source(ABC):
         head = self._head(name)
         if not isinstance(head, Head):
             raise head
-        found = attempt(self.path, head.name, lambda: self._masters(head))
+        found = attempt(self.path, head.name, partial(self._masters, head))
         if isinstance(found, GlyphsplineError):
             raise found
         return found
 
     def _masters(self, head: Head) -> Masters:
-        return alone(self.outline(head.name))
+        return Masters.of(self.outline(head.name))
 
     def _head(self, glyph: str | int) -> Head | FontError:
         if isinstance(glyph, str):
@@ -211,6 +276,23 @@ def attempt(path: Path, name: str, read: Callable[[], Read]) -> Read | Glyphspli
         found = GlyphsplineError(f"cannot be drawn: {reason(error)}", font=str(path), glyph=name)
         found.__cause__ = error
         return found
+
+
+def parsed(document: bytes) -> Any:
+    """Parse an XML document and return its root. Entities are refused: they can expand without bound or read files.
+
+    Raises:
+        GlyphsplineError: the document declares entities, or is not XML.
+    """
+    from defusedxml.common import DefusedXmlException
+    from defusedxml.ElementTree import fromstring
+
+    try:
+        return fromstring(document)
+    except DefusedXmlException as error:
+        raise GlyphsplineError("its XML declares entities, which are refused") from error
+    except SyntaxError as error:
+        raise GlyphsplineError(f"not well-formed XML: {error}") from error
 
 
 def first_claims(unicodes: Iterable[tuple[str, Iterable[int]]]) -> Mapping[int, str]:

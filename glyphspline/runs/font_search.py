@@ -11,7 +11,7 @@ from fontTools.ufoLib.filenames import reservedFileNames
 
 from ..errors import GlyphsplineError
 from ..readers.open import STDIN, AnySource, open_source
-from ..readers.opentype.tables import Location
+from ..readers.source import Location
 from .file_names import LONGEST_NAME
 from .remote import fetch_fonts, local_path
 

@@ -14,7 +14,7 @@ from ..curves.bspline import Spline
 from ..curves.integrals import NODES, WEIGHTS
 from ..errors import GlyphsplineError, OptionError, is_positive, require
 from ..outlines.outline import Contour
-from ..outlines.sampling_limits import CORNER_ANGLE
+from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 
 RELATIVE = 2e-7

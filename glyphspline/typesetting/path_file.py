@@ -14,7 +14,7 @@ import numpy as np
 from ..curves.bezier import as_cubic
 from ..errors import GlyphsplineError
 from ..readers.source import opening, reason
-from ..readers.svg_drawings import svg_root
+from ..readers.svg import FLIP, draw_path, path_data, shapes, svg_root
 from ..types import FloatArray
 from .path import Path
 
@@ -44,8 +44,6 @@ def open_path(given: str | FilePath) -> Path:
     if not file:
         file, mark, name = text, "", ""
     with opening(FilePath(file), "drawing"):
-        from ..readers.svg_shapes import FLIP, draw_path, path_data, shapes  # imports SciPy
-
         root = svg_root(FilePath(file))
         found = [(element, matrix) for element, matrix, _ in shapes(root, FLIP, True, Counter(), everywhere=True)]
     names = [element.get("id") for element, _ in found]

@@ -15,7 +15,7 @@ import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.comparing.compare import compare_many
 from glyphspline.curves.bezier import evaluate, split
-from glyphspline.readers.svg_drawings import SvgDrawings, open_svg
+from glyphspline.readers.svg import SvgDrawings
 from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.diff import compare_fonts, pairs_of
 from tests.drawings import result
@@ -240,7 +240,7 @@ def drawings(folder: Path, glyphs: dict[str, int]) -> SvgDrawings:
     for gid, (name, code) in enumerate(glyphs.items()):
         drawn = result(square_contour(10.0 * (code - 60)), name=name, gid=gid, unicodes=(code,))
         (folder / f"{name}.svg").write_text(gs.to_svg(drawn), encoding="utf-8")
-    return open_svg(folder)
+    return SvgDrawings.opened(folder)
 
 
 def test_glyphs_are_paired_by_name_then_by_code_point(tmp_path: Path) -> None:

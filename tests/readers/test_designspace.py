@@ -14,7 +14,7 @@ from fontTools.ufoLib import UFOWriter
 
 from glyphspline import FontError, GlyphsplineError, open_source
 from glyphspline.readers import Source
-from glyphspline.readers.designspace import Designspace, open_designspace
+from glyphspline.readers.designspace import Designspace
 
 Points: TypeAlias = Sequence[tuple[float, float]]
 
@@ -257,7 +257,7 @@ def test_what_is_no_designspace(space: Path, tmp_path: Path) -> None:
         )
     )
     with pytest.raises(FontError, match="entities"):
-        open_designspace(broken)
+        Designspace.opened(broken)
 
 
 GLYPHS = """{

@@ -16,7 +16,7 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
 from glyphspline.readers.opentype.containers import unpacked
-from glyphspline.readers.opentype.fonttools import FontTools
+from glyphspline.readers.opentype.routes import FontTools
 from glyphspline.types import FloatArray
 from tests.places import FONTS
 

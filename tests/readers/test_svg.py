@@ -14,7 +14,7 @@ import glyphspline as gs
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.outlines.outline import Outline
 from glyphspline.readers import Source, open_source
-from glyphspline.readers.svg_drawings import SvgDrawings, open_svg
+from glyphspline.readers.svg import SvgDrawings
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 
@@ -24,7 +24,7 @@ NAMESPACE = 'xmlns="http://www.w3.org/2000/svg"'
 def drawing(tmp_path: Path, content: str, name: str = "A", attributes: str = 'viewBox="0 -800 600 1000"') -> Outline:
     path = tmp_path / f"{name}.svg"
     path.write_text(f"<svg {NAMESPACE} {attributes}>{content}</svg>", encoding="utf-8")
-    return open_svg(path).outline(name)
+    return SvgDrawings.opened(path).outline(name)
 
 
 def area(outline: Outline) -> float:
@@ -123,7 +123,7 @@ def test_what_is_not_filled_or_not_drawn_is_left_out_and_noted(tmp_path: Path) -
     [
         (f'<!DOCTYPE svg [<!ENTITY a "M0 0h9v9z">]><svg {NAMESPACE}><path d="&a;"/></svg>', "entities"),
         (f'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]><svg {NAMESPACE}>&a;</svg>', "entities"),
-        ("<svg", "broken drawing"),
+        ("<svg", "not well-formed XML"),
         ("<html/>", "not an SVG"),
         (f'<svg {NAMESPACE}><path d="M0 0 L x y"/></svg>', "broken drawing"),
         (f'<svg {NAMESPACE}><path d="M"/></svg>', "begins nowhere"),

@@ -12,7 +12,7 @@ from fontTools.ufoLib import UFOWriter
 
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.readers import Source, open_font, open_source
-from glyphspline.readers.ufo import Ufo, open_ufo
+from glyphspline.readers.ufo import Ufo
 from tests.places import FONTS
 
 
@@ -79,11 +79,11 @@ def test_a_ufo_is_a_source(folder: Path) -> None:
     again = pickle.loads(pickle.dumps(ufo))
     assert again.sha256 == ufo.sha256
     (folder / "glyphs" / "square.glif").write_text((folder / "glyphs" / "square.glif").read_text() + "\n")
-    assert open_ufo(folder).sha256 != ufo.sha256
+    assert Ufo.opened(folder).sha256 != ufo.sha256
 
 
 def test_components_are_decomposed_those_of_skipped_glyphs_too(folder: Path) -> None:
-    ufo = open_ufo(folder)
+    ufo = Ufo.opened(folder)
     pair = ufo.outline("pair")
     assert (pair.gid, pair.advance, pair.unicodes) == (0, 700.5, (0x42, 0x43))
     part, square = pair.contours
@@ -94,19 +94,19 @@ def test_components_are_decomposed_those_of_skipped_glyphs_too(folder: Path) -> 
 
 
 def test_cubics_and_quadratics_of_one_contour_are_kept_apart(folder: Path) -> None:
-    (contour,) = open_ufo(folder).outline("curves").contours
+    (contour,) = Ufo.opened(folder).outline("curves").contours
     assert sorted(contour.degrees.tolist()) == [1, 1, 3]  # a qcurve without points off the curve is a line
 
 
 def test_what_is_broken_is_named(folder: Path) -> None:
-    ufo = open_ufo(folder)
+    ufo = Ufo.opened(folder)
     with pytest.raises(GlyphsplineError, match=r"Small\.ufo, glyph 'loop': components in a loop"):
         ufo.outline("loop")
     with pytest.raises(GlyphsplineError, match="'nowhere' does not exist"):
         ufo.outline("lost")
     (folder / "glyphs" / "square.glif").write_text("<glyph")
     with pytest.raises(GlyphsplineError, match="not well-formed"):
-        open_ufo(folder)
+        Ufo.opened(folder)
 
 
 @pytest.mark.parametrize("file", ["glyphs/curves.glif", "fontinfo.plist", "glyphs/contents.plist"])
@@ -118,7 +118,7 @@ def test_entities_are_refused(folder: Path, file: str) -> None:
         head + "?>" + declared + body[body.index("<glyph") if "glif" in file else body.index("<plist") :]
     )
     with pytest.raises(GlyphsplineError, match="entities"):
-        open_ufo(folder).outline("curves")
+        Ufo.opened(folder).outline("curves")
 
 
 def test_a_glyph_outside_the_folder_is_refused(folder: Path) -> None:
@@ -126,7 +126,7 @@ def test_a_glyph_outside_the_folder_is_refused(folder: Path) -> None:
     contents = folder / "glyphs" / "contents.plist"
     contents.write_text(contents.read_text().replace("curves.glif", "../curves.glif"))
     with pytest.raises(FontError, match="outside"):
-        open_ufo(folder)
+        Ufo.opened(folder)
 
 
 def test_folders_that_are_no_ufo(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
-from glyphspline.readers.ufo import open_ufo
+from glyphspline.readers.ufo import Ufo
 from glyphspline.writers.ufo_folder import BACKGROUND, LIB_KEY, write_ufo
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
@@ -34,7 +34,7 @@ def test_outlines_advances_and_characters_are_read_back_equal(
     written: tuple[Path, list[gs.GlyphResult]],
 ) -> None:
     path, results = written
-    ufo = open_ufo(path)
+    ufo = Ufo.opened(path)
     assert ufo.family == "Kouzan Gyosho Subset Spline"
     assert ufo.metrics == results[0].outline.metrics
     assert ufo.glyph_names == tuple(glyph.outline.name for glyph in results)
@@ -106,5 +106,5 @@ def test_only_a_ufo_is_replaced(tmp_path: Path) -> None:
     for _ in range(2):
         write_ufo(source, glyphs, tmp_path / "a.ufo")
     write_ufo(source, glyphs, tmp_path / "b.ufo")
-    assert open_ufo(tmp_path / "a.ufo").sha256 == open_ufo(tmp_path / "b.ufo").sha256
+    assert Ufo.opened(tmp_path / "a.ufo").sha256 == Ufo.opened(tmp_path / "b.ufo").sha256
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.ufo", "b.ufo", "mine"]

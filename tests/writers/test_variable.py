@@ -19,11 +19,11 @@ from fontTools.varLib import build as build_variable
 
 from glyphspline import OutputError, open_font
 from glyphspline.errors import GlyphsplineError
-from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
+from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters, quadratics
 from glyphspline.readers import Font
 from glyphspline.types import FloatArray
 from glyphspline.writers.designspace_folder import unlike_regions, write_designspace
-from glyphspline.writers.font.implied_quadratics import basis, quadratics
+from glyphspline.writers.font.implied_quadratics import basis
 from glyphspline.writers.font.master_deltas import Redrawn, as_drawn, nearest_whole, rounded_deltas
 from glyphspline.writers.font.variable_font import components, to_variable_font
 from tests.outlines.test_masters import composed

@@ -15,8 +15,8 @@ from glyphspline.errors import OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
-from glyphspline.readers.svg_drawings import open_svg
-from glyphspline.readers.ufo import open_ufo
+from glyphspline.readers.svg import SvgDrawings
+from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.runs.spec import RunSpec
@@ -42,9 +42,9 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_all_formats_of_one_run_hold_the_same_outlines(out: Path) -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
-    ufo, otf, ttf = (open_ufo(out / "KouzanGyoshoSubset-spline.ufo"), *(
+    ufo, otf, ttf = (Ufo.opened(out / "KouzanGyoshoSubset-spline.ufo"), *(
         open_font(out / f"KouzanGyoshoSubset-spline.{name}") for name in ("otf", "ttf")))  # fmt: skip
-    drawings = open_svg(out / "svg")
+    drawings = SvgDrawings.opened(out / "svg")
     assert set(ufo.glyph_names) == set(source.select(text=TEXT))
     rows = pq.read_table(out / "KouzanGyoshoSubset-spline.parquet").to_pylist()
     for name in source.select(text="O8B"):

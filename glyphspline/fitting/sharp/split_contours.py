@@ -11,8 +11,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import split
-from ...outlines.canonical import begun_at, directed, farthest_joint
-from ...outlines.segments import lasting
+from ...outlines.segments import begun_at, directed, farthest_joint, lasting
 from ...types import BoolArray, FloatArray, IntArray
 from ..ladders import Search
 from .corners import Joints, find_joints

@@ -8,9 +8,8 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
-from ...outlines.canonical import begun_at, directed, farthest_joint
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import contour_cubics, lasting
+from ...outlines.segments import begun_at, contour_cubics, directed, farthest_joint, lasting
 from ...types import BoolArray, FloatArray, IntArray
 
 TABLE = 16

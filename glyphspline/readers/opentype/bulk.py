@@ -2,10 +2,9 @@
 
 HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
 2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
-the rules of :class:`~glyphspline.readers.pens.ContourPen`. Flat contours are left out and noted: some fonts have them
-in most glyphs, mainly single points that serve as anchors. Unusual glyphs are drawn again with that pen: those with a
-contour that is nearly flat through HarfBuzz, and those whose drawing is incomplete through fontTools, which reports
-what is wrong. HarfBuzz leaves out what it cannot read without an error.
+the rules of :class:`~glyphspline.readers.pens.ContourPen`. Unusual glyphs are drawn again with that pen: those too
+large for the buffer through HarfBuzz, and those whose drawing is incomplete through fontTools, which reports what is
+wrong. HarfBuzz leaves out what it cannot read without an error.
 """
 
 from __future__ import annotations
@@ -25,12 +24,11 @@ from numba import types
 from ...compiled import callback, compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
+from ...outlines.segments import keep_lasting
 from ...types import BoolArray, FloatArray, IntArray
 from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, notes_of
 from ..source import Head, OutlineOrError, attempt, opening
-from .containers import unpacked
-from .face import HarfBuzz
-from .fonttools import FontTools
+from .routes import HarfBuzz
 
 USED, CAPACITY, FIRST = 0, 1, 2
 """Indices in the buffer: of the count of numbers in use, of the capacity, and of the first operation."""
@@ -40,16 +38,6 @@ BUFFER_SIZE = 1 << 18
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
-
-LARGEST = 1e12
-"""Coordinates beyond this go to the pen, which refuses infinities and NaN."""
-
-WIDE, FLAT = 3 * COINCIDENT, COINCIDENT / 3
-"""A contour is certainly not flat if a point is farther than the first of these from the line from the first point to
-the farthest, and certainly flat if no point is farther than the second.
-
-The pen uses ``COINCIDENT``, but may choose another of several farthest points.
-"""
 
 HeadLike: TypeAlias = tuple[str, int, tuple[int, ...]]
 """A :class:`Head`, or the plain tuple that a task holds."""
@@ -143,124 +131,89 @@ def _contours(
     for g in range(count):
         at, stop = places[g], places[g + 1]
         odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
-        first, first_m, first_p, first_left = before[g]
-        c, m, p, left = first + g, first_m, first_p, first_left
-        offsets[c] = starts[c] = 0
-        begin = p
-        drawing = False
-        sx = sy = x = y = 0.0
-        while not odd:
-            kind = int(buffer[at]) if at < stop else 0
-            if kind == 0:
-                if drawing:
-                    if abs(x - sx) > COINCIDENT or abs(y - sy) > COINCIDENT:
-                        points[p, 0], points[p, 1], degrees[m] = x, y, 1
-                        m, p = m + 1, p + 1
-                    else:
-                        snapped[g] = max(snapped[g], np.hypot(x - sx, y - sy))
-                    farthest, fx, fy = 0.0, 0.0, 0.0
-                    for j in range(begin, p):
-                        dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
-                        if dx * dx + dy * dy > farthest:
-                            farthest, fx, fy = dx * dx + dy * dy, dx, dy
-                    length, widest = np.sqrt(farthest), 0.0
-                    for j in range(begin, p):
-                        dx, dy = points[j, 0] - points[begin, 0], points[j, 1] - points[begin, 1]
-                        widest = max(widest, abs(dx * fy - dy * fx))
-                        if widest > WIDE * length:
-                            break
-                    if widest > FLAT * length:
-                        odd = widest <= WIDE * length
-                        c += 1
-                        offsets[c], starts[c] = m - first_m, p - first_p
-                        begin = p
-                    else:
-                        left_out[left] = c - g - first + left - first_left
-                        left += 1
-                        m, p = offsets[c] + first_m, begin
-                if at >= stop:
-                    break
-                sx, sy = x, y = buffer[at + 1], buffer[at + 2]
-                odd = odd or not (abs(x) < LARGEST and abs(y) < LARGEST)
-                drawing = True
-                at += 3
-                continue
-            moves = False
-            for k in range(at + 1, at + 1 + 2 * kind, 2):
-                moves = moves or abs(buffer[k] - x) > COINCIDENT or abs(buffer[k + 1] - y) > COINCIDENT
-                odd = odd or not (abs(buffer[k]) < LARGEST and abs(buffer[k + 1]) < LARGEST)
-            if moves:
-                degrees[m] = kind
+        c, m, p, left = before[g]
+        first = c + g
+        offsets[first] = starts[first] = 0
+        while at < stop and not odd:
+            points[p, 0], points[p, 1] = buffer[at + 1], buffer[at + 2]
+            at += 3
+            q, s = p + 1, m
+            while at < stop and buffer[at] > 0.0:
+                kind = int(buffer[at])
                 for k in range(kind):
-                    points[p + k, 0], points[p + k, 1] = x, y
-                    x, y = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
-                m, p = m + 1, p + kind
-            else:
-                for k in range(at + 1, at + 1 + 2 * kind, 2):
-                    snapped[g] = max(snapped[g], np.hypot(buffer[k] - x, buffer[k + 1] - y))
-            at += 1 + 2 * kind
-        found = c - g - first
-        unusual[g] = odd or (expected[g] >= 0 and found + left - first_left != expected[g])
-        for k in range(4):  # assigning the row would compile 40 functions for the message of an error
-            before[g + 1, k] = before[g, k]
-        if not unusual[g]:
-            before[g + 1, 0], before[g + 1, 1], before[g + 1, 2], before[g + 1, 3] = first + found, m, p, left
+                    points[q + k, 0], points[q + k, 1] = buffer[at + 1 + 2 * k], buffer[at + 2 + 2 * k]
+                degrees[s] = kind
+                at, q, s = at + 1 + 2 * kind, q + kind, s + 1
+            degrees[s] = 1  # the closing line
+            drawn = points[p:q].reshape(1, q - p, 2)
+            more_points, more, distance = keep_lasting(drawn, degrees[m : s + 1], COINCIDENT)
+            snapped[g] = max(snapped[g], distance)
+            odd = more_points < 0
+            if more_points > 0:
+                m, p, c = m + more, p + more_points, c + 1
+                offsets[c + g], starts[c + g] = m - before[g, 1], p - before[g, 2]
+            elif not odd:
+                left_out[left] = c - before[g, 0] + left - before[g, 3]
+                left += 1
+        found = c - before[g, 0] + left - before[g, 3]
+        unusual[g] = odd or (expected[g] >= 0 and found != expected[g])
+        if unusual[g]:
+            c, m, p, left = before[g]
+        before[g + 1, 0], before[g + 1, 1], before[g + 1, 2], before[g + 1, 3] = c, m, p, left
     return points, degrees, offsets, starts, left_out, before, unusual, snapped
 
 
 @compiled
 def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
-    """Number of contours of each glyph by its record, components included.
-
-    ``UNUSUAL`` where a record is broken, or the glyph has too many components or contours, as in a loop.
+    """Number of contours of each glyph by its record, components included; ``UNUSUAL`` where fontTools has to look.
 
     Args:
         glyf: (B,) bytes of the table. loca: where in it records begin, and the end. gids: (k,) of the glyphs.
     """
-    found = np.zeros(len(gids), dtype=np.int64)
-    stack = np.empty(MAX_COMPONENTS + 1, dtype=np.int64)
+    found, pending = np.empty(len(gids), dtype=np.int64), np.empty(MAX_COMPONENTS + 1, dtype=np.int64)
     for k in range(len(gids)):
-        stack[0], pending, components = gids[k], 1, 0
-        while pending > 0 and found[k] >= 0:
-            pending -= 1
-            gid = stack[pending]
-            if gid + 1 >= len(loca):
-                found[k] = UNUSUAL
-                break
-            start, end = loca[gid], min(loca[gid + 1], len(glyf))
-            if loca[gid] >= loca[gid + 1]:
-                continue
-            if start + 10 > end:
-                found[k] = UNUSUAL
-                break
-            contours = glyf[start] << 8 | glyf[start + 1]
-            at = start + 10
-            if contours < 0x8000:
-                if found[k] + contours > MAX_SEGMENTS or at + 2 * contours > end:
-                    found[k] = UNUSUAL
-                    break
-                found[k] += contours
-                last = -1
-                for j in range(at, at + 2 * contours, 2):
-                    point = glyf[j] << 8 | glyf[j + 1]
-                    if point <= last:
-                        found[k] = UNUSUAL
-                        break
-                    last = point
-                continue
-            more = True
-            while more:
-                components += 1
-                if at + 4 > end or components > MAX_COMPONENTS:
-                    found[k] = UNUSUAL
-                    break
-                flags = glyf[at] << 8 | glyf[at + 1]
-                stack[pending] = glyf[at + 2] << 8 | glyf[at + 3]
-                pending += 1
-                at += 8 if flags & 0x01 else 6
-                at += 2 if flags & 0x08 else 4 if flags & 0x40 else 8 if flags & 0x80 else 0
-                more = flags & 0x20 != 0
+        found[k] = _expected_of(glyf, loca, gids[k], pending)
     return found
+
+
+@compiled
+def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
+    """The number for one glyph: ``UNUSUAL`` if a record is broken, or it has too many components, as in a loop."""
+    pending[0], count, components, total = gid, 1, 0, 0
+    while count > 0:
+        count -= 1
+        record = pending[count]
+        if record + 1 >= len(loca):
+            return UNUSUAL
+        at, end = loca[record], min(loca[record + 1], len(glyf))
+        if at >= loca[record + 1]:
+            continue
+        if at + 10 > end:
+            return UNUSUAL
+        contours = glyf[at] << 8 | glyf[at + 1]
+        at += 10
+        more = contours >= 0x8000
+        if not more:
+            total += contours
+            if total > MAX_SEGMENTS or at + 2 * contours > end:
+                return UNUSUAL
+            last = -1
+            for j in range(at, at + 2 * contours, 2):
+                point = glyf[j] << 8 | glyf[j + 1]
+                if point <= last:
+                    return UNUSUAL
+                last = point
+        while more:
+            components += 1
+            if at + 4 > end or components > MAX_COMPONENTS:
+                return UNUSUAL
+            flags = glyf[at] << 8 | glyf[at + 1]
+            pending[count] = glyf[at + 2] << 8 | glyf[at + 3]
+            count += 1
+            at += 8 if flags & 0x01 else 6
+            at += 2 if flags & 0x08 else 4 if flags & 0x40 else 8 if flags & 0x80 else 0
+            more = flags & 0x20 != 0
+    return total
 
 
 def load_compiled() -> None:
@@ -279,7 +232,6 @@ class BulkReader:
     Args:
         path: the file. face_index: which face of a collection.
         location: axis tag to user-space value, within the axes' limits.
-        data: the file's bytes without compression, if they are in memory.
         face: the same face at the location, if it is open.
 
     Raises:
@@ -291,24 +243,15 @@ class BulkReader:
         path: Path,
         face_index: int = 0,
         location: Mapping[str, float] | Sequence[tuple[str, float]] = (),
-        data: bytes | None = None,
         face: HarfBuzz | None = None,
     ) -> None:
-        self._path, self._face_index = path, face_index
+        self._path = path
         with opening(path):
-            self._data = data or _without_compression(path)
-            if face is None:
-                blob = hb.Blob(self._data) if self._data else hb.Blob.from_file_path(str(path))
-                face = HarfBuzz(blob, face_index, dict(location))
-            self._hb = face
+            self._hb = face or HarfBuzz(path, face_index, dict(location))
         self._buffer = np.zeros(BUFFER_SIZE)
         self._buffer[CAPACITY] = BUFFER_SIZE
         self._pointer = _capsule(self._buffer.ctypes.data)
         self._lock = Lock()
-
-    @cached_property
-    def _fonttools(self) -> FontTools:
-        return FontTools(self._data or self._path.read_bytes(), self._face_index, self._hb.normalized)
 
     def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
         """Read glyphs; the result has an error in place of each broken glyph.
@@ -328,17 +271,14 @@ class BulkReader:
             made = _contours(self._buffer, places, expected)
         points, degrees, offsets, starts, left_out, before, unusual, snapped = made
         found: list[OutlineOrError] = []
-        spans = pairwise(before.tolist())
-        glyphs = zip(heads, unusual.tolist(), spans, strict=False)
-        for g, (head, odd, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
-            name, gid, unicodes = head
+        glyphs = zip(heads, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
+        for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
             if odd:
-                found.append(self.draw_again(Head(*head), metrics, int(expected[g])))
+                found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
                 continue
             own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
-            width, moved = float(advance(gid)), float(snapped[g])
             notes = notes_of(left_out[a:b].tolist()) if b > a else ()
-            found.append(Outline(name, gid, unicodes, width, Contours(own), metrics, notes, moved))
+            found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics, notes, moved))
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:
@@ -362,8 +302,8 @@ class BulkReader:
             places.append(used[USED])
         expected = expected[: len(places) - 1]
         if not self._hb.has_records:
-            is_whole = self._hb.is_whole
-            expected[[not is_whole(gid) for gid in gids[: len(expected)]]] = UNUSUAL
+            extents = self._hb.font.get_glyph_extents  # none of a char string with a fault, of which a part is drawn
+            expected[[extents(gid) is None for gid in gids[: len(expected)]]] = UNUSUAL
         return np.array(places, dtype=np.int64), expected
 
     @cached_property
@@ -381,19 +321,12 @@ class BulkReader:
         """Read a glyph with the pen, which checks it and says what is wrong; ``expected`` is its number of contours."""
 
         def read() -> Outline:
-            pen, advance = ContourPen(), self._hb.advance(head.gid)
+            pen, advance = ContourPen(), float(self._hb.font.get_glyph_h_advance(head.gid))
             if expected != UNUSUAL:
                 self._hb.font.draw_glyph_with_pen(head.gid, pen)
                 pen.finish()
             if expected == UNUSUAL or (expected >= 0 and pen.drawn != expected):
-                pen, advance = self._fonttools.draw(head.name)
+                pen, advance = self._hb.fonttools.draw(head.name)
             return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
 
         return attempt(self._path, head.name, read)
-
-
-def _without_compression(path: Path) -> bytes | None:
-    """The bytes of a WOFF or WOFF2 file, decompressed; None for others, which HarfBuzz maps to memory."""
-    with open(path, "rb") as file:
-        compressed = file.read(4) in (b"wOFF", b"wOF2")
-    return unpacked(path.read_bytes()) if compressed else None

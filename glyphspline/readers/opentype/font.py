@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
@@ -11,38 +13,92 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from fontTools.ttLib import TTFont
+from fontTools.ttLib.sfnt import readTTCHeader
 
-from ...outlines.masters import Masters
-from ..source import Head, OutlineOrError, Source, opening
+from ...errors import FontError
+from ...outlines.masters import DesignAxis, Masters
+from ...outlines.outline import FontMetrics
+from ..source import Head, Location, OutlineOrError, Source, opening
 from .containers import FORMATS, unpacked
-from .face import Face, read_file
-from .tables import Location, metrics_of
+from .routes import HarfBuzz
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
     from .variations import Variations
 
+REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
+OUTLINES = ("glyf", "CFF ", "CFF2")
+PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 
-class Font(Face, Source):
+UNICODE_CMAPS = frozenset({(3, 10), (3, 1), *((0, encoding) for encoding in (0, 1, 2, 3, 4, 6))})
+"""Platforms and encodings of the tables of characters that a font is read by."""
+
+
+class Font(Source):
     """One face of a font file at one location; made by :func:`open_font`.
 
-    Attributes: those of :class:`.face.Face`, and
+    Attributes: those of :class:`.Source`, and
+        location: clamped to the axes' limits. Axes not in it are at their default.
+        family, style: from the name table; by default the file's name and "Regular".
+        metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
         num_glyphs: number of glyphs.
         cmap: code point to glyph name, from the best Unicode table; empty if there is none.
     """
 
-    def __init__(self, path: Path, data: bytes, face_index: int, num_faces: int, location: Location) -> None:
+    def __init__(self, path: Path, data: bytes, face_index: int, location: Location, named: bool = True) -> None:
+        """Open a face; its glyphs have no names or characters unless ``named``: those of a CJK face take longest."""
+        if data[:4] not in FORMATS:
+            raise FontError("not a TTF, OTF, TTC, WOFF or WOFF2 file")
+        self.path, self.face_index, self.format, self._data = path, face_index, FORMATS[data[:4]], data
+        self.num_faces = readTTCHeader(BytesIO(data)).numFonts if data[:4] == b"ttcf" else 1
+        if not 0 <= face_index < self.num_faces:
+            raise FontError(f"no face {face_index}: the file has {self.num_faces}, counted from 0")
         self._plain = unpacked(data)
-        super().__init__(path, FORMATS[data[:4]], self._plain, face_index, num_faces, location)
-        self._data = data
-        self.glyph_names = tuple(self._tables.getGlyphOrder())
-        self.num_glyphs = len(self.glyph_names)
-        mapped = (self._tables.getBestCmap() or {}).items()
-        self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
+        self._tables = tables = TTFont(BytesIO(self._plain), fontNumber=face_index, lazy=True)
+        missing = [tag for tag in REQUIRED_TABLES if tag not in tables]
+        if missing:
+            raise FontError(f"a broken font: no table {', '.join(missing)}")
+        if not any(tag in tables for tag in OUTLINES):
+            pictures = [tag.strip() for tag in PICTURES if tag in tables]
+            what = f"only pictures ({', '.join(pictures)})" if pictures else "no table glyf, CFF or CFF2"
+            raise FontError(f"has no outlines: {what}")
+        self.outer = -1 if "glyf" in tables else 1
+        names, variations = tables.get("name"), tables.get("fvar")
+        self.family = (names and names.getBestFamilyName()) or path.stem
+        self.style = (names and names.getBestSubFamilyName()) or "Regular"
+        if variations:
+
+            def name_of(name_id: int) -> str | None:
+                return names.getDebugName(name_id) if names else None
+
+            self.axes = tuple(
+                DesignAxis(a.axisTag, name_of(a.axisNameID) or a.axisTag, a.minValue, a.defaultValue, a.maxValue)
+                for a in variations.axes
+            )
+            instances = [(name_of(instance.subfamilyNameID), instance) for instance in variations.instances]
+            self.instances = {name: dict(instance.coordinates) for name, instance in instances if name}
+        self.location = self.clamped(location)
+        self.metrics = self._default_metrics = metrics_of(tables)
+        self._hb = HarfBuzz(path, face_index, self.location, self._plain)
+        self.shaper = self._hb.font
+        if self.location:
+            extents = self.shaper.get_font_extents("ltr")
+            self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))
+        if named:
+            self.glyph_names = tuple(tables.getGlyphOrder())
+            self.num_glyphs = len(self.glyph_names)
+            mapped = (tables.getBestCmap() or {}).items()
+            self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
+
+    def counts(self) -> tuple[int, int]:
+        """The numbers of glyphs and of characters, without their names."""
+        cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
+        tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
+        return self._hb.face.glyph_count, len(self._hb.face.unicodes) if tables & UNICODE_CMAPS else 0
 
     @cached_property
     def sha256(self) -> str:
@@ -63,13 +119,25 @@ class Font(Face, Source):
     def _variations(self) -> Variations:
         from .variations import Variations
 
-        return Variations(self.tables(), metrics_of(self._tables))
+        return Variations(self.tables(), self.axes, self._default_metrics)
 
     @cached_property
     def _bulk(self) -> BulkReader:
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
-        return BulkReader(self.path, self.face_index, self.location, self._plain, self._hb)
+        return BulkReader(self.path, self.face_index, self.location, self._hb)
+
+
+def metrics_of(tables: TTFont) -> FontMetrics:
+    """Units per em, ascender and descender; the typographic ones if the font says so."""
+    units_per_em = tables["head"].unitsPerEm
+    if units_per_em < 1:
+        raise FontError(f"units per em cannot be {units_per_em}")
+    ascender, descender = tables["hhea"].ascent, tables["hhea"].descent
+    os2 = tables.get("OS/2")
+    if os2 is not None and (os2.fsSelection & (1 << 7) or ascender == descender == 0):
+        ascender, descender = os2.sTypoAscender, os2.sTypoDescender
+    return FontMetrics(float(units_per_em), float(ascender), float(descender))
 
 
 def open_font(path: str | Path, face_index: int = 0, location: Location = None) -> Font:
@@ -95,5 +163,18 @@ def open_font(path: str | Path, face_index: int = 0, location: Location = None) 
     """
     path = Path(path)
     with opening(path):
-        data, num_faces = read_file(path, face_index)
-        return Font(path, data, face_index, num_faces, location)
+        return Font(path, path.read_bytes(), face_index, location)
+
+
+def open_faces(path: str | Path, face_index: int | None = None, location: Location = None) -> Iterator[Font]:
+    """The faces of a font file, or the one that is asked for; names and characters of glyphs are not read.
+
+    Raises:
+        FontError: as in :func:`open_font`.
+    """
+    path = Path(path)
+    with opening(path):
+        data = path.read_bytes()
+        yield (first := Font(path, data, face_index or 0, location, named=False))
+        for index in range(1, first.num_faces if face_index is None else 0):
+            yield Font(path, data, index, location, named=False)

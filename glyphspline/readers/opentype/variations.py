@@ -8,7 +8,7 @@ HarfBuzz would drop and close segments that have no length at one location, and 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,12 +20,11 @@ from fontTools.varLib.iup import iup_delta
 from fontTools.varLib.varStore import VarStoreInstancer
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import Masters, Region, region_scalars, told_apart
+from ...outlines.masters import DesignAxis, Masters, Region, quadratics, region_scalars, told_apart
 from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
-from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen
+from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, enter_component
 from ..source import Head
-from .tables import axes_of
 
 MOST_MASTERS = 500
 """Masters of a glyph beyond which it is refused: fonts of a dozen axes have some 80, and weights take a matrix of their
@@ -36,13 +35,13 @@ class Variations:
     """The masters of all glyphs of a variable font.
 
     Args:
-        tables: of the font; nothing else reads them.
+        tables: of the font; nothing else reads them. axes: of the font, without their mappings.
 
     Raises:
         GlyphsplineError: the font's axes are mapped by an ``avar`` table of version 2.
     """
 
-    def __init__(self, tables: TTFont, metrics: FontMetrics) -> None:
+    def __init__(self, tables: TTFont, axes: Sequence[DesignAxis], metrics: FontMetrics) -> None:
         self._tables, self._metrics = tables, metrics
         segments = {}
         if "avar" in tables:
@@ -51,9 +50,7 @@ class Variations:
                     "its axes depend on each other (avar version 2): locations cannot be told axis by axis"
                 )
             segments = tables["avar"].segments
-        self.axes = tuple(
-            replace(axis, mapping=tuple(sorted(segments.get(axis.tag, {}).items()))) for axis in axes_of(tables)
-        )
+        self.axes = tuple(replace(axis, mapping=tuple(sorted(segments.get(axis.tag, {}).items()))) for axis in axes)
         self._tags = [axis.tag for axis in self.axes]
         self._parts: dict[str, _Parts] = {}
         self._composed = set(tables["VARC"].table.Coverage.glyphs) if "VARC" in tables else set()
@@ -91,63 +88,52 @@ class Variations:
         return tuple(region)
 
     def _from_glyf(self, head: Head) -> Masters:
-        parts = self._parts_of(head.name, ())
+        parts = self._parts_of(head.name, [])
         masters, scalars = self._empty(head, list(parts.deltas))
         stacks: FloatArray = np.tensordot(scalars, np.array([parts.points, *parts.deltas.values()]), axes=1)
         left, right = stacks[:, -2, 0], stacks[:, -1, 0]
         stacks[:, :, 0] -= left[:, None]  # where rasterisers draw it: with the left side bearing as the font has it
         pen, first = ContourPen(masters=len(masters)), 0
         for end in parts.ends:
-            _draw_quadratics(pen, stacks[:, first:end], parts.on[first:end])
+            points, degrees, _ = quadratics(stacks[:, first:end], parts.on[first:end])
+            pen.contour(points, degrees)
             first = end
         return replace(masters, contours=tuple(pen.stacks), advances=right - left, notes=pen.notes)
 
-    def _parts_of(self, name: str, above: tuple[str, ...]) -> _Parts:
+    def _parts_of(self, name: str, above: Sequence[str | None]) -> _Parts:
         """The points and deltas of a glyph of ``glyf``, components decomposed."""
-        if name in above:
-            raise GlyphsplineError("components in a loop: " + " > ".join([*above[above.index(name) :], name]))
-        if name in self._parts:
-            return self._parts[name]
-        parts = self._read_parts(name, (*above, name))
-        if above:  # components are asked for again
-            self._parts[name] = parts
-        return parts
+        nesting = enter_component(above, name)
+        if name not in self._parts:
+            parts = self._read_parts(name, nesting)
+            if not above:
+                return parts
+            self._parts[name] = parts  # components are asked for again
+        return self._parts[name]
 
-    def _read_parts(self, name: str, nesting: tuple[str, ...]) -> _Parts:
-        glyf, (advance, bearing) = self._tables["glyf"], self._tables["hmtx"].metrics[name]
-        glyph = glyf[name]
-        components = glyph.components if glyph.isComposite() else []
-        ends: list[int] = []
-        on: BoolArray = np.zeros(0, dtype=bool)
-        if components:
-            points = np.array([(getattr(part, "x", 0), getattr(part, "y", 0)) for part in components], dtype=np.float64)
-        else:
-            coordinates, last, flags = glyph.getCoordinates(glyf)
-            points = np.array(coordinates, dtype=np.float64).reshape(-1, 2)
-            ends = [end + 1 for end in last]
-            on = np.array([bool(flag & flagOnCurve) for flag in flags], dtype=bool)
-            if any(flag & flagCubic for flag in flags):
-                raise GlyphsplineError("cubic curves in a glyf table, which are not supported")
-        left = getattr(glyph, "xMin", 0) - bearing
-        own = np.vstack([points, [(left, 0), (left + advance, 0)]])
+    def _read_parts(self, name: str, nesting: Sequence[str | None]) -> _Parts:
+        glyf = self._tables["glyf"]
+        coordinates, control = glyf._getCoordinatesAndControls(name, self._tables["hmtx"].metrics)
+        points = np.array(coordinates[:-2], dtype=np.float64)  # without the phantom points of vertical metrics
         deltas: dict[Region, FloatArray] = {}
-        contours = list(range(len(components))) if components else [end - 1 for end in ends]
         for variation in self._gvar.get(name, ()):
             given = variation.coordinates
             if None in given:
-                phantoms = [(left, 0), (left + advance, 0), (0, 0), (0, 0)]
-                given = iup_delta(given, [*map(tuple, points.tolist()), *phantoms], contours)
-            delta = np.array(given, dtype=np.float64)[: len(own)]
+                given = iup_delta(given, coordinates, control.endPts)
+            delta = np.array(given, dtype=np.float64)[: len(points)]
             region = self._region(variation.axes)
             deltas[region] = deltas[region] + delta if region in deltas else delta
-        parts = _Parts(own, deltas, on, tuple(ends))
-        return self._composite(parts, components, nesting) if components else parts
+        if glyf[name].isComposite():
+            return self._composite(_Parts(points, deltas), glyf[name].components, nesting)
+        if any(flag & flagCubic for flag in control.flags):
+            raise GlyphsplineError("cubic curves in a glyf table, which are not supported")
+        on = np.array([bool(flag & flagOnCurve) for flag in control.flags], dtype=bool)
+        return _Parts(points, deltas, on, tuple(end + 1 for end in control.endPts))
 
     @cached_property
     def _gvar(self) -> Any:
         return self._tables["gvar"].variations if "gvar" in self._tables else {}
 
-    def _composite(self, own: _Parts, components: Sequence[Any], nesting: tuple[str, ...]) -> _Parts:
+    def _composite(self, own: _Parts, components: Sequence[Any], nesting: Sequence[str | None]) -> _Parts:
         """The components of a glyph in place; the points of ``own`` are their offsets, and the glyph's metrics."""
         children = [self._parts_of(component.glyphName, nesting) for component in components]
         count = len(components) + sum(child.components for child in children)
@@ -242,28 +228,10 @@ class _Parts:
 
     points: FloatArray
     deltas: dict[Region, FloatArray]
-    on: BoolArray
-    ends: tuple[int, ...]
+    on: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    ends: tuple[int, ...] = ()
     components: int = 0
 
     def layer(self, region: Region | None) -> FloatArray:
         """The points, or the deltas of a region."""
         return self.points if region is None else self.deltas.get(region, np.zeros_like(self.points))
-
-
-def _draw_quadratics(pen: ContourPen, points: FloatArray, on: BoolArray) -> None:
-    """Draw a TrueType contour of (K, n, 2) points; implied points, midway between two control points, made explicit.
-
-    As in rasterisers it begins at its first point; if this is a control point, at the last or midway to it.
-    """
-    if on[-1] and not on[0]:
-        points, on = np.roll(points, 1, axis=1), np.roll(on, 1)
-    before = np.roll(points, 1, axis=1)
-    implied = ~on & ~np.roll(on, 1)
-    places = np.arange(len(on)) + np.cumsum(implied)
-    whole = np.empty((len(points), len(on) + int(implied.sum()), 2))
-    whole[:, places] = points
-    whole[:, places[implied] - 1] = (points[:, implied] + before[:, implied]) / 2
-    is_on = np.ones(whole.shape[1], dtype=bool)
-    is_on[places] = on
-    pen.contour(whole, np.diff([*np.flatnonzero(is_on), len(is_on)]))

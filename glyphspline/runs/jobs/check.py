@@ -23,7 +23,7 @@ from ...checks.kinds import DIRECTION, KINDS, LEVELS, THRESHOLDS, Level, Thresho
 from ...checks.kinks import AxisKinks, AxisNumbers, KinkReport, tags_of
 from ...errors import FontError, GlyphsplineError
 from ...readers import Source
-from ...readers.opentype.tables import Location
+from ...readers.source import Location
 from ...report.findings_page import home_of
 from ...types import BoolArray, IntArray
 from ..engine import Item, Job, Observer, reason, run

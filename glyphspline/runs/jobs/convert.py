@@ -18,7 +18,7 @@ from ...extras import need
 from ...files import make_folder, remove_partials, replacing, write_whole, writing
 from ...fitting.results import GlyphResult
 from ...readers import Source
-from ...readers.svg_drawings import SvgDrawings
+from ...readers.svg import SvgDrawings
 from ...report.data import row_of
 from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
 from ...report.gallery_files import FOLDER as GALLERY

@@ -303,24 +303,3 @@ def spline(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tup
     chosen = controls[np.arange(len(controls))[:, None, None], index]
     at, slope = [np.squeeze(each[..., None, :] @ chosen, axis=2) for each in weights]
     return at, slope
-
-
-def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray, BoolArray]:
-    """A TrueType contour (K, N, 2) with all points on the curve explicit, from the first of them, and its degrees.
-
-    Also (m,) whether a segment begins at an implied point.
-    """
-    after, on_after = np.roll(points, -1, axis=1), np.roll(on, -1)
-    whole: list[FloatArray] = []
-    kinds: list[str] = []
-    for j in range(len(on)):
-        whole.append(points[:, j])
-        kinds.append("on" if on[j] else "off")
-        if not on[j] and not on_after[j]:
-            whole.append((points[:, j] + after[:, j]) / 2)
-            kinds.append("implied")
-    first = min(j for j, kind in enumerate(kinds) if kind != "off")
-    whole, kinds = whole[first:] + whole[:first], kinds[first:] + kinds[:first]
-    starts = [j for j, kind in enumerate(kinds) if kind != "off"]
-    degrees = np.diff([*starts, len(kinds)]).astype(np.int64)
-    return np.stack(whole, axis=1), degrees, np.array([kinds[j] == "implied" for j in starts])

@@ -163,7 +163,7 @@ def _clockwise(new: Redrawn) -> Redrawn:
 def _opened(font: TTFont, path: Path) -> Font:
     file = BytesIO()
     font.save(file, reorderTables=False)
-    return Font(path, file.getvalue(), 0, 1, None)
+    return Font(path, file.getvalue(), 0, None)
 
 
 def _finished(data: bytes, static: Sequence[str]) -> bytes:

@@ -23,9 +23,9 @@ from fontTools.varLib.iup import iup_delta_optimize
 
 from ...curves.cubics import turns
 from ...errors import GlyphsplineError
-from ...outlines.masters import MasterContour, Masters
+from ...outlines.masters import MasterContour, Masters, quadratics
 from ...types import BoolArray, FloatArray, IntArray
-from .implied_quadratics import Arc, fit, quadratics
+from .implied_quadratics import Arc, fit
 from .master_deltas import Redrawn, as_drawn, check_steps, region_key, rounded_deltas
 
 LEVEL = np.radians(0.5)

@@ -13,7 +13,7 @@ from ...curves.curvature import ANGLE, Comb, comb, relative, robust_scale
 from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.sampling_limits import CORNER_ANGLE
+from ...outlines.sampling import CORNER_ANGLE
 from ...types import BoolArray, FloatArray, IntArray
 from .appearance import WHOSE, Whose
 from .colours import SIDES, class_colour

@@ -1,0 +1,107 @@
+"""The two ways to a glyph's outline: HarfBuzz, which is fast, and fontTools, which reports what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import uharfbuzz as hb
+from fontTools.misc.roundTools import otRound
+from fontTools.pens.transformPen import TransformPen
+from fontTools.ttLib import TTFont
+
+from ..pens import ContourPen
+from .containers import unpacked
+
+
+class HarfBuzz:
+    """A face at a location.
+
+    Args:
+        path: the file. face_index: which face of a collection.
+        location: axis tag to user-space value, within the axes' limits.
+        plain: the file's bytes without compression, if they are in memory; else HarfBuzz maps the file.
+
+    Attributes:
+        face, font: HarfBuzz's own objects.
+        normalized: axis tag to normalised coordinate, rounded to 1/16384 as in the format; empty at the default.
+        has_records: whether glyphs are records of the ``glyf`` table; char strings otherwise.
+    """
+
+    def __init__(self, path: Path, face_index: int, location: Mapping[str, float], plain: bytes | None = None) -> None:
+        self._path, self._face_index = path, face_index
+        if plain is None:
+            with open(path, "rb") as file:
+                plain = unpacked(path.read_bytes()) if file.read(4) in (b"wOFF", b"wOF2") else None
+        self._plain = plain
+        self.face = hb.Face(hb.Blob(plain) if plain else hb.Blob.from_file_path(str(path)), face_index)
+        self.font = hb.Font(self.face)
+        self.normalized: dict[str, float] = {}
+        if location:
+            self.font.set_variations(dict(location))
+            tags = [axis.tag for axis in self.face.axis_infos]
+            self.normalized = dict(zip(tags, self.font.get_var_coords_normalized(), strict=False))
+        tags = self.face.table_tags
+        self.has_records = "glyf" in tags and "loca" in tags and "VARC" not in tags
+
+    @cached_property
+    def fonttools(self) -> FontTools:
+        """The other way to the same glyphs."""
+        return FontTools(self._plain or self._path.read_bytes(), self._face_index, self.normalized)
+
+
+class FontTools:
+    """Outlines at a location in normalised coordinates.
+
+    Args:
+        data: the file's bytes without compression. face_index: which face of a collection.
+        normalized: axis tag to normalised coordinate; empty at the default.
+    """
+
+    def __init__(self, data: bytes, face_index: int, normalized: Mapping[str, float]) -> None:
+        self._data, self._face_index, self._normalized = data, face_index, normalized
+        self._failure: Exception | None = None
+
+    @cached_property
+    def _tables(self) -> TTFont:
+        return TTFont(BytesIO(self._data), fontNumber=self._face_index, lazy=True)
+
+    @cached_property
+    def _glyphs(self) -> Any:
+        """The glyph set, made when HarfBuzz fails on a glyph: it takes as long as opening a CJK face.
+
+        Tables that fail as a whole fail once: a count in a hostile one can ask for gigabytes. The error drops its
+        traceback, whose frames would keep them.
+        """
+        if self._failure is None:
+            try:
+                return self._tables.getGlyphSet(location=dict(self._normalized) or None, normalized=True)
+            except Exception as error:
+                self._failure = error
+        raise self._failure.with_traceback(None) from None
+
+    def draw(self, name: str) -> tuple[ContourPen, float]:
+        """Draw the contours of a glyph; also its advance. fontTools' exceptions pass through.
+
+        After one the tables are opened again: fontTools keeps tables and glyphs that are read in part, and the next
+        reading of the same glyph would not find the fault.
+        """
+        try:
+            pen = ContourPen(self._glyphs, name)
+            glyph = self._glyphs[name]
+            glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
+            pen.finish()
+            return pen, float(otRound(glyph.width))  # read last: drawing applies the variations of the width
+        except Exception:
+            self.__dict__.pop("_tables", None)
+            self.__dict__.pop("_glyphs", None)
+            raise
+
+    def _shift(self, name: str) -> float:
+        """How far a composite glyph moves to its left side bearing: fontTools moves only simple glyphs there."""
+        if "glyf" not in self._tables or self._normalized or not self._tables["glyf"][name].isComposite():
+            return 0.0
+        return float(self._glyphs[name].lsb - self._tables["glyf"][name].xMin)

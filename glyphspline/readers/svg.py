@@ -1,0 +1,239 @@
+"""SVG drawings as glyphs: filled paths and shapes, their path data parsed by svgpathtools, transforms applied, y up.
+
+A drawing is a font of one glyph; a folder of drawings is a font of as many glyphs. Drawings written by this package
+contain name, code points and metrics. For others the file's name is the glyph's name (``A.svg``, ``uni9F8D.svg``,
+``龍.svg``), and the view box gives em, ascender and advance.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fontTools import agl
+
+from ..errors import FontError, GlyphsplineError
+from ..outlines.outline import FontMetrics, Outline
+from ..types import FloatArray
+from .pens import ContourPen
+from .source import Head, Source, first_claims, opening, parsed
+
+LARGEST_FILE = 1 << 26
+"""Limit of bytes of one drawing."""
+
+COINCIDENT = 1e-7
+"""Distance in em below which points coincide. Drawings may be in metres as well as in pixels."""
+
+DEEPEST = 200
+"""Limit of nested groups, far above any real drawing."""
+
+ARC = 45.0
+"""Degrees of an elliptic arc that become one cubic, with an error of 4e-6 of the radius."""
+
+NOT_DRAWN = {"defs", "clipPath", "mask", "symbol", "pattern", "marker", "metadata", "title", "desc", "style", "text"}
+LEFT_OUT = {"use": "clones (use)", "image": "images", "text": "text"}
+
+FLIP = np.diag([1.0, -1.0, 1.0])
+
+
+class SvgDrawings(Source):
+    """One SVG file or a folder of them.
+
+    Attributes:
+        path: file or folder, as given. face_index, location: 0 and empty.
+        family, style: the name of the file or folder without suffix, and "Regular".
+        metrics: of the first drawing.
+        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names.
+        cmap: code point to glyph.
+    """
+
+    format, kind = "SVG", "drawing"
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.family, self.style = path, path.stem, "Regular"
+        self._files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
+        outlines = [read_drawing(file) for file in self._files]
+        if not outlines:
+            raise FontError("a folder without SVG drawings")
+        self._outlines: dict[str, Outline] = {}
+        for outline in sorted(outlines, key=lambda outline: outline.gid):
+            if outline.name in self._outlines:
+                raise FontError("two drawings of one name", glyph=outline.name)
+            self._outlines[outline.name] = outline
+        self.glyph_names = tuple(self._outlines)
+        self.metrics = self._outlines[self.glyph_names[0]].metrics
+        self.cmap = first_claims((outline.name, outline.unicodes) for outline in self._outlines.values())
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
+        return hashlib.sha256(b"".join(file.read_bytes() for file in self._files)).hexdigest()
+
+    def _outline(self, head: Head) -> Outline:
+        return replace(self._outlines[head.name], gid=head.gid)
+
+
+def read_drawing(file: Path) -> Outline:
+    """Read one drawing as an outline, y up; its glyph index is ``data-gid``, or 0.
+
+    Raises:
+        GlyphsplineError: the file is too large, not an SVG drawing, or declares entities.
+    """
+    with opening(file, "drawing"):
+        root = svg_root(file)
+        metrics, advance = _metrics(root)
+        pen = ContourPen(coincident=COINCIDENT * metrics.units_per_em)
+        left_out: Counter[str] = Counter()
+        for element, matrix, filled in shapes(root, FLIP, True, left_out):
+            if filled:
+                draw_path(path_data(element), matrix, pen)
+            else:
+                left_out["shapes without fill (strokes are not read)"] += 1
+    name, gid = root.get("data-glyph") or file.stem, int(root.get("data-gid") or 0)
+    unicodes = _unicodes(root.get("data-unicodes"), name)
+    notes = (*pen.notes, *(f"{count} {kind} left out" for kind, count in left_out.items()))
+    return Outline(name, gid, unicodes, advance, pen.contours, metrics, notes, pen.snapped)
+
+
+def svg_root(file: Path) -> Any:
+    """The root element of an SVG document.
+
+    Raises:
+        GlyphsplineError: the file is too large, not an SVG drawing, or declares entities.
+    """
+    if file.stat().st_size > LARGEST_FILE:
+        raise GlyphsplineError(f"more than {LARGEST_FILE >> 20} MiB")
+    root = parsed(file.read_bytes())
+    if root.tag.rpartition("}")[2] != "svg":
+        raise GlyphsplineError("not an SVG drawing")
+    return root
+
+
+def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
+    if written is not None:
+        return tuple(int(code, 16) for code in re.findall(r"U\+([0-9A-Fa-f]{1,6})", written))
+    text = name if len(name) == 1 else agl.toUnicode(name)
+    return (ord(text),) if len(text) == 1 else ()
+
+
+def _metrics(root: Any) -> tuple[FontMetrics, float]:
+    """Metrics and advance from ``data-*`` attributes, else from the view box, else from width and height."""
+    if root.get("data-units-per-em"):
+        keys = ("units-per-em", "ascender", "descender", "advance")
+        em, ascender, descender, advance = (float(root.get(f"data-{key}", "nan")) for key in keys)
+    else:
+        box = [float(part) for part in root.get("viewBox", "").replace(",", " ").split()]
+        left, top, width, height = box if len(box) == 4 else (0, 0, _length(root, "width"), _length(root, "height"))
+        em, ascender, descender, advance = height, -top, -top - height, left + width
+    if not (all(map(math.isfinite, (em, ascender, descender, advance))) and em > 0):
+        raise GlyphsplineError("a view box or metrics that are no numbers, or of no height")
+    return FontMetrics(em, ascender + 0.0, descender + 0.0), advance
+
+
+def _length(root: Any, name: str) -> float:
+    number = re.match(r"\s*([0-9.]+(?:[eE][+-]?[0-9]+)?)", root.get(name, ""))
+    return float(number[1]) if number and not root.get(name).strip().endswith("%") else 1000.0
+
+
+def shapes(
+    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0, everywhere: bool = False
+) -> Iterator[tuple[Any, FloatArray, bool]]:
+    """Each shape with the (3, 3) matrix to font space, and whether it is filled.
+
+    Those that are only defined or not displayed, and lines, are among them with ``everywhere``.
+    """
+    if depth > DEEPEST:
+        raise GlyphsplineError(f"groups nested more than {DEEPEST} deep")
+    if not isinstance(element.tag, str):
+        return  # a comment
+    tag, style = element.tag.rpartition("}")[2], styles(element)
+    if tag in LEFT_OUT:
+        left_out[LEFT_OUT[tag]] += 1
+    if not everywhere and (tag in NOT_DRAWN or style.get("display") == "none"):
+        return
+    if element.get("transform"):
+        from svgpathtools.parser import parse_transform  # imports SciPy, which fonts do not need
+
+        matrix = matrix @ np.asarray(parse_transform(element.get("transform")), dtype=np.float64)
+    filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
+    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline") or (everywhere and tag == "line"):
+        yield element, matrix, filled
+    for child in element:
+        yield from shapes(child, matrix, filled, left_out, depth + 1, everywhere)
+
+
+def styles(element: Any) -> dict[str, str]:
+    """``fill`` and ``display`` from the style attribute, else from the attributes of these names."""
+    found = {name: element.get(name).strip() for name in ("fill", "display") if element.get(name)}
+    for item in (element.get("style") or "").split(";"):
+        name, colon, value = item.partition(":")
+        if colon and name.strip() in ("fill", "display"):
+            found[name.strip()] = value.strip()
+    return found
+
+
+def path_data(element: Any) -> str:
+    """A shape as path data, which begins and runs as SVG 2 has it for the shape."""
+    tag = element.tag.rpartition("}")[2]
+    if tag == "path":
+        return str(element.get("d") or "")
+    if tag == "rect":
+        from svgpathtools.svg_to_paths import rect2pathd  # as above
+
+        return str(rect2pathd(dict(element.attrib)))
+    if tag in ("circle", "ellipse"):
+        cx, cy = float(element.get("cx", 0)), float(element.get("cy", 0))
+        rx, ry = (float(element.get(key)) for key in (("r", "r") if tag == "circle" else ("rx", "ry")))
+        ends = ((cx, cy + ry), (cx - rx, cy), (cx, cy - ry), (cx + rx, cy))
+        return f"M{cx + rx!r},{cy!r}" + "".join([f"A{rx!r},{ry!r} 0 0 1 {x!r},{y!r}" for x, y in ends]) + "Z"
+    if tag == "line":
+        return "M{},{}L{},{}".format(*[element.get(key, 0) for key in ("x1", "y1", "x2", "y2")])
+    points = element.get("points") or ""
+    return f"M{points}{'Z' if tag == 'polygon' else ''}" if points.strip() else ""
+
+
+def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None:
+    """Draw path data subpath by subpath: svgpathtools would join two that meet in a point.
+
+    An open subpath ends with ``endPath``. ``arc``: degrees of an elliptic arc that become one cubic.
+    """
+    from svgpathtools import Arc, parse_path  # as above
+
+    (a, b, x), (c, d, y) = matrix[:2].tolist()
+
+    def placed(points: Sequence[complex]) -> list[tuple[float, float]]:
+        return [(a * p.real + b * p.imag + x, c * p.real + d * p.imag + y) for p in map(complex, points)]
+
+    here = 0j
+    for subpath in re.findall(r"[Mm][^Mm]*", data):
+        numbers = re.findall(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", subpath)
+        if len(numbers) < 2:
+            raise GlyphsplineError("path data that begins nowhere")
+        start = complex(float(numbers[0]), float(numbers[1])) + (here if subpath[0] == "m" else 0)
+        pen.moveTo(placed([start])[0])
+        end = start
+        for segment in parse_path(subpath, current_pos=here):
+            for to in arc_cubics(segment, arc) if isinstance(segment, Arc) else [segment.bpoints()[1:]]:
+                (pen.lineTo, pen.qCurveTo, pen.curveTo)[len(to) - 1](*placed(to))
+            end = segment.end
+        closed = subpath.rstrip(" \t\r\n\f,").endswith(("Z", "z"))
+        (pen.closePath if closed else pen.endPath)()
+        here = start if closed else end
+
+
+def arc_cubics(arc: Any, degrees: float) -> Iterator[list[complex]]:
+    """The three points that each cubic of an elliptic arc adds, one for so many degrees."""
+    pieces = max(1, int(np.ceil(abs(arc.delta) / degrees)))
+    handle = 4 / 3 * np.tan(np.radians(arc.delta) / pieces / 4) / np.radians(arc.delta)
+    for k in range(pieces):
+        t0, t1 = k / pieces, (k + 1) / pieces
+        start, end = arc.point(t0), arc.point(t1)
+        yield [start + handle * arc.derivative(t0), end - handle * arc.derivative(t1), end]
