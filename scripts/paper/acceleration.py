@@ -153,7 +153,6 @@ def acceleration(run: Run) -> None:
         "plain one, and farther from it than that of the frozen solve. Times are not part of the claims and at the "
         "end of the page: a pass costs more, for the mixing and as footpoints jump farther, so that half the passes "
         "are not half the time.",
-        "acceleration",
     )
     run.times["acceleration, us a polygon, one thread"] = times
     run.save(_picture(passes, groups[n][0]), "acceleration", svg=True)

@@ -10,7 +10,7 @@ import glyphspline as gs
 from glyphspline.interpolation.intervals import basis_function
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, GREY, INK, MARKERS, SEED, Run, bare, random_polygons
+from .common import COLOURS, GREY, INK, SEED, Run, bare, draw_series, random_polygons
 from .study import MAX_ITERATIONS, TOLERANCE
 from .theorems import MARGIN, step_factors
 
@@ -52,7 +52,6 @@ def arcs(run: Run) -> None:
         "Random points with tangents at the ends turned by 0.5. The infimum of max W_1 is 5/8. "
         f"Certified: arcs whose bound is below 1 with c = {MARGIN}; inner vertices without an interval (Remark 3) keep "
         "others from it. Variant 3 is proven to converge on closed curves only.",
-        "arcs",
     )
     run.save(_picture(means), "arcs", svg=True)
 
@@ -119,10 +118,7 @@ def circle_deviations() -> dict[str, float]:
 
 def _picture(means: dict[str, dict[str, float]]) -> Figure:
     figure, axes = plt.subplots(1, 2, figsize=(7.4, 2.9), layout="constrained", width_ratios=(1.25, 1))
-    for name, series in means.items():
-        axes[0].plot(
-            [int(n) for n in series], list(series.values()), color=COLOURS[name], marker=MARKERS[name], label=name
-        )
+    draw_series(axes[0], means)
     axes[0].set(xlabel="points of the arc", ylabel="mean iterations", ylim=(0, None))
     axes[0].legend()
     points = random_polygons(6, 1)[0]

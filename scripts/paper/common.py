@@ -121,7 +121,7 @@ class Run:
 
     Attributes:
         out: folder for pictures and claims.json.
-        quick: a small version of everything, for the tests.
+        quick: a small version of everything, for the tests. step: what is being made, as ``--only`` names it.
         fonts: files given for the faces of Figs. 8 and 9, by figure.
         claims, times: as claims.json has them; times are kept apart, since they are never the same twice.
     """
@@ -132,6 +132,7 @@ class Run:
     claims: list[Claim] = field(default_factory=list)
     times: dict[str, Any] = field(default_factory=dict)
     cache: dict[str, Any] = field(default_factory=dict)
+    step: str = ""
 
     def size(self, full: int, quick: int) -> int:
         """How many of something."""
@@ -155,13 +156,12 @@ class Run:
         measured: Any,
         verdict: str,
         note: str,
-        module: str,
         digits: int = 6,
     ) -> None:
         """Record a claim; numbers are rounded to ``digits``, so that the last bits of a machine do not show."""
         if not is_verdict(verdict):
             raise ValueError(f"verdict {verdict!r} of {id}")
-        command = f"python -m scripts.paper --only {module}"
+        command = f"python -m scripts.paper --only {self.step}"
         self.claims.append(Claim(id, source, claim, paper, rounded(measured, digits), verdict, note, command))
 
     def write_claims(self) -> None:
@@ -214,6 +214,13 @@ def progress(run: Run, label: str) -> Iterator[None]:
     yield
     run.times[f"{label}, s"] = time.perf_counter() - start
     print(f"{label}: {run.times[f'{label}, s']:.1f} s", file=sys.stderr, flush=True)
+
+
+def draw_series(axes: Axes, series: dict[str, dict[str, float]], **style: Any) -> None:
+    """A line for each variant, over numbers that are the keys of its values."""
+    for name, values in series.items():
+        x = [int(n) for n in values]
+        axes.plot(x, list(values.values()), color=COLOURS[name], marker=MARKERS[name], label=name, **style)
 
 
 def draw_closed(axes: Axes, points: FloatArray, **style: Any) -> None:

@@ -13,7 +13,7 @@ from glyphspline.interpolation.polygon import lengths
 from glyphspline.types import FloatArray
 
 from .clicking import FONTS
-from .common import COLOURS, MARKERS, SEED, SIDE, Run
+from .common import SEED, SIDE, Run, draw_series
 from .smooth_curves import nearest
 from .study import MAX_ITERATIONS, TOLERANCE
 
@@ -73,7 +73,6 @@ def dimensions(run: Run) -> None:
         "sums, and that a nearest point is nearest; see the [proof](../../docs/proofs.md#any-dimension). Iterations of "
         "variant 2 hardly depend on d; those of variant 3 become fewer, as chords become more even. Their last factor "
         "tends to the one of uniform knots, 2/3.",
-        "dimension",
     )
     run.claim(
         "beyond-masters",
@@ -85,7 +84,6 @@ def dimensions(run: Run) -> None:
         f"The longest contour of a glyph of {FACE}, at {SAMPLED} vertices, with masters made from it by smooth "
         "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the "
         "blended vertices; of masters interpolated one by one the mean of control points and knots does not.",
-        "dimension",
     )
     run.save(_picture(shown), "dimension", svg=True)
 
@@ -134,8 +132,7 @@ def _blend_off(splines: list[gs.Spline], blend: FloatArray) -> float:
 
 def _picture(iterations: dict[str, dict[str, float]]) -> Figure:
     figure, ax = plt.subplots(figsize=(4.2, 2.7), layout="constrained")
-    for name, series in iterations.items():
-        ax.plot([int(d) for d in series], list(series.values()), color=COLOURS[name], marker=MARKERS[name], label=name)
+    draw_series(ax, iterations)
     dimensions = [int(d) for d in iterations["variant 2"]]
     ax.set(xlabel="dimension", ylabel=f"mean iterations, n = {SHOWN}", ylim=(0, None), xscale="log")
     ax.set_xticks(dimensions, [str(d) for d in dimensions])

@@ -43,7 +43,6 @@ def figure_1(run: Run) -> None:
         verdict(run.quick or min(counts) <= PAPER_FAILURES <= max(counts)),
         f"{len(maxima)} vectors of four intervals drawn uniformly from (0, 1); the paper's count lies within "
         "what other seeds give. How the paper drew is not said: five sorted uniform knots give far more.",
-        "fig1",
     )
     run.claim(
         "fig-1-seeds",
@@ -53,7 +52,6 @@ def figure_1(run: Run) -> None:
         {"fewest": min(counts), "most": max(counts), "seeds": len(counts), "sorted knots instead": sorted_failures},
         verdict(run.quick or min(counts) <= PAPER_FAILURES <= max(counts)),
         "Consecutive seeds; the last entry is the count when five sorted uniform knots are drawn instead.",
-        "fig1",
     )
     run.claim(
         "fig-1-ratio",
@@ -63,7 +61,6 @@ def figure_1(run: Run) -> None:
         {"smallest ratio, this sample": ratios[failed].min(initial=np.inf), "least of all seeds": min(smallest)},
         verdict(min(smallest) > PAPER_RATIO),
         "“Above 16” is the luck of one sample. The true threshold is R* of claim beyond-thresholds.",
-        "fig1",
     )
     run.save(_picture(maxima, failed), "fig-1")
 

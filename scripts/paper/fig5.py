@@ -69,7 +69,6 @@ def figure_5(run: Run) -> None:
         f"The first {COUNT} polygons of each group; variant 0 is followed for {CUT} steps only. Variants 1 and 2 decay "
         "alike: the paper's “slightly faster” for variant 1 is not seen in the medians. The largest first value shows "
         "where the curves begin.",
-        "fig5",
     )
     run.save(_picture(curves), "fig-5")
 

@@ -119,7 +119,6 @@ def lemma_1(run: Run) -> None:
         "False as a statement on matrices: two collocation matrices of uniform knots, footpoints within variant 1's "
         "intervals, taken in turn. Decided in exact arithmetic, nothing is rounded. Whether an iteration can take such "
         "footpoints in turn is not known. Theorem 2 does not need the lemma: its bound is on one norm.",
-        "lemmas",
     )
 
 
@@ -157,7 +156,6 @@ def lemma_2(run: Run) -> None:
         f"Each computed interval against {LOOK} values of B_i between the neighbouring knots, to a billionth of the "
         "support; c is less where the peak does not allow it. The set is an interval because B_i has a single peak. It "
         "need not hold u_i itself.",
-        "lemmas",
     )
 
 
@@ -178,7 +176,6 @@ def corollary_1_converges(run: Run) -> None:
         },
         verdict(all(r.converged for r in results)),
         "A case of beyond-margin-zero, since all peaks are 2/3, which proves it here.",
-        "lemmas",
     )
 
 
@@ -201,7 +198,6 @@ def appendix_a_holds(run: Run) -> None:
         {"knot vectors": count, "equal inside": equal, "equal at knots, of five each": ends},
         verdict(equal == count and ends == 5 * count),
         "Against the divided difference of a truncated power, in rational arithmetic, so that equal means equal.",
-        "lemmas",
     )
 
 
@@ -236,7 +232,6 @@ def tie_rule(run: Run) -> None:
         " 10 vertices a polygon. The rule hardly ever acts, and no proof depends on it: they use the least "
         "distance alone. A tie that comes of a symmetry lies on both sides of the knot alike, so that the rule does "
         "not decide it; the program takes the first.",
-        "lemmas",
     )
 
 

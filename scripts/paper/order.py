@@ -55,7 +55,6 @@ def approximation_order(run: Run) -> None:
         "Two-sided distance from the curve, sampled. Ellipse: half axes 2 and 1; trefoil: r = 1 + 0.2 cos 3θ. Even: "
         "equal distances along the curve; graded: between 0.5 and 1.5 of the mean, along a cosine; alternating: 1, "
         "2, 1, 2, …, where all variants but variant 3 are of the order h² only.",
-        "order",
     )
     model = [local_error((1.0, 2.0))]
     for _ in range(2):
@@ -76,7 +75,6 @@ def approximation_order(run: Run) -> None:
         "proven",
         "Proof below: the distance is κ E a² + O(h³) where the curvature is κ and the shorter chord a. The numbers "
         "are for chords 1:2; κ is the largest curvature of the curve.",
-        "order",
     )
     run.claim(
         "beyond-order-reparametrised",
@@ -92,7 +90,6 @@ def approximation_order(run: Run) -> None:
         },
         "proven",
         "For chords 1:2, by the same theorem with other knots; the distance hardly changes.",
-        "order",
     )
     run.claim(
         "beyond-order-greville",
@@ -109,7 +106,6 @@ def approximation_order(run: Run) -> None:
         "Variant 2, chords 1:2, beside variant 3. The footpoints then are at the knots up to h³; the reason is "
         "below. It is measured only, and no option of the package: there the polygon is the first control polygon, "
         "as in the paper.",
-        "order",
     )
     run.save(_picture(counts, errors), "order", svg=True)
 

@@ -115,7 +115,6 @@ def pia(run: Run) -> None:
         "count with these. PIA, WPIA (best weight), Jacobi's, Gauss and Seidel's and LSPIA (best weight, as many "
         "data as control points) have one limit, that of variant 3; Gauss and Seidel's is to PIA what variant 4 is to "
         "variant 2. The growth is from the fewest to the most vertices.",
-        "pia",
     )
     _fairness(run)
     figure_errors = _analytic(run)
@@ -143,7 +142,6 @@ def _fairness(run: Run) -> None:
         "measured",
         f"Medians over {len(polygons)} random polygons of {len(polygons[0])} vertices, relative to the PIA family: "
         "below 1 is fairer.",
-        "pia",
     )
 
 
@@ -179,7 +177,6 @@ def _analytic(run: Run) -> dict[str, list[float]]:
         f"has all of them and its knots at these vertices, iterated until no control point is {TOLERANCE:g} from its "
         "limit. Distances are two-sided and from the exact curve; energies and the largest curvature are relative to "
         "the exact curve's.",
-        "pia",
     )
     return errors
 

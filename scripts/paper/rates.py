@@ -97,7 +97,6 @@ def asymptotic_rate(run: Run) -> None:
         f"Observed: mean factor of the last {TAIL} steps before the error is {TIGHT:g}. For variant 4 the matrix is "
         "that of Gauss and Seidel. Runs with a footpoint at an end of its interval are counted as well, with 2 × 2 "
         "blocks in its place; for those the formula is measured only.",
-        "rates",
     )
 
 
@@ -123,7 +122,6 @@ def rate_at_knots(run: Run) -> None:
         "proven for t_i = u_i",
         "Random normals and lognormal knots (σ = 1). Random polygons come near this case: see the factors of "
         "theorem-2.",
-        "rates",
     )
 
 
@@ -173,7 +171,6 @@ def family_of_limits(run: Run) -> None:
         "Distances are those of control points, polygons in [0, 5]² with 10 vertices. The last entries: limits made by "
         "choosing footpoints at random in their intervals and solving for the curve through them. Above 1 a limit "
         "repels: variant 1 has such limits, so that nothing rules out runs that wander for long.",
-        "rates",
     )
 
 
@@ -245,7 +242,6 @@ def variant_3(run: Run) -> None:
         "proven for cubics, every closed knot vector of 4 or more simple knots",
         "Lognormal knots, σ from 0 to 4. B is a reversible Markov chain: its eigenvalues are in (0, 1], and the "
         "weighted error falls in every step by ρ(I - B) = 1 - λ_min, which may be near 1.",
-        "rates",
         digits=3,
     )
 
@@ -276,7 +272,6 @@ def sharpness(run: Run) -> None:
         "being such that B_i(u_i) = 1/2 + c, and arcs between vertices as h_i²(h_(i-1) + h_i + h_(i+1)). Footpoints "
         "stay at the knots, and neighbouring errors point in opposite directions, as equality in Theorem 2 asks. "
         "Knots are free here: with chord lengths we know of no such polygons.",
-        "rates",
     )
 
 
@@ -332,7 +327,6 @@ def any_order(run: Run) -> None:
         "proven for cubics, n ≥ 4, every peak above 1/2, the same order in every sweep",
         "A random order and random blocks for each polygon of 10 vertices. Orders that change from sweep to sweep are "
         "open.",
-        "rates",
     )
 
 

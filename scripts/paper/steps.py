@@ -13,26 +13,20 @@ from multiprocessing import get_context
 from . import (
     acceleration,
     arcs,
-    convergence,
-    degrees,
+    characters,
     dimension,
+    fairness,
     fig1,
-    fig2,
-    fig3,
-    fig4,
     fig5,
-    fig6,
-    fig8,
     lemmas,
-    many,
+    local,
     order,
     pia,
-    quality,
     rates,
-    remark3,
+    study,
     theorems,
     thresholds,
-)
+)  # fmt: skip
 from .common import Claim, Run, progress
 from .report import write_report
 
@@ -40,19 +34,19 @@ STEPS: dict[str, Callable[[Run], None]] = {
     "theorems": theorems.theorems,
     "lemmas": lemmas.lemmas,
     "fig1": fig1.figure_1,
-    "fig2": fig2.figure_2,
-    "many": many.many_vertices,
-    "fig3": fig3.figure_3,
-    "fig4": fig4.figure_4,
+    "fig2": study.figure_2,
+    "many": study.many_vertices,
+    "fig3": study.figure_3,
+    "fig4": local.figure_4,
     "fig5": fig5.figure_5,
-    "fig6": fig6.figures_6_and_7,
-    "fig8": fig8.figures_8_and_9,
-    "quality": quality.quality_study,
+    "fig6": characters.figures_6_and_7,
+    "fig8": characters.figures_8_and_9,
+    "quality": fairness.quality_study,
     "thresholds": thresholds.thresholds,
-    "convergence": convergence.convergence,
+    "convergence": theorems.convergence,
     "rates": rates.rates,
-    "remark3": remark3.remark_3,
-    "degrees": degrees.degrees,
+    "remark3": theorems.remark_3,
+    "degrees": thresholds.degrees,
     "arcs": arcs.arcs,
     "order": order.approximation_order,
     "acceleration": acceleration.acceleration,
@@ -75,24 +69,27 @@ def reproduce(run: Run, only: list[str] | None = None, jobs: int = 2) -> None:
     names = only or list(STEPS)
     beside = [name for name in names if name != TIMED]
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
-        for claims, times in pool.map(make, beside, repeat(replace(run, claims=[], times={}))):
-            run.claims += claims
-            run.times.update(times)
+        for made in pool.map(make, beside, repeat(run)):
+            _add(run, made)
             _write(run)
     if TIMED in names:
-        claims, times = make(TIMED, replace(run, claims=[], times={}))
-        run.claims += claims
-        run.times.update(times)
+        _add(run, make(TIMED, run))
     if not only:
         run.times["all steps, minutes"] = (time.perf_counter() - start) / 60
     _write(run)
 
 
-def make(name: str, run: Run) -> tuple[list[Claim], dict[str, float]]:
+def make(name: str, run: Run) -> Run:
     """One step: its pictures into the folder, its claims and its time as the answer."""
-    with progress(run, name):
-        STEPS[name](run)
-    return run.claims, run.times
+    own = replace(run, step=name, claims=[], times={}, cache={})
+    with progress(own, name):
+        STEPS[name](own)
+    return replace(own, cache={})
+
+
+def _add(run: Run, made: Run) -> None:
+    run.claims += made.claims
+    run.times.update(made.times)
 
 
 def _recall(run: Run) -> None:
