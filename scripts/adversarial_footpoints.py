@@ -19,16 +19,13 @@ depth-first search that gave up silently after 4000 parts missed by up to 5.8e-6
 
 from __future__ import annotations
 
-import argparse
 import heapq
 import sys
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields
 from decimal import Decimal, localcontext
 from itertools import pairwise
 from math import comb
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -52,6 +49,7 @@ from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.kernels.newton_simd import BAD, seek
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
+from scripts.survey import parser, surveyed
 
 BOUND = 1e-12
 """The miss that ``footpoint.py`` states as its bound."""
@@ -252,24 +250,17 @@ def intervals(rng: Generator, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.stack([*ends, *inside], axis=1)
 
 
-class Cases:
-    """Cases as arrays of one length, the fields of a dataclass."""
-
-    def arrays(self) -> list[FloatArray]:
-        """All of the arrays."""
-        return [getattr(self, field.name) for field in fields(self)]  # type: ignore[arg-type]
-
-    def taken(self, which: IntArray) -> Self:
-        """Some of the cases."""
-        return type(self)(*(array[which] for array in self.arrays()))
-
-    def joined(self, other: Self) -> Self:
-        """These cases and others."""
-        return type(self)(*(np.concatenate(pair) for pair in zip(self.arrays(), other.arrays(), strict=True)))
+def taken(cases: Any, which: IntArray) -> Any:
+    """Some of the cases: named tuples of arrays of one length."""
+    return type(cases)(*(array[which] for array in cases))
 
 
-@dataclass(frozen=True)
-class Pieces(Cases):
+def joined(cases: Any, others: Any) -> Any:
+    """Cases and others of their kind."""
+    return type(cases)(*map(np.concatenate, zip(cases, others, strict=True)))
+
+
+class Pieces(NamedTuple):
     """Cases of ``search_piece``; ``c`` and ``reach`` as in :func:`answer_pieces`."""
 
     c: FloatArray
@@ -323,8 +314,7 @@ class Pieces(Cases):
             return float(exact_distance(c, Decimal(x)) - enclosed_distance(c, low, high))
 
 
-@dataclass(frozen=True)
-class Lanes(Cases):
+class Lanes(NamedTuple):
     """Cases of the SIMD passes; ``P``, ``h``, ``p`` and ``reach`` as in :func:`answer_lanes`."""
 
     P: FloatArray
@@ -434,8 +424,7 @@ def bezier_size(c: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.asarray(np.hypot(*np.moveaxis(scaled @ weights.T, 1, 0)).max(axis=-1))
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """What a search came to.
 
     Attributes:
@@ -492,11 +481,11 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
             exact = max(exact, now.miss(k, float(found[k, 0])) / float(sizes[k]))
             checked += 1
         if turn % RESTART == 0:
-            best, best_misses = now.taken(order[:KEPT]), misses[order[:KEPT]]
+            best, best_misses = taken(now, order[:KEPT]), misses[order[:KEPT]]
         else:
-            both, all_misses = best.joined(now.taken(order[:KEPT])), np.append(best_misses, misses[order[:KEPT]])
+            both, all_misses = joined(best, taken(now, order[:KEPT])), np.append(best_misses, misses[order[:KEPT]])
             order = np.argsort(-all_misses)[:KEPT]
-            best, best_misses = both.taken(order), all_misses[order]
+            best, best_misses = taken(both, order), all_misses[order]
     return Found(f"{name} {degree}", rounds * ROUND, checked, uncertified, exact, sampled)
 
 
@@ -506,23 +495,17 @@ def attacks(cases: int, checks: int, seed: int) -> list[tuple[str, int, int, int
     return [(name, degree, int(share * cases), int(share * checks), seed) for name, degree, share in shares]
 
 
-def _attack(arguments: tuple[str, int, int, int, int]) -> Found:
-    return attack(*arguments)
-
-
 def main() -> int:
     """Attack both searches; exit status 1 if there is a miss beyond the bound."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=4_000_000)
-    parser.add_argument("--checks", type=int, default=8_000, help="cases compared in 60 digits")
-    parser.add_argument("--seed", type=int, default=2012)
-    parser.add_argument("--jobs", type=int, default=2)
-    arguments = parser.parse_args()
-    bad = 0
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for found in pool.map(_attack, attacks(arguments.cases, arguments.checks, arguments.seed)):
-            print(found, flush=True)
-            bad += not found.good
+    options = parser(__doc__)
+    options.add_argument("--cases", type=int, default=4_000_000)
+    options.add_argument("--checks", type=int, default=8_000, help="cases compared in 60 digits")
+    options.add_argument("--seed", type=int, default=2012)
+    arguments = options.parse_args()
+    tasks, bad = attacks(arguments.cases, arguments.checks, arguments.seed), 0
+    for found in surveyed(attack, *zip(*tasks, strict=True), jobs=arguments.jobs):
+        print(found, flush=True)
+        bad += not found.good
     return min(bad, 1)
 
 

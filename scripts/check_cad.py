@@ -1,6 +1,6 @@
 """DXF files opened and extruded in CAD kernels: FreeCAD's importer (freecadcmd), and OCCT (the module OCP), if found.
 
-    python scripts/check_cad.py [FONT] [--text 龍g好] [--height 5] [--pictures FOLDER]
+    python scripts/check_cad.py [FONT] [--text 龍g好] [--height 5]
 
 For each character, and for smooth contours, corners, and cubics that share tangents, as splines and as polylines: the
 file is imported, its edges are joined to wires, the wires to a face with holes, and the face is extruded. Exit status 1
@@ -169,7 +169,6 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
         builder.Add(parts)
         wires[contour[0].dxf.layer].append(builder.Wire())
     area, volume, said, valid, closed = 0.0, 0.0, 0.0, True, True
-    meshes: list[FloatArray] = []
     for layer, sign in (("outlines", 1.0), ("holes", -1.0)):  # each contour a solid: holes are not told whose they are
         for wire in wires[layer]:
             closed &= wire.Closed()
@@ -182,22 +181,12 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
             BRepMesh_IncrementalMesh(solid, DEFLECTION, False, 0.5, False)
             mesh = triangles(solid)
             volume += sign * abs(float(np.linalg.det(mesh).sum()) / 6)
-            meshes.append(mesh)
             found = GProp_GProps()
             BRepGProp.SurfaceProperties_s(face, found, 1e-6, False)
             area += sign * abs(found.Mass())
-    if job["picture"]:
-        np.save(job["picture"], np.concatenate(meshes))
     total = len(wires["outlines"]) + len(wires["holes"])
-    return {
-        "edges": count,
-        "wires": total,
-        "closed": closed,
-        "valid": valid,
-        "area": area,
-        "volume": volume,
-        "said": said,
-    }
+    facts = {"edges": count, "wires": total, "closed": closed, "valid": valid}
+    return facts | {"area": area, "volume": volume, "said": said}
 
 
 def true_area(result: gs.GlyphResult, kind: str) -> float:
@@ -218,7 +207,6 @@ def main() -> int:
     parser.add_argument("font", nargs="?", default="fonts_test/kouzan-kaisho.ttf")
     parser.add_argument("--text", default="龍g好")
     parser.add_argument("--height", type=float, default=5.0)
-    parser.add_argument("--pictures", type=Path)
     given = parser.parse_args()
     kernels = {}
     if shutil.which("freecadcmd") or shutil.which("FreeCADCmd"):
@@ -237,8 +225,7 @@ def main() -> int:
                 for kind in KINDS:
                     path = folder / f"{name}-{look}-{kind}.dxf"
                     path.write_text(gs.to_dxf(result, size=f"{SIZE:g}mm", dxf=kind))
-                    picture = "" if given.pictures is None or kind == "polyline" else str(folder / f"{path.stem}.npy")
-                    jobs.append({"path": str(path), "height": given.height, "picture": picture})
+                    jobs.append({"path": str(path), "height": given.height})
                     areas.append(true_area(result, kind))
         for kernel, check in kernels.items():
             for job, true, said in zip(jobs, areas, check(jobs, folder), strict=True):
@@ -252,29 +239,8 @@ def main() -> int:
                 bad += not good
                 details = ", ".join(f"{key} {value}" for key, value in said.items())
                 print(f"{'ok ' if good else 'BAD'} {kernel} {Path(job['path']).stem}: {details}")
-        if given.pictures is not None:
-            given.pictures.mkdir(parents=True, exist_ok=True)
-            for job in jobs:
-                if job["picture"] and Path(job["picture"]).exists():
-                    draw(Path(job["picture"]), given.pictures / f"{Path(job['path']).stem}.png")
     print(f"{len(jobs)} files, {', '.join(kernels)}: {bad or 'none'} bad")
     return bad > 0
-
-
-def draw(mesh: Path, picture: Path) -> None:
-    """A picture of a solid, from the triangles that the kernel made."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    points = np.load(mesh).reshape(-1, 3)
-    triangles = np.arange(len(points)).reshape(-1, 3)
-    figure = Figure(figsize=(7, 7))
-    FigureCanvasAgg(figure)
-    axes: Any = figure.add_subplot(projection="3d")
-    axes.plot_trisurf(*points.T, triangles=triangles, linewidth=0, antialiased=False, shade=True, color="#8899cc")
-    axes.set_box_aspect(np.ptp(points, axis=0))
-    axes.view_init(60, -75)
-    figure.savefig(picture, dpi=100)
 
 
 if __name__ == "__main__":

@@ -15,15 +15,14 @@ the nearest point, at 1.2e-10. Polygon 4435 was not looked into further.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from scripts.survey import parser, surveyed
 from tests.agreement import TOLERANCE, compare, spread
 from tests.polygons import polygon
 
@@ -75,30 +74,29 @@ def check(number: int) -> Case:
     kind, points = polygon(number, scale=LARGE_SCALE if number % LARGE_EVERY == 0 else 1)
     found = compare(points, number)
     case = Case(kind, number, len(points), found.difference, found.iterations)
-    if case.differs:
-        return Case(kind, number, len(points), found.difference, found.iterations, *spread(points, number))
-    return case
+    if not case.differs:
+        return case
+    moved, passes = spread(points, number)
+    return replace(case, moved=moved, passes=passes)
 
 
 def main() -> int:
     """Compare ``--count`` polygons; list those that differ; exit status 1 if any does for no good reason."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=5000)
-    parser.add_argument("--jobs", type=int, default=2)
-    arguments = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("--count", type=int, default=5000)
+    arguments = options.parse_args()
     kinds: Counter[str] = Counter()
     worst: dict[str, float] = {}
     bad, rounded, start = 0, 0, time.monotonic()
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for done, case in enumerate(pool.map(check, range(arguments.count), chunksize=5), 1):
-            kinds[case.kind] += 1
-            if case.differs:
-                bad, rounded = bad + (not case.rounding), rounded + case.rounding
-                print(case, flush=True)
-            else:
-                worst[case.kind] = max(worst.get(case.kind, 0.0), case.difference)
-            if done % 250 == 0:
-                print(f"{done} of {arguments.count}, {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
+    for done, case in enumerate(surveyed(check, range(arguments.count), jobs=arguments.jobs, chunk=5), 1):
+        kinds[case.kind] += 1
+        if case.differs:
+            bad, rounded = bad + (not case.rounding), rounded + case.rounding
+            print(case, flush=True)
+        else:
+            worst[case.kind] = max(worst.get(case.kind, 0.0), case.difference)
+        if done % 250 == 0:
+            print(f"{done} of {arguments.count}, {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
     for kind, count in kinds.items():
         print(f"{kind:12} {count:5} polygons, control points of those that agree within {worst.get(kind, 0.0):.1e}")
     print(f"{arguments.count} polygons: {bad} differ, {rounded} more by rounding")

@@ -13,7 +13,6 @@ rounded anew: findings near their thresholds come and go then.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import tempfile
 from collections import Counter
@@ -35,7 +34,7 @@ from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvat
 from glyphspline.types import FloatArray
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.benchmark.faithful import PLACES
+from scripts.survey import faces, parser
 
 FACES = (
     "kouzan-gyosho.otf", "DejaVuSans.ttf", "Cantarell-Regular.otf", "NotoSansCJK-Regular.ttc", "LXGWWenKai-Regular.ttf"
@@ -426,25 +425,13 @@ def new_findings(found: Sequence[Finding], before: Sequence[Finding], scale: flo
     ]
 
 
-def located(file: str) -> Path:
-    """Where a face is.
-
-    Raises:
-        SystemExit: it is not installed.
-    """
-    for place in [Path(__file__).parents[1] / "fonts_test", *PLACES]:
-        for path in sorted(Path(place).rglob(file)):
-            return path
-    raise SystemExit(f"{file} is not there: see the head of this file")
-
-
 def main() -> int:
     """Plant, write, read, check and count."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--glyphs", type=int, default=1000, help="of all faces together (1000)")
-    parser.add_argument("--seed", type=int, default=17)
-    parser.add_argument("--list", action="store_true", help="list what is not found, and what is false")
-    given = parser.parse_args()
+    options = parser(__doc__, jobs=False)
+    options.add_argument("--glyphs", type=int, default=1000, help="of all faces together (1000)")
+    options.add_argument("--seed", type=int, default=17)
+    options.add_argument("--list", action="store_true", help="list what is not found, and what is false")
+    given = options.parse_args()
     rng = np.random.default_rng(given.seed)
     kinds = [kind for kind in PLANTERS if kind not in ENCLOSED or find_spec("glyphspline.checks.enclosed")]
     count: Counter[str] = Counter()
@@ -453,7 +440,9 @@ def main() -> int:
     again: Counter[str] = Counter()
     untouched = spoiled = spoiled_again = total = 0
     for number, file in enumerate(FACES):
-        font = gs.open_font(located(file))
+        if not (paths := faces(file)):
+            raise SystemExit(f"{file} is not there: see the head of this file")
+        font = gs.open_font(paths[0])
         outlines: list[gs.Outline] = []
         wanted = (given.glyphs - total) // (len(FACES) - number)
         for k in rng.permutation(len(font.glyph_names)):

@@ -15,12 +15,10 @@ whose measures do not. The exit status is 1 if there are any of the last kind.
 
 from __future__ import annotations
 
-import argparse
 import logging
 import sys
 import time
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -32,7 +30,7 @@ from fontTools.ttLib import TTFont
 import glyphspline as gs
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.benchmark.faithful import PLACES
+from scripts.survey import faces, parser, surveyed, table
 from tests.topology import defects, font_contours, unflagged
 
 
@@ -108,12 +106,12 @@ def survey(task: tuple[Face, Path, str]) -> list[Glyph]:
     return found
 
 
-def tasks(count: int, faces: Iterable[str]) -> list[tuple[Face, Path, str]]:
+def tasks(count: int, names: Iterable[str]) -> list[tuple[Face, Path, str]]:
     """So many ideographs of each face, and those that went wrong once."""
     chosen = []
     for face in FACES:
-        paths = sorted(path for place in PLACES for path in place.rglob(face.file))
-        if not paths or not any(part.lower() in face.name.lower() for part in faces):
+        paths = faces(face.file)
+        if not paths or not any(part.lower() in face.name.lower() for part in names):
             continue
         codes = sorted(code for code in opened(paths[0])[2] if 0x4E00 <= code <= 0x9FFF)
         spread = (chr(codes[k * len(codes) // count]) for k in range(min(count, len(codes))))
@@ -121,40 +119,38 @@ def tasks(count: int, faces: Iterable[str]) -> list[tuple[Face, Path, str]]:
     return chosen
 
 
-def table(glyphs: list[Glyph]) -> str:
+def table_of(glyphs: list[Glyph]) -> str:
     """A line for each face and way, in Markdown."""
-    lines = ["| face | way | glyphs | cross themselves | cross others | collapsed | all flagged | not flagged |"]
-    lines += ["|---|---|---|---|---|---|---|---|"]
+    rows: list[list[object]] = []
     for face, (corners, effort) in product(FACES, WAYS):
         those = [g for g in glyphs if (g.face, g.way) == (face.name, f"{corners} {effort}")]
         if those:
             columns = [(g.own, g.pairs, g.collapsed) for g in those]
             counts = [sum(bool(x) for x in column) for column in zip(*columns, strict=True)]
             silent = sum(bool(g.silent) for g in those)
-            figures = [len(those), *counts, sum(g.wrong for g in those) - silent, silent]
-            lines.append(f"| {face.name} | {corners} {effort} | {' | '.join(map(str, figures))} |")
-    return "\n".join(lines)
+            flagged = sum(g.wrong for g in those) - silent
+            rows.append([face.name, f"{corners} {effort}", len(those), *counts, flagged, silent])
+    headings = "face,way,glyphs,cross themselves,cross others,collapsed,all flagged,not flagged"
+    return table(headings.split(","), rows)
 
 
 def main() -> int:
     """Survey the faces, print what is not flagged and the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--glyphs", type=int, default=60, help="of each face")
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
-    parser.add_argument("--faces", default="", help="parts of names, with commas between them")
-    arguments = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("--glyphs", type=int, default=60, help="of each face")
+    options.add_argument("--faces", default="", help="parts of names, with commas between them")
+    arguments = options.parse_args()
     logging.getLogger("fontTools").setLevel(logging.ERROR)
     found: list[Glyph] = []
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for glyphs in pool.map(survey, tasks(arguments.glyphs, arguments.faces.split(",")), chunksize=4):
-            found += glyphs
-            for glyph in glyphs:
-                for words in glyph.silent:
-                    print(f"{glyph.face} {glyph.character} {glyph.way}: {words}", flush=True)
+    for glyphs in surveyed(survey, tasks(arguments.glyphs, arguments.faces.split(",")), jobs=arguments.jobs, chunk=4):
+        found += glyphs
+        for glyph in glyphs:
+            for words in glyph.silent:
+                print(f"{glyph.face} {glyph.character} {glyph.way}: {words}", flush=True)
     if not found:
         print("none of the faces is installed", file=sys.stderr)
         return 2
-    print(table(found))
+    print(table_of(found))
     print(f"{1e3 * sum(glyph.seconds for glyph in found) / len(found):.0f} ms to count a glyph's")
     return int(any(glyph.silent for glyph in found))
 

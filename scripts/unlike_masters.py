@@ -24,18 +24,15 @@ stem is, without the other joints in their places, one of several joints on a st
 
 from __future__ import annotations
 
-import argparse
 import sys
 import zlib
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import cache
-from itertools import combinations
+from itertools import combinations, repeat
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from fontTools.pens.basePen import BasePen
 from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
@@ -47,6 +44,9 @@ from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.sampling import CORNER_ANGLE
 from glyphspline.types import FloatArray
 from glyphspline.writers.svg.unmatched import to_unmatched_svg
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from scripts.survey import SegmentPen, distances, parser, surveyed, table
 
 LATIN = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&@?!"
 IDEOGRAPHS = 50
@@ -96,28 +96,6 @@ class Found(NamedTuple):
     def true(self, share: float) -> bool:
         """Whether all partners are the true ones, to so large a share of the em."""
         return not self.refused and self.slip <= share and self.corner <= AT_CORNER
-
-
-class SegmentPen(BasePen):  # type: ignore[misc, unused-ignore]
-    """The segments of a glyph, components decomposed, those of no length too: instances then have the same ones."""
-
-    def __init__(self, glyphs: Any) -> None:
-        super().__init__(glyphs)
-        self.contours: list[list[FloatArray]] = []
-
-    def _moveTo(self, point: Any) -> None:  # noqa: N802
-        self.contours.append([])
-        self.first = point
-
-    def _add(self, *points: Any) -> None:
-        self.contours[-1].append(np.array([self._getCurrentPoint(), *points], dtype=np.float64))
-
-    _lineTo = _curveToOne = _qCurveToOne = _add  # noqa: N815
-
-    def _closePath(self) -> None:  # noqa: N802
-        self._add(self.first)  # of no length where the outline comes back by itself
-
-    _endPath = _closePath  # noqa: N815
 
 
 @cache
@@ -288,15 +266,7 @@ def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: M
 
 def farthest(points: FloatArray, polygon: FloatArray) -> float:
     """The largest distance of points (n, 2) from a closed polygon, near whose vertices they are."""
-    nearest = cKDTree(polygon).query(points, k=3)[1]
-    best = np.full(len(points), np.inf)
-    for k in range(3):
-        for step in (-1, 1):
-            a, b = polygon[nearest[:, k]], polygon[(nearest[:, k] + step) % len(polygon)]
-            d = b - a
-            along = np.clip(((points - a) * d).sum(axis=1) / np.maximum((d * d).sum(axis=1), 1e-12), 0, 1)
-            best = np.minimum(best, np.hypot(*(points - a - along[:, None] * d).T))
-    return float(best.max())
+    return float(distances(points, polygon).max())
 
 
 def dense(contours: Sequence[gs.Contour]) -> FloatArray:
@@ -325,33 +295,32 @@ def tasks(folder: Path, seeds: int, masters: int, text: str | None) -> Iterator[
 
 def main() -> int:
     """Match all, list the failures and print a table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("--seeds", type=int, default=1, help="changes of each glyph")
-    parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--every", type=int, default=1, metavar="N", help="take each Nth of the changed glyphs only")
-    parser.add_argument("--masters", type=int, default=2, choices=(2, 3))
-    parser.add_argument("--text", help="characters instead of these")
-    parser.add_argument("--pictures", type=Path, metavar="DIR", help="for an SVG of each failure")
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
-    arguments = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("folder", type=Path, metavar="FOLDER")
+    options.add_argument("--seeds", type=int, default=1, help="changes of each glyph")
+    options.add_argument("--first-seed", type=int, default=0)
+    options.add_argument("--every", type=int, default=1, metavar="N", help="take each Nth of the changed glyphs only")
+    options.add_argument("--masters", type=int, default=2, choices=(2, 3))
+    options.add_argument("--text", help="characters instead of these")
+    options.add_argument("--pictures", type=Path, metavar="DIR", help="for an SVG of each failure")
+    arguments = options.parse_args()
     if arguments.pictures:
         arguments.pictures.mkdir(parents=True, exist_ok=True)
     todo = list(tasks(arguments.folder, arguments.seeds, arguments.masters, arguments.text))[:: arguments.every]
     todo = [task._replace(seed=task.seed + arguments.first_seed) for task in todo]
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        found = list(pool.map(measured, todo, [arguments.pictures] * len(todo), chunksize=16))
+    found = list(surveyed(measured, todo, repeat(arguments.pictures), jobs=arguments.jobs, chunk=16))
     for one in found:
         if not one.right():
             print(f"{one.task.path.name} {one.task.name} seed {one.task.seed}: {one.refused or said(one)}")
     heads = [*(f"right at {100 * share:g} %" for share in SHAPES), *(f"partners {100 * share:g} %" for share in SHARES)]
-    print(f"| font | glyphs | {' | '.join(heads)} | refused |\n|{'---|' * (3 + len(heads))}")
+    rows = []
     paths = list(dict.fromkeys(one.task.path for one in found))
     for label, those in [*((p.name, [o for o in found if o.task.path == p]) for p in paths), ("all", found)]:
         shares = [[o.right(share) for o in those] for share in SHAPES]
         shares += [[o.true(share) for o in those] for share in SHARES]
-        cells = " | ".join([f"{100 * np.mean(share):.1f} %" for share in shares])
-        print(f"| {label} | {len(those)} | {cells} | {sum(bool(o.refused) for o in those)} |")
+        cells = [f"{100 * np.mean(share):.1f} %" for share in shares]
+        rows.append([label, len(those), *cells, sum(bool(o.refused) for o in those)])
+    print(table(["font", "glyphs", *heads, "refused"], rows))
     return 0
 
 

@@ -22,19 +22,22 @@ import glyphspline as gs
 from glyphspline.checks.check import check_many
 from glyphspline.checks.finding import Finding, badness, with_unit
 from glyphspline.checks.kinds import KINDS
-from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.curvature import comb
 from glyphspline.outlines.outline import Outline
 from glyphspline.types import FloatArray
+from glyphspline.writers.figures.patches import outline_patch
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.path import Path as Drawing
 
 ROWS, COLUMNS = 4, 5
 OF_A_FAMILY = 4
 NEAREST, FARTHEST = 12.0, 130.0
 """Half the width of a tile, in thousandths of an em, at least and at most."""
+
+SPACING = 0.02
+"""Distance of the teeth of a comb, in half the width of a tile."""
 
 WITH_COMB = {"jump", "lump", "inflection"}
 ON_PURPOSE = frozenset({"overlap", "crossing"})
@@ -87,16 +90,6 @@ def worst_of(places: list[Place], kind: str) -> list[Place]:
     return chosen
 
 
-def drawing_of(outline: Outline) -> Drawing:
-    """An outline for matplotlib."""
-    points, codes = [], []
-    for contour in outline.contours:
-        cubics = contour.cubics()
-        points += [cubics[:1, 0], cubics[:, 1:].reshape(-1, 2)]
-        codes += [Drawing.MOVETO] + [Drawing.CURVE4] * (3 * len(cubics))
-    return Drawing(np.concatenate(points), codes)
-
-
 def window_of(place: Place) -> tuple[FloatArray, float]:
     """Middle and half the width of what a tile shows: both segments at the place, or all of a contour."""
     finding, outline = place.finding, place.outline
@@ -115,29 +108,12 @@ def window_of(place: Place) -> tuple[FloatArray, float]:
     return np.array(finding.point), float(np.clip(size, NEAREST * unit, FARTHEST * unit))
 
 
-def combs_of(outline: Outline) -> list[tuple[FloatArray, FloatArray]]:
-    """Points (n, 2) and curvature vectors (n, 2), to the right, of all curves of an outline."""
-    found = []
-    for contour in outline.contours:
-        for cubic, degree in zip(contour.cubics(), contour.degrees.tolist(), strict=True):
-            if degree == 1:
-                continue
-            t = np.linspace(0, 1, 33)
-            first = 3 * np.diff(cubic, axis=0)
-            second = 2 * np.diff(first, axis=0)
-            velocity = ((1 - t) ** 2)[:, None] * first[0] + (2 * t * (1 - t))[:, None] * first[1]
-            velocity += (t**2)[:, None] * first[2]
-            change = (1 - t)[:, None] * second[0] + t[:, None] * second[1]
-            speed = np.hypot(*velocity.T).clip(1e-9)
-            curvature = (velocity[:, 0] * change[:, 1] - velocity[:, 1] * change[:, 0]) / speed**3
-            right = np.stack([velocity[:, 1], -velocity[:, 0]], axis=1) / speed[:, None]
-            found.append((evaluate(np.repeat(cubic[None], len(t), axis=0), t), curvature[:, None] * right))
-    return found
-
-
 def draw_comb(axes: Axes, outline: Outline, middle: FloatArray, half: float) -> None:
     """Draw curvature as teeth, the longest that is seen but for one in ten a third of the tile."""
-    combs = combs_of(outline)
+    combs = []
+    for contour in outline.contours:
+        teeth = comb(contour.cubics()[contour.degrees > 1], SPACING * half)
+        combs.append((teeth.points, -teeth.curvature[:, None] * teeth.normals))
     points, vectors = (np.concatenate(each) for each in zip(*combs, strict=True))
     seen = np.abs(points - middle).max(axis=1) < half
     sizes = np.hypot(*vectors[seen].T)
@@ -152,8 +128,9 @@ def draw(axes: Axes, place: Place) -> None:
     """Draw a tile."""
     finding, outline = place.finding, place.outline
     middle, half = window_of(place)
-    drawing = drawing_of(outline)
-    axes.add_patch(matplotlib.patches.PathPatch(drawing, facecolor="#e4e4ea", edgecolor="#222", linewidth=0.7))
+    curves = [contour.cubics() for contour in outline.contours]
+    (patch,) = outline_patch(curves, facecolor="#e4e4ea", edgecolor="#222", linewidth=0.7)
+    axes.add_patch(patch)
     if finding.kind in WITH_COMB:
         draw_comb(axes, outline, middle, half)
     for contour in outline.contours:
@@ -174,8 +151,9 @@ def draw(axes: Axes, place: Place) -> None:
     heading = f"{place.family} {outline.name}\n{with_unit(finding.value, finding.unit)}"
     axes.set_title(f"{heading}, {2 * half:.0f} units wide", fontsize=6.5, pad=2)
     whole = axes.inset_axes((0.0, 0.0, 0.27, 0.27))
-    whole.add_patch(matplotlib.patches.PathPatch(drawing, facecolor="#444", edgecolor="none"))
-    points = np.asarray(drawing.vertices)
+    (patch,) = outline_patch(curves, facecolor="#444", edgecolor="none")
+    whole.add_patch(patch)
+    points = patch.get_path().vertices
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 * np.array([-1, 1])
     whole.set(xlim=middle[0] + half, ylim=middle[1] + half, xticks=[], yticks=[])

@@ -7,17 +7,20 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-SUITES = ("core", "startup", "faithful", "batch", "check", "formats", "text", "dataset", "dataset_runs", "viewer")
+OWN = ("core", "startup", "faithful", "batch", "check", "text", "dataset", "viewer")
+SUITES = {name: f"{name}.rows" for name in OWN}
+SUITES |= {"formats": "batch.formats", "dataset_runs": "dataset.runs"}
 
 
 def main() -> None:
     """Run the suites named, or all of them."""
     # One thread for the libraries' linear algebra: with more, small systems mostly measure the waiting for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from .table import markdown, write
+    from .measure import markdown, write
 
     for suite in sys.argv[1:] or SUITES:
-        rows = import_module(f".{suite}", __package__).rows()
+        module, function = SUITES[suite].split(".")
+        rows = getattr(import_module(f".{module}", __package__), function)()
         print(markdown(rows), flush=True)
         write(suite, rows, Path(__file__).parents[2])
 

@@ -1,4 +1,4 @@
-"""Whole fonts: interpolated SVG beside plain export of the same outlines by others, in one run.
+"""Whole fonts: interpolated SVG, and outlines as they are, beside plain export by others, in one run.
 
 Nothing is removed before all is measured: ext4 without a journal looks, for each new file, through the inodes that were
 freed within the last minutes, and what came after a removal of ten thousand files would seem several times as slow.
@@ -6,7 +6,9 @@ The least of several rounds counts: on a virtual machine a run pays for pages of
 does not, as it comes.
 
 The font is Noto Sans CJK Regular (Debian's fonts-noto-cjk); ``GLYPHSPLINE_BENCH_FONT`` names another with as many Han
-glyphs, ``GLYPHSPLINE_BENCH_GLYPHS`` another number of them. Exports by others write the path and nothing more.
+glyphs, ``GLYPHSPLINE_BENCH_GLYPHS`` another number of them. Exports by others write the path and nothing more. Each
+export is by one process, from opening the font on; ours has one worker, and writes a manifest. FontForge takes many
+seconds to open such a font, so its export is timed alone, too.
 """
 
 from __future__ import annotations
@@ -156,3 +158,51 @@ def fontforge_export(out: Path, gids: Sequence[int]) -> float:
         if done.returncode == 0:
             return float(done.stdout.split()[-1])
     return float("nan")
+
+
+FEW, MANY = 2000, int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "10000"))
+ROUNDS = 3
+
+
+def formats() -> list[Row]:
+    """The table of what it costs to export outlines, a glyph."""
+    if not FONT.exists():
+        return [Row(f"outlines as they are: {FONT.name} is not there", 0.0, "s")]
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        here = Path(folder)
+        source(here / "warm", range(FIRST, FIRST + 50))  # nothing is compiled while it is timed
+        for count in (FEW, MANY):
+            found += compared(here, range(FIRST, FIRST + count))
+    return found
+
+
+def compared(here: Path, gids: Sequence[int]) -> list[Row]:
+    """Rows for so many glyphs."""
+    count = len(gids)
+    opened: list[float] = []
+
+    def forge(k: int) -> float:
+        start = perf_counter()
+        seconds = fontforge_export(here / f"forge-{count}-{k}", gids)
+        opened.append((perf_counter() - start) / count)
+        return seconds
+
+    own, fonttools, forged = least(
+        ROUNDS,
+        lambda k: source(here / f"ours-{count}-{k}", gids),
+        lambda k: fonttools_export(here / f"plain-{count}-{k}", gids),
+        forge,
+    )
+    return [
+        row(f"`--format source` of {count} glyphs against fontTools' `SVGPathPen`", own, fonttools, 0.5, None),
+        row("the same against FontForge's export, its opening not counted", own, forged, 2.5, None),
+        row("the same against FontForge's export, its opening counted", own, min(opened), 2.5, None),
+    ]
+
+
+def source(out: Path, gids: Sequence[int]) -> float:
+    """Seconds a glyph of our run."""
+    from glyphspline.fitting.options import Options
+
+    return ours(out, gids, Options(), ("source",), 1)

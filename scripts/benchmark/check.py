@@ -2,7 +2,7 @@
 
 Times are of this process, without workers unless said, from opening a font to the last finding or difference, which is
 looked at. The least of several rounds counts, as in :mod:`.batch`. Fonts that are not installed have no rows.
-Memory is as in :mod:`.watched`.
+Memory is as in :mod:`.measure`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from time import perf_counter
 import matplotlib
 
 from .batch import FIRST, FONT, GLYPHS, least
-from .measure import Row, in_words
-from .watched import run_watched
+from .measure import Row, in_words, run_watched
 
 LATIN = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 OTHER_LATIN = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")

@@ -19,15 +19,13 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-import matplotlib
 import numpy as np
-from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.fairness import curvature_variation
 from glyphspline.types import FloatArray
 
+from ..survey import distances, faces, sampled
 from .kurbo_fit import kurbo_results
 from .measure import Row
 
@@ -37,8 +35,6 @@ SPACING = 2.0
 """Font units between the points at which a peer is measured, each to the polyline through the other side's points."""
 
 FORGE = ("/usr/bin/python3", str(Path(__file__).with_name("fontforge_simplify.py")))
-PLACES = [Path(p) for p in os.environ.get("GLYPHSPLINE_FACES", "").split(os.pathsep) if p]
-PLACES += [Path("/usr/share/fonts"), Path(matplotlib.get_data_path()) / "fonts"]
 
 
 @dataclass(frozen=True)
@@ -68,10 +64,9 @@ def rows() -> list[Row]:
 
 def outlines(face: Face) -> list[gs.Outline]:
     """Glyphs spread evenly over the face's ideographs, or its Latin letters, scaled to 1000 units an em."""
-    paths = sorted(path for place in PLACES for path in place.rglob(face.pattern))
     low, high = (0x21, 0x24F) if face.latin else (0x4E00, 0x9FFF)
     found: dict[int, tuple[Any, str]] = {}
-    for path in paths:
+    for path in faces(face.pattern):
         font = gs.open_font(path)
         for name, code in names(font, low, high):
             found.setdefault(code, (font, name))
@@ -217,47 +212,24 @@ def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:
             yield json.loads(p.stdout.readline())
 
 
+def farthest(points: FloatArray, line: FloatArray) -> float:
+    """Largest distance of points from a polyline."""
+    return float(distances(points, line, closed=False).max())
+
+
 def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]:
     """Segments and numbers of the result with the fewest numbers that stays within one unit."""
-    source = dense([np.array(s) for c in glyph.contours for s in c.segments()])
-    tree = cKDTree(source)
+    source = sampled((s for c in glyph.contours for s in c.segments()), SPACING)
     sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
     for size, segments, k in sorted(sizes):
-        curve = dense([np.array(s) for c in results[k] for s in c])
-        if len(curve) and farthest(curve, source, tree) <= 1.0 and farthest(source, curve, cKDTree(curve)) <= 1.0:
+        curve = sampled((np.array(s) for c in results[k] for s in c), SPACING)
+        if len(curve) and max(farthest(curve, source), farthest(source, curve)) <= 1.0:
             return segments, size
     return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))
 
 
-def farthest(points: FloatArray, line: FloatArray, tree: Any) -> float:
-    """Largest distance of points from a polyline, sought on the chords beside its three nearest vertices.
-
-    Three, as where two segments join a vertex comes twice.
-    """
-    nearest = tree.query(points, k=3)[1].ravel()
-    ends = np.repeat(points, 3, axis=0)
-    gaps = []
-    for step in (-1, 1):
-        a = line[nearest]
-        chord = line[np.clip(nearest + step, 0, len(line) - 1)] - a
-        square = (chord**2).sum(axis=1)
-        along = np.clip(((ends - a) * chord).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
-        gaps.append(np.hypot(*(ends - a - along[:, None] * chord).T))
-    return float(np.minimum(*gaps).reshape(-1, 3).min(axis=1).max())
-
-
-def dense(segments: list[FloatArray]) -> FloatArray:
-    """Points on all segments, at most about SPACING apart."""
-    points = []
-    for segment in segments:
-        reach = np.hypot(*np.diff(segment, axis=0).T).sum()
-        x = np.linspace(0, 1, int(np.ceil(reach / SPACING)) + 1)
-        points.append(evaluate(np.broadcast_to(segment, (len(x), *segment.shape)), x))
-    return np.concatenate(points) if points else np.empty((0, 2))
-
-
 if __name__ == "__main__":
-    from .table import markdown
+    from .measure import markdown
 
     table = rows()
     print(markdown(table))

@@ -1,12 +1,19 @@
-"""Timing: every case in turn, round after round, so that whatever else the machine does falls on all alike."""
+"""Timing, memory and tables: cases are timed in turn, so that what else the machine does falls on all alike.
+
+The memory of a run is the proportional set size of its processes, summed, in which a page that n processes share counts
+1/n for each. The memory of a process is the most it has had resident, shared pages included: what ``top`` shows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+import subprocess
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from statistics import median
-from time import perf_counter
-from typing import Any
+from time import perf_counter, sleep
+from typing import Any, NamedTuple
 
 
 @dataclass(frozen=True)
@@ -62,3 +69,81 @@ def in_words(seconds: float) -> str:
         if seconds * factor >= 1:
             return f"{seconds * factor:.3g} {unit}"
     return f"{seconds * 1e9:.3g} ns"
+
+
+PAUSE = 0.1
+"""Seconds between two looks."""
+
+
+class Watched(NamedTuple):
+    """Seconds of a command, the most memory of all its processes together, and of the largest of them, in MB."""
+
+    seconds: float
+    total: float
+    largest: float
+
+
+def run_watched(command: Sequence[str]) -> Watched:
+    """Run a command.
+
+    Raises:
+        CalledProcessError: it says that it failed.
+    """
+    total = largest = 0.0
+    start = perf_counter()
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None:
+            pids = family(process.pid)
+            total = max(total, sum(said(pid, "smaps_rollup", "Pss:") for pid in pids))
+            largest = max(largest, *(said(pid, "status", "VmHWM:") for pid in pids))
+            sleep(PAUSE)
+        seconds = perf_counter() - start
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, list(command))
+    return Watched(seconds, total, largest)
+
+
+def family(pid: int) -> list[int]:
+    """A process and its descendants."""
+    try:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    except OSError:  # it has ended
+        children = []
+    return [pid, *(each for child in children for each in family(int(child)))]
+
+
+def said(pid: int, file: str, entry: str) -> float:
+    """An entry of a process's file in MB; 0 of a process that has ended."""
+    try:
+        lines = Path(f"/proc/{pid}/{file}").read_text().splitlines()
+    except OSError:
+        return 0.0
+    return sum(int(line.split()[1]) for line in lines if line.startswith(entry)) / 1e3
+
+
+MARKERS = "<!-- benchmark {suite}: begin -->", "<!-- benchmark {suite}: end -->"
+
+
+def markdown(rows: list[Row]) -> str:
+    """The table; ratios say how many times as fast glyphspline is."""
+    lines = ["| what | measured | must | aim | reached | times |", "|---|---|---|---|---|---|"]
+    for row in rows:
+        unit = "x" if row.unit == "x" else f" {row.unit}"
+        limits = ["" if limit is None else f"{limit:g}{unit}" for limit in (row.must, row.aim)]
+        value = f"{row.value:.0f}" if row.value >= 1000 else f"{row.value:.3g}"
+        lines.append(f"| {row.what} | {value}{unit} | {limits[0]} | {limits[1]} | {row.reached()} | {row.note} |")
+    return "\n".join(lines)
+
+
+def write(suite: str, rows: list[Row], root: Path) -> None:
+    """Put the table into docs/benchmarks.md, between the suite's markers, and everything into outputs/benchmark/."""
+    begin, end = (marker.format(suite=suite) for marker in MARKERS)
+    page = root / "docs" / "benchmarks.md"
+    text = page.read_text(encoding="utf-8") if page.exists() else ""
+    if begin in text and end in text:
+        before, rest = text.split(begin, 1)
+        after = rest.split(end, 1)[1]
+        page.write_text(f"{before}{begin}\n{markdown(rows)}\n{end}{after}", encoding="utf-8")
+    target = root / "outputs" / "benchmark" / f"{suite}.json"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(json.dumps([row.as_json() for row in rows], indent=1) + "\n", encoding="utf-8")
