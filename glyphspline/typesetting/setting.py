@@ -1,16 +1,14 @@
-"""How a text is laid out, validated."""
+"""How a text is laid out, validated; OpenType features as HarfBuzz writes them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, TypeAlias
-from unicodedata import category
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 from ..errors import OptionError, is_positive, require, require_choice
-from .features import Feature, parsed
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 PathAlign: TypeAlias = Literal["start", "center", "end"]
@@ -19,19 +17,70 @@ Orientation: TypeAlias = Literal["mixed", "upright"]
 Side: TypeAlias = Literal["left", "right"]
 """Of a path, on which letters stand."""
 
-LONGEST = 1_000_000
-"""Characters of the longest text."""
-
 LANGUAGE = re.compile(r"(?:[A-Za-z]{2,3}|[A-Za-z]{5,8}|x)(?:-[A-Za-z0-9]{1,8})*")
 """Language tags (BCP 47), and HarfBuzz's private ones, as in "x-hbot-ABCD"."""
 
-PARAGRAPH = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
-"""What ends a line of the text."""
+FEATURE = re.compile(r"([+-]?)([ -~]{4})(?:\[(\d*)(?:(:)(\d*))?\])?(?:=(\d{1,9}|on|off))?")
+END = 2**32 - 1
+"""No character has a larger number: HarfBuzz's "to the end"."""
+
+
+class Feature(NamedTuple):
+    """A feature with its value, for the characters from ``start`` up to ``stop`` of the text."""
+
+    tag: str
+    value: int
+    start: int
+    stop: int
+
+
+def parsed_features(features: str) -> tuple[Feature, ...]:
+    """The features of a list with commas.
+
+    Raises:
+        OptionError: one is not written as HarfBuzz has it.
+    """
+    require(isinstance(features, str), "features are a string, such as 'liga,-kern,ss01=2'", features)
+    found = []
+    for entry in filter(None, map(str.strip, features.split(","))):
+        match = FEATURE.fullmatch(entry)
+        if not match or (match[1] == "-" and match[6]):
+            raise OptionError(
+                f"not a feature: {entry!r}; a feature is a tag of four characters with or without a sign, a range of"
+                " characters or a value, as in 'liga', '-kern', 'ss01=2', 'smcp[0:5]'"
+            )
+        value = {"on": 1, "off": 0, None: int(match[1] != "-")}.get(match[6])
+        start = int(match[3] or 0)
+        stop = int(match[5] or END) if match[4] or match[3] is None else start + 1
+        found.append(Feature(match[2], int(match[6]) if value is None else value, min(start, END), min(stop, END)))
+    return tuple(found)
+
+
+def check_features(features: Sequence[Feature], faces: Iterable[Any]) -> None:
+    """Raise an OptionError for a feature that no face has.
+
+    Args:
+        features: as :func:`parsed_features`. faces: HarfBuzz's.
+    """
+    known: set[str] = set()
+    for face in faces:
+        tables = set(face.table_tags)
+        if tables & {"morx", "mort", "kerx"}:  # Apple's, in which HarfBuzz finds features without names here
+            return
+        known |= {"kern"} & tables
+        for table in ("GSUB", "GPOS"):
+            for script in range(len(face.get_table_script_tags(table))):
+                for language in [0xFFFF, *range(len(face.get_script_language_tags(table, script)))]:
+                    known |= set(face.get_language_feature_tags(table, script, language))
+    for feature in features:
+        if feature.tag not in known:
+            has = f"it has {', '.join(sorted(known))}" if known else "it has none"
+            raise OptionError(f"the font has no feature {feature.tag!r}; {has}")
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What :func:`.lay_out.layout` is told of the text's setting, by the same names."""
+    """The typographic arguments of :func:`.lay_out.layout`, by the same names."""
 
     features: str = ""
     script: str | None = None
@@ -44,7 +93,7 @@ class Setting:
     parsed_features: tuple[Feature, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "parsed_features", parsed(self.features))
+        object.__setattr__(self, "parsed_features", parsed_features(self.features))
         if self.script is not None:
             from fontTools.unicodedata import script_name
 
@@ -73,26 +122,14 @@ class Setting:
         return self.vertical and (self.orientation == "upright" or self.direction == "btt")
 
 
-def check_text(text: str) -> None:
-    """Raise an OptionError for a text that cannot be laid out."""
-    require(isinstance(text, str), "text is a string", text)
-    require(bool(text), "text has at least one character", text)
-    if len(text) > LONGEST:
-        raise OptionError(f"text has {len(text):,} characters, more than {LONGEST:,}")
-    for character in sorted(set(text)):
-        kind = category(character)
-        if kind == "Cs" or (kind == "Cc" and character != "\t" and not PARAGRAPH.fullmatch(character)):
-            what = "half of a surrogate pair" if kind == "Cs" else "a control character"
-            raise OptionError(f"text has {what}, U+{ord(character):04X}, as character {text.index(character)}")
-
-
-def paragraphs(text: str) -> Sequence[tuple[int, int]]:
-    """First and last (exclusive) character of each paragraph; what ends a paragraph is in none of them."""
-    ends = [match.span() for match in PARAGRAPH.finditer(text)]
-    if ends and ends[-1][1] == len(text):  # a file's last line ends too
-        ends[-1] = (ends[-1][0], ends[-1][0])
-        text = text[: ends[-1][0]]
-        ends.pop()
-    starts = [0, *(stop for _, stop in ends)]
-    stops = [*(start for start, _ in ends), len(text)]
-    return list(zip(starts, stops, strict=True))
+def for_buffer(features: Sequence[Feature], origin: int) -> dict[str, Any]:
+    """The features as uharfbuzz takes them; ``origin``: number in the text of the buffer's first character."""
+    found: dict[str, Any] = {}
+    for tag, value, start, stop in features:
+        if start == 0 and stop == END:
+            found[tag] = value
+        else:
+            before = found.get(tag, [])
+            found[tag] = [(0, END, before)] if isinstance(before, int) else before
+            found[tag].append((max(start - origin, 0), stop if stop == END else max(stop - origin, 0), value))
+    return found

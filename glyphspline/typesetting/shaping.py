@@ -14,7 +14,7 @@ import uharfbuzz as hb
 from ..errors import GlyphsplineError
 from ..readers import Source
 from ..types import BoolArray, FloatArray, IntArray
-from .features import Feature, for_buffer
+from .setting import Feature, for_buffer
 
 CONTEXT = 8
 """Characters before and after a run that HarfBuzz sees; it looks at five."""
