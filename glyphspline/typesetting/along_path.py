@@ -101,7 +101,7 @@ def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side
     lines = len(np.unique(layout.line))
     if lines > 1:
         raise GlyphsplineError(f"a text of {lines} lines; on a path there is one", font=path.name)
-    if _columns(layout):
+    if layout.vertical:
         raise GlyphsplineError("a text set in columns; on a path it is horizontal", font=path.name)
     if side == "right":
         path = path.reversed()
@@ -165,16 +165,6 @@ def letters_of(layout: Layout) -> Letters:
     np.minimum.at(left, of[counts], np.minimum(pens, ends)[counts])
     np.maximum.at(right, of[counts], np.maximum(pens, ends)[counts])
     return Letters(of, left + begin, right + begin, character[kept])
-
-
-def _columns(layout: Layout) -> bool:
-    """Whether the pen goes up or down: glyphs stand nearer to where their advances add up to in y than in x."""
-    wide = layout.advance != 0
-    (x, y), ends = layout.origin[wide].T, np.cumsum(layout.advance)[wide]
-    starts = ends - layout.advance[wide]
-    if len(x) < 2:
-        return False
-    return bool(min(np.ptp(y + starts), np.ptp(y + ends), np.ptp(y - starts), np.ptp(y - ends)) < np.ptp(x - starts))
 
 
 def _turned(arms: FloatArray, tangents: FloatArray) -> FloatArray:

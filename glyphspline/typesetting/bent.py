@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import comb
 
 import numpy as np
 
-from ..curves.bezier import cross, derivative_points, split
+from ..curves.bezier import cross, split
+from ..curves.cubics import bernstein
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
 from ..types import BoolArray, FloatArray, IntArray
@@ -25,10 +25,10 @@ SAMPLES = 33
 BETWEEN = 1.02
 """Factor on the largest error measured, for what lies between: at 513 places it was larger by 0.7 % at most."""
 
-ROUNDS = 5
-"""Least-squares fits of the two handles, each followed by new parameters of the nearest points."""
+ROUNDS = 8
+"""Fits of a cubic's handles to the points of its deformed one."""
 
-ENOUGH = 0.25
+ENOUGH = 0.5
 """Share of the tolerance below which a cubic's handles are not fitted any more."""
 
 ROUNDING_RADIUS = 4.0
@@ -88,9 +88,12 @@ def bend(
     require(is_positive(tolerance), "the tolerance of a bend is a positive distance", tolerance)
     path, letters, start = laid(layout, path, offset, align, side)
     flat = layout.outline()
-    cubics, degrees, contours = _segments(flat)
-    if not len(cubics):
+    if not len(flat.contours):
         return flat
+    cubics = np.concatenate([contour.cubics() for contour in flat.contours])
+    kept = (cubics != cubics[:, :1]).any(axis=(1, 2))
+    contours = np.repeat(np.arange(len(flat.contours)), [len(contour) for contour in flat.contours])[kept]
+    cubics, degrees = cubics[kept], flat.arrays.degrees[kept]
     height = float(np.abs(cubics[..., 1]).max())
     smooth = path.rounded(ROUNDING_RADIUS * height) if height else path
     line = _Line(smooth, layout.text, letters, start, smooth.length / path.length, cubics)
@@ -159,16 +162,6 @@ class _Line:
             f"reaches {abs(y[worst]):.4g} to that side: {', '.join(letters)} would fold over",
             font=self.path.name,
         )
-
-
-def _segments(flat: Outline) -> tuple[FloatArray, IntArray, IntArray]:
-    """The segments of some length as cubics (m, 4, 2), their degrees, and which contour each is of."""
-    from ..outlines.segments import all_cubics, lasting  # imports the compiler
-
-    cubics = all_cubics(flat.arrays)
-    kept = lasting(cubics)
-    contours = np.repeat(np.arange(flat.arrays.num_contours), np.diff(flat.arrays.offsets))
-    return cubics[kept], flat.arrays.degrees[kept], contours[kept]
 
 
 def _joints(path: Path, rounds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -253,33 +246,32 @@ def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArr
 def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """A cubic for each deformed one, (k, 4, 2), the largest error seen, and the stretch of lengths along the path.
 
+    It has the arms of the deformed control polygon; where these are not near enough their lengths are fitted.
+
     Raises:
         GlyphsplineError: one folds over.
     """
-    x, y = np.moveaxis(_values(parts, np.linspace(0, 1, SAMPLES)), -1, 0)
+    from ..fitting.sharp.cubic_fit import fit_cubic
+
+    basis = bernstein(SAMPLES - 1)
+    x, y = np.einsum("jp,kjc->ckp", basis, parts)
     points, T, kappa = line.path.frame(x)
     N = np.stack([-T[..., 1], T[..., 0]], axis=-1)
     shrink = 1 - kappa * y
     if (folded := shrink <= 0).any():
         raise line.fold(x[folded], y[folded], kappa[folded])
     target = points + y[..., None] * N
-    arms = _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3)
-    pieces, at = _handles(target, *arms, ENOUGH * tolerance)
-    return pieces, BETWEEN * np.sqrt(_off(pieces, at, target)), shrink.max(axis=1)
-
-
-def _values(pieces: FloatArray, places: FloatArray) -> FloatArray:
-    """(k, p, 2) all pieces (k, degree + 1, 2) at the same places (p,)."""
-    d = pieces.shape[1] - 1
-    basis = np.stack([comb(d, j) * places**j * (1 - places) ** (d - j) for j in range(d + 1)])
-    return np.einsum("jp,kjc->kpc", basis, pieces)
-
-
-def _pointwise(pieces: FloatArray, at: FloatArray) -> FloatArray:
-    """(k, p, 2) each cubic at its own parameters (k, p)."""
-    z = 1 - at
-    basis = np.stack([z * z * z, 3 * z * z * at, 3 * z * at * at, at * at * at], axis=2)
-    return basis @ pieces
+    first, last = _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3)
+    pieces = np.stack([target[:, 0], target[:, 0] + first, target[:, -1] - last, target[:, -1]], axis=1)
+    error = np.sqrt(((np.einsum("jp,kjc->kpc", basis, pieces) - target) ** 2).sum(axis=2).max(axis=1))
+    enough, handles = ENOUGH * tolerance, np.empty((2, 2))
+    for k in np.flatnonzero(error > enough).tolist():
+        ways = first[k] / np.hypot(*first[k]), last[k] / np.hypot(*last[k])
+        off = fit_cubic(target[k], ways[0], False, ways[1], False, enough, ROUNDS, handles[0], handles[1])
+        if off < error[k]:
+            arms = handles * (np.hypot(*(target[k, -1] - target[k, 0])) / 3)
+            pieces[k, 1:3], error[k] = [target[k, 0] + arms[0], target[k, -1] - arms[1]], off
+    return pieces, BETWEEN * error, shrink.max(axis=1)
 
 
 def _mapped_arm(path: Path, parts: FloatArray, end: int) -> FloatArray:
@@ -297,53 +289,6 @@ def _mapped_arm(path: Path, parts: FloatArray, end: int) -> FloatArray:
     _, T, kappa = path.frame(here[:, 0], -forward if end else forward)
     N = np.stack([-T[:, 1], T[:, 0]], axis=1)
     return ((1 - kappa * here[:, 1]) * arm[:, 0])[:, None] * T + arm[:, 1:] * N
-
-
-def _handles(target: FloatArray, first: FloatArray, last: FloatArray, enough: float) -> tuple[FloatArray, FloatArray]:
-    """Cubics (k, 4, 2) from the first to the last of (k, p, 2) points, near all by least squares.
-
-    Args:
-        first, last: (k, 2) the arms that the cubics have at first; only their lengths are changed.
-        enough: distance from the points below which cubics stay as they are.
-
-    Returns:
-        The cubics, and ascending parameters (k, p) of places near the points.
-    """
-    best = np.stack([target[:, 0], target[:, 0] + first, target[:, -1] - last, target[:, -1]], axis=1)
-    best_at = np.tile(np.linspace(0, 1, target.shape[1]), (len(target), 1))
-    least = _off(best, best_at, target)
-    todo = np.flatnonzero(least > enough * enough)
-    at, target, first, last = best_at[todo], target[todo], first[todo], last[todo]
-    start, end = target[:, 0], target[:, -1]
-    for _ in range(ROUNDS if len(todo) else 0):
-        z = 1 - at
-        b1, b2 = 3 * z * z * at, 3 * z * at * at
-        fixed = (z * z * z + b1)[..., None] * start[:, None] + (b2 + at * at * at)[..., None] * end[:, None]
-        u, v, rest = b1[..., None] * first[:, None], -b2[..., None] * last[:, None], target - fixed
-        uu, uv, vv, ur, vr = (np.einsum("kpc,kpc->k", p, q) for p, q in ((u, u), (u, v), (v, v), (u, rest), (v, rest)))
-        whole = uu * vv - uv * uv
-        good = whole > 1e-12 * uu * vv
-        whole = np.where(good, whole, 1.0)
-        alpha, beta = (ur * vv - vr * uv) / whole, (vr * uu - ur * uv) / whole
-        good &= (alpha > 0) & (beta > 0)
-        alpha, beta = np.where(good, alpha, 1.0)[:, None], np.where(good, beta, 1.0)[:, None]
-        pieces = np.stack([start, start + alpha * first, end - beta * last, end], axis=1)
-        d = derivative_points(pieces)
-        velocity = np.stack([z * z, 2 * z * at, at * at], axis=2) @ d
-        square = (velocity * velocity).sum(axis=2)
-        step = ((target - _pointwise(pieces, at)) * velocity).sum(axis=2) / np.where(square > 0, square, np.inf)
-        at = np.clip(at + step, 0.0, 1.0)
-        at[:, 0], at[:, -1] = 0.0, 1.0
-        at = np.maximum.accumulate(at, axis=1)
-        off = _off(pieces, at, target)
-        better = off < least[todo]
-        best[todo[better]], best_at[todo[better]], least[todo[better]] = pieces[better], at[better], off[better]
-    return best, best_at
-
-
-def _off(pieces: FloatArray, at: FloatArray, target: FloatArray) -> FloatArray:
-    """(k,) the square of the largest distance of each cubic at its parameters from the points."""
-    return ((_pointwise(pieces, at) - target) ** 2).sum(axis=2).max(axis=1)
 
 
 def _straight(pieces: FloatArray) -> BoolArray:

@@ -103,8 +103,9 @@ def layout(
         box = (-below + descender, -measure, ascender, 0.0)
     scale = np.array([shaper.scale for shaper in shapers])[of_font]
     return Layout(
-        text, fonts, of_font, gid, cluster, number, origin, angles, advance, box, tuple(missing), scale, tuple(notes)
-    )
+        text, fonts, of_font, gid, cluster, number, origin, angles, advance, box, tuple(missing), scale, tuple(notes),
+        setting.vertical,
+    )  # fmt: skip
 
 
 def check_text(text: str) -> None:

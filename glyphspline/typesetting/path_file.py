@@ -1,15 +1,13 @@
 """A path from an SVG file: one of its shapes, by its id."""
 
-# The names of a pen's methods are fontTools' own.
-# ruff: noqa: N802, N815
-
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path as FilePath
-from typing import Any
 
 import numpy as np
+from fontTools.pens.recordingPen import RecordingPen
 
 from ..curves.bezier import as_cubic
 from ..errors import GlyphsplineError
@@ -59,44 +57,31 @@ def open_path(given: str | FilePath) -> Path:
     element, matrix = found[0]
     name = name or element.get("id") or ""
     place = f"{file}#{name}" if name else file
-    pen = PathPen()
+    pen = RecordingPen()
     try:
         draw_path(path_data(element), matrix, pen, ARC)
     except GlyphsplineError as error:
         raise error.locate(font=place) from error
     except Exception as error:  # a broken path raises any of a dozen types
         raise GlyphsplineError(f"a broken path: {reason(error)}", font=place) from error
-    pieces = [np.array(piece) for piece in pen.pieces if piece]
+    pieces = [np.array(chain) for chain in _chains(pen.value) if chain]
     if len(pieces) > 1:
         raise GlyphsplineError(f"the path is of {len(pieces)} pieces; text runs along one", font=place)
     cubics = pieces[0] if pieces else np.empty((0, 4, 2))
     return Path.of(cubics, name=place)
 
 
-class PathPen:
-    """Collects the segments of subpaths as cubics, those of a line that closes one too."""
-
-    def __init__(self) -> None:
-        self.pieces: list[list[FloatArray]] = []
-        self._here: Any = (0.0, 0.0)
-        self._start: Any = (0.0, 0.0)
-
-    def moveTo(self, point: Any) -> None:
-        """Begin a subpath."""
-        self.pieces.append([])
-        self._here = self._start = point
-
-    def lineTo(self, *points: Any) -> None:
-        """Add a segment: a line, or with more points a quadratic or a cubic."""
-        self.pieces[-1].append(as_cubic(np.array([self._here, *points], dtype=np.float64)))
-        self._here = points[-1]
-
-    qCurveTo = curveTo = lineTo
-
-    def closePath(self) -> None:
-        """End a subpath with a line to its start, if it is not there."""
-        if self._here != self._start:
-            self.lineTo(self._start)
-
-    def endPath(self) -> None:
-        """End an open subpath."""
+def _chains(drawn: Sequence[tuple[str, tuple[tuple[float, float], ...]]]) -> list[list[FloatArray]]:
+    """The segments of each subpath of a recorded drawing as cubics, those of a line that closes one too."""
+    chains: list[list[FloatArray]] = []
+    here = start = (0.0, 0.0)
+    for name, points in drawn:
+        if name == "moveTo":
+            chains.append([])
+            here = start = points[0]
+            continue
+        ends = (start,) if name == "closePath" and here != start else points  # without any: nothing is added
+        if ends:
+            chains[-1].append(as_cubic(np.array([here, *ends], dtype=np.float64)))
+            here = ends[-1]
+    return chains

@@ -43,6 +43,7 @@ class Layout:
         missing: characters without a glyph, each once, in the order of the text: the first font's .notdef stands there.
         scale: (n,) by which the glyph is enlarged: units of the first font per unit of its own. None: all by 1.
         notes: remarks, such as that a source has no tables for shaping.
+        vertical: whether lines are columns.
     """
 
     text: str
@@ -58,6 +59,7 @@ class Layout:
     missing: tuple[str, ...] = ()
     scale: FloatArray | None = None
     notes: tuple[str, ...] = ()
+    vertical: bool = False
 
     def __repr__(self) -> str:
         said = f"{self.text[:24]}…" if len(self.text) > 25 else self.text

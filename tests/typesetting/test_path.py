@@ -314,7 +314,7 @@ def test_what_cannot_stand_on_a_path_is_refused() -> None:
     path, layout = Path.of([[0, 0], [9000, 0]]), placed([300, 300], [0, 1])
     with pytest.raises(GlyphsplineError, match="2 lines"):
         along(replace(layout, line=np.array([0, 1])), path)
-    columns = replace(layout, origin=np.array([[0.0, 0.0], [0.0, -300.0]]))
+    columns = replace(layout, vertical=True)
     with pytest.raises(GlyphsplineError, match="columns"):
         along(columns, path)
     for arguments in ({"offset": np.nan}, {"offset": "a"}, {"align": "middle"}, {"side": "top"}):
