@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .comparing.difference import Difference as Difference
     from .comparing.difference import Turn as Turn
     from .curves.bspline import Spline as Spline
-    from .datasets.dataset_run import dataset as dataset
-    from .datasets.dataset_spec import DatasetSpec as DatasetSpec
-    from .datasets.loading import Loaded as Loaded
-    from .datasets.loading import load as load
+    from .datasets.load import Loaded as Loaded
+    from .datasets.load import load as load
+    from .datasets.run import dataset as dataset
+    from .datasets.spec import DatasetSpec as DatasetSpec
     from .errors import FontError as FontError
     from .errors import GlyphsplineError as GlyphsplineError
     from .errors import OptionError as OptionError
@@ -76,9 +76,9 @@ _HOMES = {
     ".comparing.compare": "compare",
     ".comparing.difference": "Apart Difference Turn",
     ".curves.bspline": "Spline",
-    ".datasets.dataset_run": "dataset",
-    ".datasets.dataset_spec": "DatasetSpec",
-    ".datasets.loading": "Loaded load",
+    ".datasets.run": "dataset",
+    ".datasets.spec": "DatasetSpec",
+    ".datasets.load": "Loaded load",
     ".errors": "FontError GlyphsplineError OptionError OutputError PolygonError",
     ".fitting.convert": "convert convert_many",
     ".fitting.convert_masters": "MastersContourResult MastersResult convert_masters",

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from ..datasets.dataset_spec import ROWS, TAKEN, DatasetSpec
+from ..datasets.spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
 from ..fields import About
 from . import arguments as opt
@@ -42,7 +42,7 @@ def dataset(
 
     Splits are by family. The same fonts and options give the same bytes, and a run that was interrupted goes on.
     """
-    from ..datasets.dataset_run import dataset as make
+    from ..datasets.run import dataset as make
 
     if not fit:
         spec = replace(spec, options=None)

@@ -1,24 +1,122 @@
-"""The data card, README.md with the header of Hugging Face's ``datasets``, and the table of fonts."""
+"""What a data set says of itself: counts, the table of fonts, and the data card with the header of ``datasets``."""
 
 from __future__ import annotations
 
 import io
 import shlex
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import asdict, dataclass, field, fields
 from itertools import chain
 from typing import Any
 
 from ..extras import need
 from ..fields import arguments
 from ..types import counted
-from .dataset_columns import ABOUT
-from .dataset_spec import DatasetSpec
-from .dataset_summary import Summary
-from .licences import UNKNOWN
-from .plan import Plan
-from .scan import SPLITS
+from .columns import ABOUT, type_of
+from .plan import Plan, Shard
+from .scan import SPLITS, UNKNOWN, FontFacts
 from .shards import OfFont
+from .spec import DatasetSpec
+
+STATUSES = ("taken", "left out", "duplicate", "failed")
+"""Of fonts."""
+
+SHOWN = 5
+"""Fonts that failed and are named."""
+
+
+@dataclass
+class OfSplit:
+    """Counts of a split; ``bytes`` of its files."""
+
+    families: int = 0
+    fonts: int = 0
+    glyphs: int = 0
+    rows: int = 0
+    duplicates: int = 0
+    bytes: int = 0
+
+
+@dataclass
+class Summary:
+    """Counts of a data set.
+
+    Attributes:
+        splits: by name. fonts: faces, at each of their locations, by status: taken, left out, duplicate, failed.
+        licences: fonts and rows by licence. failed: glyphs that have no rows, and some of them: (font, glyph, reason).
+        unread: the first few fonts that failed: (file, reason). seconds: that the run took.
+    """
+
+    splits: dict[str, OfSplit] = field(default_factory=dict)
+    fonts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(STATUSES, 0))
+    licences: dict[str, tuple[int, int]] = field(default_factory=dict)
+    failed: int = 0
+    failures: list[tuple[str, str, str]] = field(default_factory=list)
+    unread: list[tuple[str, str]] = field(default_factory=list)
+    seconds: float = 0.0
+
+    @classmethod
+    def of(cls, plan: Plan, totals: Mapping[int, OfFont], sizes: Mapping[Shard, int]) -> Summary:
+        """The counts of a plan that was carried out, from those of each font and the sizes of shards."""
+        found = cls()
+        families: dict[str, set[str | None]] = {split: set() for split in SPLITS}
+        for number, font in enumerate(plan.fonts):
+            found.fonts[font.status] += 1
+            if font.status == "failed" and len(found.unread) < SHOWN:
+                found.unread.append((font.file, font.reason or ""))
+            if font.split is None:
+                continue
+            own = totals.get(number, OfFont())
+            split = found.splits.setdefault(font.split, OfSplit())
+            families[font.split].add(font.family)
+            split.fonts += 1
+            split.glyphs += own.glyphs
+            split.rows += own.rows
+            split.duplicates += own.duplicates
+            fonts, rows = found.licences.get(font.licence or UNKNOWN, (0, 0))
+            found.licences[font.licence or UNKNOWN] = fonts + 1, rows + own.rows
+            found.failed += own.failed
+            found.failures += [(font.file, *pair) for pair in own.reasons][: SHOWN - len(found.failures)]
+        for name, split in found.splits.items():
+            split.families = len(families[name])
+            split.bytes = sum(size for shard, size in sizes.items() if shard.split == name)
+        return found
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of all splits."""
+        return sum(split.rows for split in self.splits.values())
+
+    @property
+    def glyphs(self) -> int:
+        """Number of glyphs of all splits."""
+        return sum(split.glyphs for split in self.splits.values())
+
+    @property
+    def bytes(self) -> int:
+        """Size of the shards."""
+        return sum(split.bytes for split in self.splits.values())
+
+    def facts(self) -> dict[str, Any]:
+        """As plain data."""
+        return asdict(self) | {"rows": self.rows, "glyphs": self.glyphs, "bytes": self.bytes}
+
+    def lines(self) -> Iterator[str]:
+        """What is said of it."""
+        rest = [f"{count} {status}" for status, count in sorted(self.fonts.items()) if count and status != "taken"]
+        more = f" ({', '.join(rest)})" if rest else ""
+        size = f"{self.bytes / 1e6:.1f} MB"
+        yield (
+            f"{counted(self.rows, 'row')} of {counted(self.glyphs, 'glyph')} of {counted(self.fonts['taken'], 'font')}"
+            f"{more}, {size}, in {self.seconds:.1f} s"
+        )
+        for file, reason in self.unread:
+            yield f"{file}: {reason}"
+        if self.failed:
+            yield f"{counted(self.failed, 'glyph')} failed"
+            for file, glyph, reason in self.failures:
+                yield f"{file}, {glyph}: {reason}"
+
 
 HUB = {
     "OFL-1.1": "ofl-1.1", "Apache-2.0": "apache-2.0", "MIT": "mit", "CC0-1.0": "cc0-1.0", "CC-BY-4.0": "cc-by-4.0",
@@ -31,43 +129,30 @@ SIZES = {
 }  # fmt: skip
 """What the header calls a number of rows below these."""
 
-TEXT_COLUMNS = (
-    "file", "sha256", "family", "style", "postscript_name", "version", "location", "embedding", "licence",
-    "licence_text", "licence_url", "split", "status", "reason", "same_as",
-)  # fmt: skip
-
-
-LISTED = 100
-"""Characters that a command in the card has as they are; ``dataset.json`` has them all."""
-
 
 def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
     """``fonts.parquet``: a row for each face at each location, with what failed and why."""
     pa = need("parquet")
     from pyarrow import parquet
 
-    names = pa.list_(pa.string())
-    kinds = {name: pa.string() for name in TEXT_COLUMNS} | {"face": pa.uint32(), "axes": names, "scripts": names}
-    kinds |= {"weight_class": pa.uint16(), "width_class": pa.uint16(), "italic": pa.bool_()}
-    kinds |= {name: pa.float64() for name in ("units_per_em", "ascender", "descender", "coverage")}
-    kinds |= {name: pa.uint32() for name in ("glyphs", "characters", "taken")}
-    of_fonts = [totals.get(k, OfFont()) for k in range(len(plan.fonts))]
-    columns: dict[str, Any] = {}
+    types = {"str": "string", "int": "uint32", "float": "double", "bool": "bool", "tuple[str, ...]": "string[]"}
+    small = dict.fromkeys(("weight_class", "width_class"), "uint16")
     units = {"units_per_em": "font unit", "ascender": "font unit", "descender": "font unit", "axes": "user space"}
-    schema = []
-    for field in fields(plan.fonts[0]):
-        if field.name not in ("path", "at"):
-            values = [getattr(font, field.name) for font in plan.fonts]
-            columns[field.name] = pa.array(values, kinds[field.name])
-            unit = units.get(field.name)
-            schema.append(pa.field(field.name, kinds[field.name], metadata={"unit": unit} if unit else None))
+    of_fonts = [totals.get(k, OfFont()) for k in range(len(plan.fonts))]
+    columns: dict[str, tuple[str, list[Any]]] = {}
+    for one in fields(FontFacts):
+        if one.name not in ("path", "at"):
+            kind = small.get(one.name) or types[str(one.type).removesuffix(" | None")]
+            columns[one.name] = kind, [getattr(font, one.name) for font in plan.fonts]
     for name in ("rows", "duplicates", "failed"):
-        columns[name] = pa.array([getattr(of_font, name) for of_font in of_fonts], pa.uint32())
-        schema.append(pa.field(name, pa.uint32()))
-    columns["failures"] = pa.array([[f"{glyph}: {why}" for glyph, why in f.reasons] for f in of_fonts], names)
-    schema.append(pa.field("failures", names))
+        columns[name] = "uint32", [getattr(of_font, name) for of_font in of_fonts]
+    columns["failures"] = "string[]", [[f"{glyph}: {why}" for glyph, why in f.reasons] for f in of_fonts]
+    schema = pa.schema([
+        pa.field(name, type_of(kind), metadata={"unit": units[name]} if name in units else None)
+        for name, (kind, _) in columns.items()
+    ])  # fmt: skip
     file = io.BytesIO()
-    table = pa.Table.from_arrays(list(columns.values()), schema=pa.schema(schema))
+    table = pa.table({name: values for name, (_, values) in columns.items()}, schema=schema)
     parquet.write_table(table, file, compression="zstd", row_group_size=1000)
     return file.getvalue()
 
@@ -76,7 +161,8 @@ def command(spec: DatasetSpec) -> str:
     """The call of the command line that makes such a data set: what is not default."""
     found = arguments(spec, DatasetSpec())
     fit = found.pop("options", []) if spec.options else ["--no-fit"]
-    if not (len(spec.characters) <= LISTED and spec.characters.isprintable() and "`" not in spec.characters):
+    # ``dataset.json`` has them all.
+    if not (len(spec.characters) <= 100 and spec.characters.isprintable() and "`" not in spec.characters):
         found["characters"] = ["--text-file", "CHARACTERS.txt"]
     return f"glyphspline dataset FONTS… --out DIR {shlex.join([*chain(*found.values()), *fit])}".rstrip()
 
@@ -171,9 +257,9 @@ def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
         yield ""
     yield "| column | type | unit | what it holds |"
     yield "|---|---|---|---|"
-    for field in schema:
-        unit = (field.metadata or {}).get(b"unit", b"").decode()
-        yield f"| {field.name} | {_kind(str(field.type))} | {unit} | {ABOUT[field.name]} |"
+    for column in schema:
+        unit = (column.metadata or {}).get(b"unit", b"").decode()
+        yield f"| {column.name} | {_kind(str(column.type))} | {unit} | {ABOUT[column.name]} |"
 
 
 def _kind(text: str) -> str:

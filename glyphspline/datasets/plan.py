@@ -13,8 +13,8 @@ from importlib.metadata import version
 from typing import Any, NamedTuple
 
 from .._version import __version__
-from .dataset_spec import DatasetSpec
 from .scan import SPLITS, FontFacts
+from .spec import DatasetSpec
 
 SHARD = 10_000
 """Glyphs in a shard, at most: of Latin letters some 30 MB, with 64 points a contour and their fit."""

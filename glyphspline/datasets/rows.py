@@ -1,4 +1,4 @@
-"""Rows of a data set: glyphs or contours as an Arrow table, made from flat arrays."""
+"""Rows of a data set, made in a worker: glyphs or contours as an Arrow table, from flat arrays, and grey pictures."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from ..fitting.convert import convert_many, unfitted
 from ..fitting.measures import check_coordinates
 from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
 from ..outlines.canonical_outlines import canonical_outlines
-from ..outlines.outline import Outline
-from ..outlines.resampling import Resampled, at_vertices, resampled
+from ..outlines.contour_arrays import ContourArrays
+from ..outlines.outline import FontMetrics, Outline
+from ..outlines.resampling import at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
-from .dataset_spec import DatasetSpec
-from .grey_pictures import rasters
-from .schema import SCHEMA_VERSION, schema
+from .columns import OF_FONTS, SCHEMA_VERSION, schema
+from .scan import FontFacts, category_of, script_of
+from .spec import DatasetSpec
 
 SHAPE_STEPS = 10_000
 """Steps an em to which coordinates are rounded before outlines are compared."""
@@ -44,7 +45,7 @@ def fits_of(outlines: Sequence[Outline], spec: DatasetSpec) -> list[GlyphResult 
 
 
 def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] | None, spec: DatasetSpec) -> Any:
-    """Rows of the glyphs of one font, or of some of them, with the columns of :mod:`.schema`.
+    """Rows of the glyphs of one font, or of some of them, with the columns of :mod:`.columns`.
 
     Args:
         outlines: as their font has them.
@@ -60,7 +61,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
 
     Example:
         >>> from glyphspline import open_font
-        >>> from glyphspline.datasets.dataset_spec import DatasetSpec
+        >>> from glyphspline.datasets.spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
         2
@@ -121,7 +122,6 @@ def _point_columns(found: ConvertedContours, factors: FloatArray, fitted: bool, 
     """Points of each contour with tangents, curvature and corners."""
     pa = arrow()
     angle = np.radians(spec.options.corner_angle if fitted and spec.options is not None else CORNER_ANGLE)
-    at: Resampled
     if spec.points is None:
         at = at_vertices(found.curves, found.polygons, angle)
     else:
@@ -151,3 +151,71 @@ def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str,
         "advance": pa.array(np.array([outline.advance for outline in outlines], dtype=np.float64) / scales),
         "em": pa.array(np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales),
     }
+
+
+def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:
+    """The table with the columns of script, category and font, and one for duplicates that is not filled yet.
+
+    Strings are plain ones, as libraries of data sets expect; files keep each distinct one once a row group.
+    """
+    pa, layout = arrow(), schema(spec, of_fonts=True)
+    first = {outline.gid: outline.unicodes[0] for outline in outlines if outline.unicodes}
+    codes = [first.get(gid) for gid in table["gid"].to_pylist()]
+    metrics = outlines[0].metrics if outlines else FontMetrics()  # of all in a batch: drawings have their own
+    unit = 1.0 if spec.normalise == "units" else metrics.units_per_em
+    values = {
+        "family": font.family, "style": font.style, "weight": font.weight_class, "width": font.width_class,
+        "italic": font.italic, "location": font.location, "units_per_em": metrics.units_per_em,
+        "ascender": metrics.ascender / unit, "descender": metrics.descender / unit, "licence": font.licence,
+        "split": font.split, "font": font.sha256, "face": font.face, "duplicate": None,
+    }  # fmt: skip
+    columns = {name: pa.repeat(pa.scalar(value, layout.field(name).type), len(codes)) for name, value in values.items()}
+    for name, of_character in (("script", script_of), ("category", category_of)):
+        columns[name] = pa.array([None if code is None else of_character(code) for code in codes], pa.string())
+    return pa.Table.from_arrays([*table.columns, *(columns[name] for name in OF_FONTS)], schema=layout)
+
+
+def rasters(outlines: Sequence[Outline], contours: ContourArrays, offsets: IntArray, size: int) -> Any:
+    """Pictures of ``size`` by ``size`` pixels of glyphs, as an Arrow array of lists of rows, the first on top.
+
+    Agg, which matplotlib brings along, weighs each pixel by the share of it that the outline covers, in 256 steps,
+    under the non-zero rule. The picture is a square of one em: from left to right its middle is that of the advance,
+    from bottom to top that between descender and ascender. What is beyond is cut off.
+
+    Args:
+        contours: of all outlines; offsets: (G + 1,) where those of each begin.
+    """
+    from matplotlib.backends.backend_agg import RendererAgg
+    from matplotlib.path import Path
+    from matplotlib.transforms import Affine2D
+
+    renderer = RendererAgg(size, size, 72)
+    context = renderer.new_gc()
+    context.set_linewidth(0.0)
+    context.set_snap(False)
+    pictures = np.zeros((len(outlines), size, size), dtype=np.uint8)
+    for g, outline in enumerate(outlines):
+        own = contours.part(int(offsets[g]), int(offsets[g + 1]))
+        if not own.num_contours:
+            continue
+        em, metrics = outline.metrics.units_per_em, outline.metrics
+        left, bottom = (outline.advance - em) / 2, (metrics.ascender + metrics.descender - em) / 2
+        renderer.clear()
+        placed = Affine2D().translate(-left, -bottom).scale(size / em)
+        renderer.draw_path(context, Path(*_path(own)), placed, (0.0, 0.0, 0.0))
+        pictures[g] = np.asarray(renderer.buffer_rgba())[..., 3]
+    pa = arrow()
+    lines = pa.FixedSizeListArray.from_arrays(pa.array(pictures.ravel()), size)
+    return pa.FixedSizeListArray.from_arrays(lines, size)
+
+
+def _path(contours: ContourArrays) -> tuple[Any, Any]:
+    """Vertices and codes of matplotlib's path."""
+    move, close = 1, 79
+    vertices, codes = list[FloatArray](), list[Any]()
+    for c in range(contours.num_contours):
+        part = contours.part(c, c + 1)
+        vertices += [part.points, part.points[:1], part.points[:1]]
+        drawn = np.repeat(part.degrees + 1, part.degrees)  # LINETO 2, CURVE3 3, CURVE4 4
+        codes += [[move], drawn, [close]]
+    return np.concatenate(vertices), np.concatenate(codes).astype(np.uint8)

@@ -10,9 +10,8 @@ from typing import Any, BinaryIO, NamedTuple, TypeAlias
 import numpy as np
 
 from ..extras import need
+from ..runs import remote
 from ..types import BoolArray, IntArray
-from . import store
-from .chunk_rows import Made
 
 ROW_GROUP, GROUP_BYTES = 2000, 1 << 26
 """Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger. A group of so
@@ -26,6 +25,19 @@ FACTS, MARK = b"glyphspline.shard", b"glyphspline.run"
 
 Held: TypeAlias = "dict[int, OfFont]"
 """What a finished shard holds of each font, by the font's number in the plan."""
+
+
+class Made(NamedTuple):
+    """The rows of some glyphs.
+
+    Attributes:
+        rows: an Arrow table as an IPC stream. glyphs: number of glyphs in it.
+        failed: name of each glyph that has no rows, and why.
+    """
+
+    rows: bytes
+    glyphs: int
+    failed: list[tuple[str, str]]
 
 
 class OfFont(NamedTuple):
@@ -138,7 +150,7 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
             facts = json.dumps({str(font): of_font for font, of_font in held.items()}, ensure_ascii=False)
             writer.add_key_value_metadata({FACTS: facts.encode(), MARK: mark.encode()})
 
-    store.put(path, write)
+    remote.put(path, write)
     return held
 
 
@@ -163,10 +175,10 @@ def finished(path: str, mark: str) -> Held | None:
     pa = need("parquet")
     from pyarrow import parquet
 
-    if not store.exists(path):
+    if not remote.exists(path):
         return None
     try:
-        with store.read(path) as file:
+        with remote.read(path) as file:
             metadata = parquet.read_metadata(file).metadata or {}
         if metadata.get(MARK) != mark.encode():
             return None
@@ -180,7 +192,7 @@ def add_shapes(path: str, shapes: Shapes) -> None:
     """Add the shapes of a finished shard, one row group after the other."""
     from pyarrow import parquet
 
-    with store.read(path) as file:
+    with remote.read(path) as file:
         whole = parquet.ParquetFile(file)
         for k in range(whole.num_row_groups):
             shapes.repeated(numbers_of(whole.read_row_group(k, columns=["shape"])["shape"])[0])

@@ -1,4 +1,6 @@
-"""Files behind URLs, through fsspec: object stores such as S3, and for reading whatever else fsspec knows.
+"""Files in folders and behind URLs, by the same calls.
+
+URLs go through fsspec: object stores such as S3, and for reading whatever else fsspec knows.
 
 Credentials come from the environment or from a profile of the provider, as its own tools read them, and are written
 nowhere.
@@ -12,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from hashlib import file_digest
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO, TypeVar, cast
@@ -20,6 +22,7 @@ from urllib.parse import unquote, urlsplit
 
 from ..errors import FontError, GlyphsplineError, OutputError
 from ..extras import need
+from ..files import make_folder, remove_partials, replacing, sizes, writing
 
 WHOLE = frozenset({"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"})
 """Protocols of stores that have a file whole or not at all."""
@@ -27,17 +30,11 @@ WHOLE = frozenset({"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"})
 PATIENCE = 60.0
 """Seconds for which a store that does not answer is asked again."""
 
-FIRST_PAUSE, LONGEST_PAUSE = 0.5, 8.0
-"""Seconds between attempts; each pause is twice the one before."""
-
 PASSING = ("ConnectionError", "TimeoutError", "HTTPClientError", "ClientConnectionError", "ServerTimeoutError")
 """Errors of a connection, by the names of their classes: libraries of providers have types of their own."""
 
 BLOCK = 1 << 16
 """Bytes that are fetched at once of a file that is read by parts."""
-
-AT_A_TIME = 8
-"""Files fetched at the same time."""
 
 Value = TypeVar("Value")
 
@@ -95,7 +92,7 @@ def asked(url: str, action: Callable[[], Value], kind: type[GlyphsplineError] = 
         FileNotFoundError: there is no such file.
         GlyphsplineError: of that kind; the store refuses, or does not answer.
     """
-    until, pause = time.monotonic() + PATIENCE, FIRST_PAUSE
+    until, pause = time.monotonic() + PATIENCE, 0.5
     while True:
         try:
             return action()
@@ -109,84 +106,118 @@ def asked(url: str, action: Callable[[], Value], kind: type[GlyphsplineError] = 
                     f"the store {'does not answer' if passing else 'refuses'}: {said}", font=shown(url)
                 ) from error
         time.sleep(pause)
-        pause = min(2 * pause, LONGEST_PAUSE)
+        pause = min(2 * pause, 8.0)
 
 
-def check_whole(url: str) -> None:
-    """Refuse to write where others could see half a file.
+def place_of(out: str | Path) -> str:
+    """An output folder's absolute path or URL, without a slash at its end.
 
     Raises:
-        OutputError: the URL is not that of an object store.
+        GlyphsplineError: the URL cannot be used, or is not that of an object store.
     """
+    local = local_path(str(out))
+    if local is not None:
+        return str(Path(local).absolute())
+    _store(str(out))
+    return str(out).rstrip("/")
+
+
+def _store(url: str) -> tuple[Any, str]:
+    """As :func:`file_system`, and refuse to write where others could see half a file."""
     if (scheme := urlsplit(url).scheme.lower()) not in WHOLE:
         stores = ", ".join(sorted(WHOLE))
         raise OutputError(f"{scheme}:// is not written to, only folders and object stores: {stores}", font=shown(url))
+    return file_system(url)
 
 
-def put(url: str, content: bytes | Path) -> None:
-    """Write bytes or a copy of a file, in one put.
+def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
+    """Write a file whole: into a store by one put; else under a temporary name, synced to the disk, then renamed.
+
+    Args:
+        content: of the file, or what writes it.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
-    check_whole(url)
-    system, path = file_system(url)
+    if not is_url(path):
+        make_folder(Path(path).parent)
+        with replacing(Path(path), durable=True) as file:
+            if isinstance(content, bytes):
+                file.write(content)
+            else:
+                content(file)
+        return
+    system, there = _store(path)
     try:
         if isinstance(content, bytes):
-            asked(url, lambda: system.pipe_file(path, content))
-        else:
-            asked(url, lambda: system.put_file(str(content), path))
+            asked(path, lambda: system.pipe_file(there, content))
+            return
+        with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
+            whole = Path(folder) / "whole"
+            with writing(whole), open(whole, "xb") as file:
+                content(file)
+            asked(path, lambda: system.put_file(str(whole), there))
     except FileNotFoundError as error:
-        raise OutputError(f"cannot be written: {error}", font=shown(url)) from error
+        raise OutputError(f"cannot be written: {error}", font=shown(path)) from error
 
 
-def info(url: str, kind: type[GlyphsplineError] = OutputError) -> dict[str, Any] | None:
-    """What the store says of a file or folder: ``type`` and ``size``; None if there is none.
+def exists(path: str) -> bool:
+    """Whether there is a file of that name."""
+    if not is_url(path):
+        return os.path.isfile(path)
+    system, there = file_system(path)
+    with suppress(FileNotFoundError):
+        return bool(asked(path, lambda: system.info(there))["type"] == "file")
+    return False
+
+
+def listing(folder: str) -> list[str]:
+    """The names of a folder's files, sorted; none if there is no such folder. Half written files are removed."""
+    if not is_url(folder):
+        remove_partials(Path(folder))
+        return sorted(sizes(Path(folder)))
+    system, there = file_system(folder)
+    with suppress(FileNotFoundError):
+        found = asked(folder, lambda: system.ls(there, detail=True))
+        return sorted(PurePosixPath(item["name"]).name for item in found if item["type"] == "file")
+    return []
+
+
+def read(path: str) -> BinaryIO:
+    """A file open for reading at any place; of a file in a store little more than what is read is fetched.
 
     Raises:
-        GlyphsplineError: of that kind; the store refuses, or does not answer.
+        OSError: it cannot be opened.
     """
-    system, path = file_system(url)
-    try:
-        return dict(asked(url, lambda: system.info(path), kind))
-    except FileNotFoundError:
-        return None
+    if not is_url(path):
+        return open(path, "rb")
+    system, there = file_system(path)
+    with missing(path, OutputError):
+        return cast(BinaryIO, asked(path, lambda: system.open(there, "rb", block_size=BLOCK)))
 
 
-def names(url: str) -> list[str]:
-    """The names of a folder's files, sorted; empty if there is no such folder.
+def size(path: str) -> int:
+    """The size of a file in bytes.
 
     Raises:
-        OutputError: the store refuses, or does not answer.
+        OSError: there is no such file.
     """
-    system, path = file_system(url)
-    try:
-        found = asked(url, lambda: system.ls(path, detail=True))
-    except FileNotFoundError:
-        return []
-    return sorted(PurePosixPath(item["name"]).name for item in found if item["type"] == "file")
+    with read(path) as file:
+        return file.seek(0, os.SEEK_END)
 
 
-def remove(url: str) -> None:
+def remove(path: str) -> None:
     """Remove a file.
 
     Raises:
-        OutputError: the store refuses, or does not answer.
+        OSError: there is no such file.
     """
-    system, path = file_system(url)
-    with missing(url, OutputError):
-        asked(url, lambda: system.rm_file(path))
-
-
-def opened(url: str) -> BinaryIO:
-    """A file open for reading at any place; little more than what is read is fetched.
-
-    Raises:
-        OutputError: there is no such file, or the store refuses or does not answer.
-    """
-    system, path = file_system(url)
-    with missing(url, OutputError):
-        return cast(BinaryIO, asked(url, lambda: system.open(path, "rb", block_size=BLOCK)))
+    if not is_url(path):
+        os.unlink(path)
+        return
+    system, there = file_system(path)
+    with missing(path, OutputError):
+        asked(path, lambda: system.rm_file(there))
 
 
 @contextmanager
@@ -221,7 +252,7 @@ def fetch_fonts(url: str, suffixes: frozenset[str]) -> list[Path]:
         if not found:
             raise FontError("there are no fonts", font=shown(url))
         folder = cache_folder()
-        with ThreadPoolExecutor(AT_A_TIME) as threads:
+        with ThreadPoolExecutor(8) as threads:
             return list(threads.map(lambda item: _fetched(url, system, item, folder), found))
 
 
@@ -244,12 +275,8 @@ def _fetched(url: str, system: Any, path: str, folder: Path) -> Path:
 
 def file_name(path: str) -> str:
     """The name of a file behind a URL, such as any system has it."""
-    last = (
-        unquote(urlsplit(path).path if path.startswith(("http://", "https://")) else path)
-        .rstrip("/")
-        .rpartition("/")[2]
-    )
-    name = re.sub(r'[\\/:*?"<>|\x00-\x1f]', "_", last)[-100:]
+    path = urlsplit(path).path if path.startswith(("http://", "https://")) else path
+    name = re.sub(r'[\\/:*?"<>|\x00-\x1f]', "_", unquote(path).rstrip("/").rpartition("/")[2])[-100:]
     return name if name.strip(".") else "font"
 
 

@@ -163,8 +163,8 @@ def theirs(python: str, code: str, folder: str) -> float:
 
 def made(path: Path, most: int) -> float:
     """Seconds a glyph of a table of rows without a fit, the font's opening included."""
-    from glyphspline.datasets.dataset_spec import DatasetSpec
     from glyphspline.datasets.rows import table_of
+    from glyphspline.datasets.spec import DatasetSpec
     from glyphspline.readers import open_font
 
     spec, count, names = DatasetSpec(options=None), 0, 0
@@ -179,8 +179,8 @@ def made(path: Path, most: int) -> float:
 
 def with_fit() -> Row:
     """Rows with the fit of a data set against the conversion to SVG by the same options, in one process."""
-    from glyphspline.datasets.dataset_spec import DatasetSpec
     from glyphspline.datasets.rows import fits_of, table_of
+    from glyphspline.datasets.spec import DatasetSpec
     from glyphspline.fitting.convert import convert_many
     from glyphspline.fitting.results import GlyphResult
     from glyphspline.readers import open_font

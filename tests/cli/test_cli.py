@@ -21,7 +21,7 @@ import glyphspline
 from glyphspline import Outline, open_font
 from glyphspline.cli import app
 from glyphspline.cli.groups import grouped, without
-from glyphspline.datasets.dataset_spec import DatasetSpec
+from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.joins import share_of_corners

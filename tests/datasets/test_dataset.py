@@ -30,12 +30,11 @@ import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.datasets import plan, shards
 from glyphspline.datasets.card import command
-from glyphspline.datasets.chunk_rows import Made, RowsJob
-from glyphspline.datasets.dataset_spec import FIT, DatasetSpec
-from glyphspline.datasets.licences import licence_of
 from glyphspline.datasets.plan import Plan, Task, plan_of
-from glyphspline.datasets.scan import SPLITS, FontFacts, split_of
-from glyphspline.datasets.shards import Shapes
+from glyphspline.datasets.run import RowsJob
+from glyphspline.datasets.scan import SPLITS, FontFacts, licence_of, split_of
+from glyphspline.datasets.shards import Made, Shapes
+from glyphspline.datasets.spec import FIT, DatasetSpec
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
@@ -99,7 +98,7 @@ MAKE = """
 import sys, time
 import glyphspline as gs
 from glyphspline.datasets import plan, shards
-from glyphspline.datasets.dataset_spec import FIT, DatasetSpec
+from glyphspline.datasets.spec import FIT, DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)

@@ -17,13 +17,11 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.integrals import area
-from glyphspline.datasets import loading
-from glyphspline.datasets import schema as columns
-from glyphspline.datasets.chunk_rows import empty_table
-from glyphspline.datasets.dataset_columns import ABOUT
-from glyphspline.datasets.dataset_spec import DatasetSpec
+from glyphspline.datasets import columns
+from glyphspline.datasets import load as loading
+from glyphspline.datasets.columns import ABOUT, contour_types, schema
 from glyphspline.datasets.rows import fits_of, table_of
-from glyphspline.datasets.schema import contour_types, schema
+from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fitting.results import Measures
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.outlines.resampling import resampled
@@ -328,7 +326,7 @@ def test_coordinates_that_are_no_numbers_are_refused() -> None:
 
 def test_every_column_is_documented_and_has_its_unit() -> None:
     layout = schema(DatasetSpec(rows="contour", raster=8))
-    assert empty_table(DatasetSpec(rows="contour", raster=8)).schema.names == list(ABOUT)
+    assert schema(DatasetSpec(rows="contour", raster=8), of_fonts=True).names == list(ABOUT)
     page = (FONTS.parent / "docs" / "datasets.md").read_text(encoding="utf-8")
     assert "\n".join(f"| `{name}` | {about} |" for name, about in ABOUT.items()) in page
     assert layout.field("points").metadata == {b"unit": b"em"}

@@ -17,9 +17,9 @@ from typing import BinaryIO
 
 import pytest
 
-from glyphspline.datasets import plan, store
-from glyphspline.datasets.dataset_run import dataset
-from glyphspline.datasets.dataset_spec import DatasetSpec
+from glyphspline.datasets import plan
+from glyphspline.datasets.run import dataset
+from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
 from glyphspline.runs import remote
 from glyphspline.runs.font_search import find_fonts
@@ -77,36 +77,36 @@ def folder(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     if request.param == "s3":
         request.getfixturevalue("server")
     places = {"s3": "s3://bucket", "memory": "memory://", "file": f"file://{tmp_path}", "path": str(tmp_path)}
-    return store.place_of(f"{places[request.param]}/{tmp_path.name}/")
+    return remote.place_of(f"{places[request.param]}/{tmp_path.name}/")
 
 
 def test_files_are_put_listed_read_and_removed(folder: str) -> None:
     def write(file: BinaryIO) -> None:
         file.write(b"abc" * 1000)
 
-    assert store.listing(folder) == []
-    assert not store.exists(f"{folder}/b.bin")
-    store.put(f"{folder}/b.bin", write)
-    store.put(f"{folder}/a.bin", b"first")
-    store.put(f"{folder}/a.bin", b"second")
-    store.put(f"{folder}/deep/c.bin", b"")
-    assert store.listing(folder) == ["a.bin", "b.bin"]
-    assert store.exists(f"{folder}/a.bin")
-    assert not store.exists(f"{folder}/deep")
-    assert (store.size(f"{folder}/b.bin"), store.size(f"{folder}/deep/c.bin")) == (3000, 0)
-    with store.read(f"{folder}/b.bin") as file:
+    assert remote.listing(folder) == []
+    assert not remote.exists(f"{folder}/b.bin")
+    remote.put(f"{folder}/b.bin", write)
+    remote.put(f"{folder}/a.bin", b"first")
+    remote.put(f"{folder}/a.bin", b"second")
+    remote.put(f"{folder}/deep/c.bin", b"")
+    assert remote.listing(folder) == ["a.bin", "b.bin"]
+    assert remote.exists(f"{folder}/a.bin")
+    assert not remote.exists(f"{folder}/deep")
+    assert (remote.size(f"{folder}/b.bin"), remote.size(f"{folder}/deep/c.bin")) == (3000, 0)
+    with remote.read(f"{folder}/b.bin") as file:
         file.seek(-4, os.SEEK_END)
         assert file.read() == b"cabc"
         file.seek(3)
         assert (file.read(2), file.tell(), file.read(0)) == (b"ab", 5, b"")
-    with store.read(f"{folder}/a.bin") as file:
+    with remote.read(f"{folder}/a.bin") as file:
         assert file.read() == b"second"
-    store.remove(f"{folder}/a.bin")
-    assert store.listing(folder) == ["b.bin"]
+    remote.remove(f"{folder}/a.bin")
+    assert remote.listing(folder) == ["b.bin"]
     with pytest.raises(OSError, match=r"[Nn]o such file"):
-        store.read(f"{folder}/a.bin")
+        remote.read(f"{folder}/a.bin")
     with pytest.raises(OSError, match=r"[Nn]o such file"):
-        store.size(f"{folder}/a.bin")
+        remote.size(f"{folder}/a.bin")
 
 
 def test_what_fails_while_it_is_written_leaves_the_old_file(folder: str) -> None:
@@ -114,11 +114,11 @@ def test_what_fails_while_it_is_written_leaves_the_old_file(folder: str) -> None
         file.write(b"half")
         raise KeyboardInterrupt
 
-    store.put(f"{folder}/a.bin", b"whole")
+    remote.put(f"{folder}/a.bin", b"whole")
     with pytest.raises(KeyboardInterrupt):
-        store.put(f"{folder}/a.bin", break_off)
-    assert store.listing(folder) == ["a.bin"]
-    with store.read(f"{folder}/a.bin") as file:
+        remote.put(f"{folder}/a.bin", break_off)
+    assert remote.listing(folder) == ["a.bin"]
+    with remote.read(f"{folder}/a.bin") as file:
         assert file.read() == b"whole"
 
 
@@ -128,8 +128,8 @@ def test_parquet_in_a_store_is_read_by_parts(server: Server) -> None:
 
     file = BytesIO()
     parquet.write_table(pa.table({"a": list(range(100_000)), "b": [str(k) for k in range(100_000)]}), file, 1000)
-    store.put("s3://bucket/table.parquet", file.getvalue())
-    with store.read("s3://bucket/table.parquet") as there:
+    remote.put("s3://bucket/table.parquet", file.getvalue())
+    with remote.read("s3://bucket/table.parquet") as there:
         table = parquet.ParquetFile(there)
         assert table.metadata.num_rows == 100_000
         assert table.read_row_group(7, columns=["a"])["a"].to_pylist() == list(range(7000, 8000))
@@ -139,9 +139,9 @@ def test_a_server_that_comes_back_is_waited_for(server: Server) -> None:
     server.kill()
     again = threading.Timer(2.0, server.start)
     again.start()
-    store.put("s3://bucket/patient.bin", b"there")
+    remote.put("s3://bucket/patient.bin", b"there")
     again.join()
-    with store.read("s3://bucket/patient.bin") as file:
+    with remote.read("s3://bucket/patient.bin") as file:
         assert file.read() == b"there"
 
 
@@ -150,9 +150,9 @@ def test_a_server_that_stays_away_is_said(server: Server, monkeypatch: pytest.Mo
     server.kill()
     try:
         with pytest.raises(OutputError, match=r"^s3://bucket/away.bin: the store does not answer: "):
-            store.put("s3://bucket/away.bin", b"there")
+            remote.put("s3://bucket/away.bin", b"there")
         with pytest.raises(OutputError, match="does not answer"):
-            store.exists("s3://bucket/away.bin")
+            remote.exists("s3://bucket/away.bin")
         with pytest.raises(FontError, match="does not answer"):
             find_fonts(["s3://bucket/fonts/*.ttf"])
     finally:
@@ -173,7 +173,7 @@ def test_a_server_that_stays_away_is_said(server: Server, monkeypatch: pytest.Mo
 )
 def test_a_url_that_cannot_be_used_is_said(url: str, said: str, server: Server) -> None:
     with pytest.raises(GlyphsplineError, match=said) as caught:
-        store.put(url, b"")
+        remote.put(url, b"")
     assert SECRET not in str(caught.value)
 
 
@@ -192,7 +192,7 @@ def test_a_store_that_refuses_is_said(server: Server, monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(MemoryFileSystem, "pipe_file", refuse)
     with pytest.raises(OutputError, match="memory://a/b: the store refuses: Access Denied"):
-        store.put("memory://a/b", b"")
+        remote.put("memory://a/b", b"")
 
 
 def test_fonts_are_fetched_once_by_content(server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -200,8 +200,8 @@ def test_fonts_are_fetched_once_by_content(server: Server, tmp_path: Path, monke
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
     content = FONT.read_bytes()
     for name in ("fonts/a.ttf", "fonts/deep/b.otf", "fonts/README.txt", "copies/a.ttf"):
-        store.put(f"s3://bucket/{name}", content if name.endswith("tf") else b"text")
-    store.put("s3://bucket/fonts/deep/c.ttf", b"other")
+        remote.put(f"s3://bucket/{name}", content if name.endswith("tf") else b"text")
+    remote.put("s3://bucket/fonts/deep/c.ttf", b"other")
     assert [path.name for path in find_fonts(["s3://bucket/fonts/a.ttf"])] == ["a.ttf"]
     found = find_fonts(["s3://bucket/fonts", "s3://bucket/copies/"])
     assert sorted(path.name for path in found) == ["a.ttf", "b.otf", "c.ttf"]
@@ -271,7 +271,7 @@ def test_a_cluster_that_loses_a_worker_and_a_server_that_is_restarted_do_not_sho
     distributed = import_module("distributed")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     for font in FONTS:
-        store.put(f"s3://bucket/installed/{Path(font).name}", Path(font).read_bytes())
+        remote.put(f"s3://bucket/installed/{Path(font).name}", Path(font).read_bytes())
     happened: list[int] = []
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", silence_logs=50

@@ -12,7 +12,7 @@ from ..curves.bspline import Spline
 from ..errors import GlyphsplineError
 from ..outlines.outline import Contour, FontMetrics, Outline
 from ..types import FloatArray, counted
-from .schema import SCHEMA_VERSION
+from .columns import SCHEMA_VERSION
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ def load(row: Mapping[str, Any]) -> Loaded:
     Example:
         >>> from glyphspline import load, open_font
         >>> from glyphspline.datasets.rows import table_of
-        >>> from glyphspline.datasets.dataset_spec import DatasetSpec
+        >>> from glyphspline.datasets.spec import DatasetSpec
         >>> outlines = [open_font("fonts_test/kouzan-gyosho.ttf").outline("O")]
         >>> row, = table_of(outlines, None, DatasetSpec(options=None)).to_pylist()
         >>> load(row).outline
