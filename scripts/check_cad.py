@@ -30,8 +30,8 @@ import numpy as np
 
 import glyphspline as gs
 from glyphspline.curves.integrals import area
-from glyphspline.outlines.flattening import flattened, polygons_of
 from glyphspline.outlines.outline import Contour
+from glyphspline.outlines.polygons import flattened, polygons_of
 from glyphspline.types import FloatArray
 from glyphspline.writers.dxf import holes
 from glyphspline.writers.settings import DxfKind, Settings

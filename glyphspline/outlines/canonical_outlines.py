@@ -23,7 +23,7 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.cubics import jet
 from ..curves.integrals import area
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 from .contour_arrays import ContourArrays, joined, offsets_of
 from .ink import ink_sides
 from .outline import Contours, Outline
@@ -37,12 +37,11 @@ def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
     """The same shapes in the one way of storing them that this module says."""
     given = joined([outline.arrays for outline in outlines])
     glyphs = offsets_of([outline.arrays.num_contours for outline in outlines])
-    found, keys, kept = _canonical(given, glyphs)
+    found, keys = _canonical(given, glyphs)
     owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))
     order = np.lexsort((*keys.T[::-1], owner))
-    order = order[kept[order]]
-    if not (len(order) == len(kept) and (np.diff(order) == 1).all()):
-        found = _in_order(found, order)
+    order = order[np.diff(found.offsets)[order] > 0]
+    found = found.chosen(order)
     ends = np.searchsorted(owner[order], np.arange(len(outlines) + 1))
     return [
         replace(outline, contours=Contours(found.part(first, last)))
@@ -51,24 +50,21 @@ def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
 
 
 @compiled
-def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays, FloatArray, BoolArray]:
+def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays, FloatArray]:
     """Contours with their start and direction by rule, in the given order.
 
     Args:
         glyphs: (G + 1,) where the contours of each glyph begin.
 
     Returns:
-        the contours, which have no segments if they enclose nothing; (C, 4) what they are ordered by; (C,) whether they
-        enclose something.
+        the contours, which have no segments if they enclose nothing; (C, 4) what they are ordered by.
     """
     count = len(contours.offsets) - 1
     points, degrees = np.empty_like(contours.points), np.empty_like(contours.degrees)
     offsets, starts = np.zeros(count + 1, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
-    keys, kept = np.zeros((count, 4)), np.zeros(count, dtype=np.bool_)
+    keys = np.zeros((count, 4))
     for g in range(len(glyphs) - 1):
         a, b = glyphs[g], glyphs[g + 1]
-        if a == b:
-            continue
         first, begin = contours.offsets[a], contours.starts[a]
         own = ContourArrays(
             contours.points[begin : contours.starts[b]], contours.degrees[first : contours.offsets[b]],
@@ -76,22 +72,24 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
         )  # fmt: skip
         sides = ink_sides(own)
         for c in range(a, b):
-            cubics = contour_cubics(contours, c)
-            p, d = _lasting_part(contours, c, cubics)
             offsets[c + 1], starts[c + 1] = offsets[c], starts[c]
+            cubics = contour_cubics(contours, c)
+            lasts = np.zeros(len(cubics), dtype=np.bool_)
+            lasts[lasting(cubics)] = True
+            its = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
+            p = contours.points[contours.starts[c] : contours.starts[c + 1]][np.repeat(lasts, its)]
             if not _encloses(p):
                 continue
-            kept[c] = True
-            ink, extent = area(cubics), _extent(p)
-            backward, its_degrees = _reversed(p, d)
-            if abs(ink) <= NO_AREA * extent * extent:
-                s, t = _first_joint(p, d), _first_joint(backward, its_degrees)
-                reverse = _compare(backward, its_degrees, t, p, d, s) < 0
-            else:
-                reverse = sides[c - a] < 0.0
-            if reverse:
-                p, d = backward, its_degrees
+            d = its[lasts]
             n, m = len(p), len(d)
+            backward, its = np.concatenate((p[:1], p[:0:-1])), d[::-1].copy()
+            ink, extent = area(cubics), max(np.ptp(p[:, 0]), np.ptp(p[:, 1]))
+            if abs(ink) > NO_AREA * extent * extent:
+                reverse = sides[c - a] < 0.0
+            else:
+                reverse = _compare(backward, its, _first_joint(backward, its), p, d, _first_joint(p, d)) < 0
+            if reverse:
+                p, d = backward, its
             s = _first_joint(p, d)
             i = np.sum(d[:s])
             for k in range(n):
@@ -101,13 +99,13 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
             offsets[c + 1], starts[c + 1] = offsets[c] + m, starts[c] + n
     found = ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)
     for c in range(count):
-        if kept[c]:
+        if offsets[c] < offsets[c + 1]:
             cubics = contour_cubics(found, c)
             place = lower_left(cubics)
             s = min(int(place), len(cubics) - 1)
             x, y, _, _, _, _ = jet(cubics, s, place - s)
             keys[c, 0], keys[c, 1], keys[c, 2], keys[c, 3] = x + y, x, -abs(area(cubics)), len(cubics)
-    return found, keys, kept
+    return found, keys
 
 
 @compiled
@@ -140,26 +138,6 @@ def lower_left(cubics: FloatArray) -> float:
 
 
 @compiled
-def _lasting_part(contours: ContourArrays, c: int, cubics: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Points and degrees of contour c without its segments of no length."""
-    points = contours.points[contours.starts[c] : contours.starts[c + 1]]
-    degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
-    kept = lasting(cubics)
-    if len(kept) == len(degrees):
-        return points, degrees
-    found, its, n, i, k = np.empty_like(points), np.empty(len(kept), dtype=np.int64), 0, 0, 0
-    for j in range(len(degrees)):
-        if k < len(kept) and kept[k] == j:
-            for r in range(degrees[j]):
-                found[n, 0], found[n, 1] = points[i + r, 0], points[i + r, 1]
-                n += 1
-            its[k] = degrees[j]
-            k += 1
-        i += degrees[j]
-    return found[:n], its
-
-
-@compiled
 def _encloses(points: FloatArray) -> bool:
     """Whether three of the points are distinct."""
     second = -1
@@ -170,28 +148,6 @@ def _encloses(points: FloatArray) -> bool:
             elif points[i, 0] != points[second, 0] or points[i, 1] != points[second, 1]:
                 return True
     return False
-
-
-@compiled
-def _extent(points: FloatArray) -> float:
-    """The larger side of the box around the points."""
-    most = 0.0
-    for axis in range(2):
-        low = high = points[0, axis]
-        for i in range(1, len(points)):
-            low, high = min(low, points[i, axis]), max(high, points[i, axis])
-        most = max(most, high - low)
-    return most
-
-
-@compiled
-def _reversed(points: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
-    """A contour in the opposite direction, from the same first joint."""
-    n = len(points)
-    found = np.empty_like(points)
-    for i in range(n):
-        found[i, 0], found[i, 1] = points[-i % n, 0], points[-i % n, 1]
-    return found, degrees[::-1].copy()
 
 
 @compiled
@@ -224,23 +180,3 @@ def _compare(one: FloatArray, degrees: IntArray, s: int, other: FloatArray, its_
         if a != b:
             return -1 if a < b else 1
     return 0
-
-
-@compiled
-def _in_order(contours: ContourArrays, order: IntArray) -> ContourArrays:
-    """The contours of the given indices."""
-    count = len(order)
-    offsets, starts = np.zeros(count + 1, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
-    points, degrees = np.empty_like(contours.points), np.empty_like(contours.degrees)
-    for k in range(count):
-        c = order[k]
-        first, last = contours.starts[c], contours.starts[c + 1]
-        for i in range(last - first):
-            for axis in range(2):
-                points[starts[k] + i, axis] = contours.points[first + i, axis]
-        starts[k + 1] = starts[k] + last - first
-        first, last = contours.offsets[c], contours.offsets[c + 1]
-        for i in range(last - first):
-            degrees[offsets[k] + i] = contours.degrees[first + i]
-        offsets[k + 1] = offsets[k] + last - first
-    return ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)

@@ -39,11 +39,14 @@ class ContourArrays(NamedTuple):
         points, degrees = self.points[starts[0] : starts[-1]], self.degrees[offsets[0] : offsets[-1]]
         return ContourArrays(points, degrees, offsets - offsets[0], starts - starts[0])
 
-    def chosen(self, which: Sequence[int]) -> ContourArrays:
+    def chosen(self, which: Sequence[int] | IntArray) -> ContourArrays:
         """The chosen contours in the given order; ``self`` if these are all contours in order."""
-        if list(which) == list(range(self.num_contours)):
+        which = np.asarray(which, dtype=np.int64)
+        if np.array_equal(which, np.arange(self.num_contours)):
             return self
-        return joined([self.part(c, c + 1) for c in which])
+        of_points, starts = members_of(self.starts, which)
+        of_segments, offsets = members_of(self.offsets, which)
+        return ContourArrays(self.points[of_points], self.degrees[of_segments], offsets, starts)
 
 
 class Polylines(NamedTuple):
@@ -106,9 +109,13 @@ def joined_polylines(parts: Sequence[Polylines]) -> Polylines:
 def joined_offsets(parts: Sequence[IntArray]) -> IntArray:
     """Offsets (C + 1,) of arrays end to end from the offsets of each."""
     if not parts:
-        return np.zeros(1, dtype=np.int64)
-    found = np.concatenate(parts).astype(np.int64)
-    counts = np.array([len(part) for part in parts])
-    last = np.cumsum(counts) - 1
-    found[counts[0] :] += np.repeat(np.cumsum(found[last])[:-1], counts[1:])
-    return np.delete(found, last[:-1] + 1)  # the 0 with which each but the first begins
+        return offsets_of([])
+    ends = np.cumsum([len(part) for part in parts])
+    return offsets_of(np.delete(np.diff(np.concatenate(parts)), ends[:-1] - 1))
+
+
+def members_of(offsets: IntArray, which: IntArray) -> tuple[IntArray, IntArray]:
+    """The indices of the members of chosen parts, end to end, and (len(which) + 1,) where each of these begins."""
+    lengths = np.diff(offsets)[which]
+    found = offsets_of(lengths)
+    return np.arange(found[-1]) + np.repeat(offsets[which] - found[:-1], lengths), found

@@ -93,22 +93,9 @@ def turned_about(corners: FloatArray, points: FloatArray, cut: BoolArray, near: 
     is all that is within this distance.
     """
     inside = np.zeros(len(points), dtype=np.bool_)
-    high = np.flatnonzero(cut)
-    square = near * near
-    turned, count = np.empty((len(corners), 2)), 0
     for k in range(len(corners)):
-        x, y = corners[k, 0], corners[k, 1]
-        for h in high:
-            dx, dy = points[h, 0] - x, points[h, 1] - y
-            if dx * dx + dy * dy <= square:
-                turned[count, 0], turned[count, 1] = x, y
-                count += 1
-                break
-    for i in range(len(points)):
-        x, y = points[i, 0], points[i, 1]
-        for k in range(count):
-            dx, dy = turned[k, 0] - x, turned[k, 1] - y
-            if dx * dx + dy * dy <= square:
-                inside[i] = True
-                break
+        x, y = points[:, 0] - corners[k, 0], points[:, 1] - corners[k, 1]
+        close = x * x + y * y <= near * near
+        if np.any(close & cut):
+            inside |= close
     return inside

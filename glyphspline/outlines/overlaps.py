@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled import compiled
 from ..curves.integrals import area
 from ..curves.overshoot import chords
 from ..extras import need
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 from .contour_arrays import offsets_of
 from .outline import Contour, Outline
 
@@ -82,34 +81,18 @@ def contours_of(path: Any) -> list[Contour]:
 
 def inked_area(contours: Sequence[Contour]) -> float:
     """Area filled by the nonzero winding rule, from evenly spaced scan lines."""
-    lines = [chords(contour.cubics())[0] for contour in contours if len(contour)]
-    if not lines:
+    polygons = [chords(contour.cubics())[0] for contour in contours if len(contour)]
+    if not polygons:
         return 0.0
-    return _scan(np.concatenate(lines), offsets_of([len(line) for line in lines]), SCANLINES)
-
-
-@compiled
-def _scan(points: FloatArray, starts: IntArray, lines: int) -> float:
-    low, high = points[:, 1].min(), points[:, 1].max()
-    step = (high - low) / lines
-    at, turn = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
-    total = 0.0
-    for line in range(lines):
-        y = low + (line + 0.5) * step
-        count = 0
-        for c in range(len(starts) - 1):
-            first, last = starts[c], starts[c + 1]
-            for i in range(first, last):
-                j = i + 1 if i + 1 < last else first
-                if (points[i, 1] <= y) != (points[j, 1] <= y):
-                    share = (y - points[i, 1]) / (points[j, 1] - points[i, 1])
-                    at[count] = points[i, 0] + share * (points[j, 0] - points[i, 0])
-                    turn[count] = 1 if points[j, 1] > points[i, 1] else -1
-                    count += 1
-        winding = 0
-        order = np.argsort(at[:count])
-        for k in range(count - 1):
-            winding += turn[order[k]]
-            if winding != 0:
-                total += at[order[k + 1]] - at[order[k]]
-    return total * step
+    start = np.concatenate(polygons)
+    stop = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
+    side = stop - start
+    low, step = start[:, 1].min(), np.ptp(start[:, 1]) / SCANLINES
+    at = low + (np.arange(SCANLINES) + 0.5) * step
+    first, last = np.searchsorted(at, np.sort([start[:, 1], stop[:, 1]], axis=0))
+    crossed = np.repeat(np.arange(len(start)), last - first)
+    line = np.arange(len(crossed)) - np.repeat(offsets_of(last - first)[:-1] - first, last - first)
+    x = start[crossed, 0] + (at[line] - start[crossed, 1]) / side[crossed, 1] * side[crossed, 0]
+    order = np.lexsort((x, line))
+    winding = np.cumsum(np.sign(side[crossed[order], 1]))  # 0 after each line, as polygons are closed
+    return float(step * np.diff(x[order])[winding[:-1] != 0].sum())

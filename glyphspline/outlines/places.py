@@ -56,9 +56,7 @@ def sampled(
         n = len(at)
         refused[k] = n < 3
         while used + n > len(found):
-            longer = np.empty((2 * len(found), 3))
-            longer[:used] = found[:used]
-            found = longer
+            found = np.concatenate((found, np.empty_like(found)))
         _evaluate(pieces, table, at, found[used : used + n])
         used += n
         ends[k + 1] = used
@@ -106,29 +104,23 @@ def _spacing(at: FloatArray, k: int, length: float) -> float:
 @compiled
 def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, most: int) -> FloatArray:
     """Ascending distances of the vertices along a contour; empty if there are too many."""
-    c = len(corners)
-    if c == 0:
-        corners, c = np.zeros(1), 1
-    parts = np.empty(c, dtype=np.int64)
-    total = 0
-    for j in range(c):
-        stretch = _spacing(corners, j, length)
-        if not stretch / step < most:
-            return np.empty(0)
-        parts[j] = max(int(np.rint(stretch / step - TIE)), 1)
-        total += parts[j]
-    if total < 3:
-        parts *= 3
-        total *= 3
-    if total > most:
+    if len(corners) == 0:
+        corners = np.zeros(1)
+    stretches = np.append(corners[1:], corners[0] + length) - corners
+    if not np.max(stretches) / step < most:
         return np.empty(0)
-    at = np.empty(total)
-    i = 0
-    for j in range(c):
-        for k in range(parts[j]):
-            at[i] = corners[j] + k * (_spacing(corners, j, length) / parts[j])
+    parts = np.maximum(np.rint(stretches / step - TIE), 1.0)
+    parts *= 3 if np.sum(parts) < 3 else 1
+    if np.sum(parts) > most:
+        return np.empty(0)
+    at, i = np.empty(int(np.sum(parts))), 0
+    for j in range(len(corners)):
+        for k in range(int(parts[j])):
+            at[i] = corners[j] + k * (stretches[j] / parts[j])
             i += 1
-    return _from_start(_graded(at, length, max_ratio, most), length)
+    at = _graded(at, length, max_ratio, most)
+    k = np.searchsorted(at, length)  # from here on they are in the next lap
+    return np.concatenate((at[k:] - length, at[:k]))
 
 
 @compiled
@@ -152,20 +144,6 @@ def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> Float
             break
         at = finer[:k]
     return np.empty(0)
-
-
-@compiled
-def _from_start(at: FloatArray, length: float) -> FloatArray:
-    """The same distances modulo ``length``, ascending."""
-    n = len(at)
-    wrapped = 0
-    while wrapped < n and at[n - 1 - wrapped] >= length:
-        wrapped += 1
-    turned = np.empty(n)
-    for i in range(wrapped):
-        turned[i] = at[n - wrapped + i] - length
-    turned[wrapped:] = at[: n - wrapped]
-    return turned
 
 
 @compiled

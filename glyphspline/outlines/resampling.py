@@ -78,13 +78,12 @@ def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resam
             else:
                 if along >= total:
                     along -= total
-                k = _part_of(table, along)
+                k = min(int(np.searchsorted(table, along, side="right")) - 1, len(places) - 1)
                 s = int(np.searchsorted(firsts, k, side="right")) - 1
                 end = places[k + 1] if k + 1 < firsts[s + 1] else 1.0
                 x = _place(cubics, s, places[k], end, along - table[k], table[k + 1] - table[k])
-            curvature[at + i] = _frame(cubics, s, x, points[at + i], tangents[at + i])
-            if contours.degrees[contours.offsets[c] + s] == 1:
-                curvature[at + i] = 0.0  # a line raised to a cubic has a rounding there
+            line = contours.degrees[contours.offsets[c] + s] == 1
+            curvature[at + i] = _frame(cubics, s, x, line, points[at + i], tangents[at + i])
         turned = turns(cubics, 0.0)
         for j in range(m):
             if abs(turned[j]) >= corner_angle:
@@ -106,40 +105,26 @@ def at_vertices(contours: ContourArrays, polygons: Polylines, corner_angle: floa
     near = np.empty(2)
     for c in range(C):
         cubics = contour_cubics(contours, c)
-        m = len(cubics)
-        table, _, _ = _lengths(cubics)
-        lengths[c] = table[-1]
-        a, n = polygons.offsets[c], polygons.offsets[c + 1] - polygons.offsets[c]
-        own = polygons.points[a : a + n]
-        first = 0
-        for i in range(1, n):
-            ahead = own[i, 0] + own[i, 1] - own[first, 0] - own[first, 1]
-            if ahead < 0.0 or (ahead == 0.0 and own[i, 0] < own[first, 0]):
-                first = i
-        for i in range(n):
-            x, y = own[(first + i) % n, 0], own[(first + i) % n, 1]
-            s, at = -1, 0.0
-            for j in range(m):
-                if cubics[j, 0, 0] == x and cubics[j, 0, 1] == y:
-                    s = j
-                    break
-            if s < 0:
-                place = nearest_place(cubics, 0.0, float(m), x, y)
-                s = min(int(place), m - 1)
-                at = place - s
-            curvature[a + i] = _frame(cubics, s, at, near, tangents[a + i])
-            if contours.degrees[contours.offsets[c] + s] == 1:
-                curvature[a + i] = 0.0
+        lengths[c] = _lengths(cubics)[0][-1]
+        a, b = polygons.offsets[c], polygons.offsets[c + 1]
+        own = polygons.points[a:b]
+        ahead = own[:, 0] + own[:, 1]
+        lowest = np.flatnonzero(ahead == ahead.min())
+        first = lowest[np.argmin(own[lowest, 0])]
+        own = np.concatenate((own[first:], own[:first]))
+        for i in range(len(own)):
+            x, y = own[i, 0], own[i, 1]
+            joint = np.flatnonzero((cubics[:, 0, 0] == x) & (cubics[:, 0, 1] == y))
+            place = float(joint[0]) if len(joint) > 0 else nearest_place(cubics, 0.0, float(len(cubics)), x, y)
+            s = min(int(place), len(cubics) - 1)
+            line = contours.degrees[contours.offsets[c] + s] == 1
+            curvature[a + i] = _frame(cubics, s, place - s, line, near, tangents[a + i])
             points[a + i, 0], points[a + i, 1] = x, y
         turned = turns(cubics, 0.0)
-        for j in range(m):
+        for j in range(len(cubics)):
             if abs(turned[j]) >= corner_angle:
-                best, least = 0, np.inf
-                for i in range(n):
-                    dx, dy = points[a + i, 0] - cubics[j, 0, 0], points[a + i, 1] - cubics[j, 0, 1]
-                    if dx * dx + dy * dy < least:
-                        best, least = i, dx * dx + dy * dy
-                corners[a + best] = True
+                x, y = own[:, 0] - cubics[j, 0, 0], own[:, 1] - cubics[j, 0, 1]
+                corners[a + np.argmin(x * x + y * y)] = True
     return Resampled(points, tangents, curvature, corners, polygons.offsets, lengths)
 
 
@@ -176,9 +161,7 @@ def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
                 left += 1
                 continue
             if count + 2 > len(table):
-                more, more_places = np.empty(2 * len(table)), np.empty(2 * len(table))
-                more[:count], more_places[:count] = table[:count], places[:count]
-                table, places = more, more_places
+                table, places = np.append(table, np.empty_like(table)), np.append(places, np.empty_like(places))
             table[count], places[count] = total, a
             count += 1
             total += one + two
@@ -199,19 +182,6 @@ def _length(cubics: FloatArray, s: int, a: float, b: float) -> float:
         dx, dy = ax + x * (2.0 * bx + x * cx), ay + x * (2.0 * by + x * cy)
         total += WEIGHTS[k] * np.sqrt(dx * dx + dy * dy)
     return 3.0 * half * total
-
-
-@compiled
-def _part_of(table: FloatArray, along: float) -> int:
-    """The part that holds an arc length: the last that begins at or before it."""
-    low, high = 0, len(table) - 2
-    while low < high:
-        middle = (low + high + 1) // 2
-        if table[middle] <= along:
-            low = middle
-        else:
-            high = middle - 1
-    return low
 
 
 @compiled
@@ -237,15 +207,15 @@ def _place(cubics: FloatArray, s: int, a: float, b: float, along: float, length:
 
 
 @compiled
-def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: FloatArray) -> float:
-    """Put down point and unit tangent at a parameter of segment s; returns the curvature."""
+def _frame(cubics: FloatArray, s: int, x: float, line: bool, point: FloatArray, tangent: FloatArray) -> float:
+    """Write point and unit tangent at a parameter of segment s; returns the curvature, 0 on a line."""
     point[0], point[1], dx, dy, ex, ey = jet(cubics, s, x)
     speed, scale = np.sqrt(dx * dx + dy * dy), 0.0
     for k in range(3):
         scale += abs(cubics[s, k + 1, 0] - cubics[s, k, 0]) + abs(cubics[s, k + 1, 1] - cubics[s, k, 1])
     if speed > STILL * scale:
         tangent[0], tangent[1] = dx / speed, dy / speed
-        return (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
+        return 0.0 if line else (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
     ax, ay, bx, by = directions(cubics, s, 0.0)
     if x < 0.5 and x > 1e-6:
         ax, ay = ex, ey  # a cusp inside: what follows it goes where the second derivative points
@@ -253,4 +223,4 @@ def _frame(cubics: FloatArray, s: int, x: float, point: FloatArray, tangent: Flo
         ax, ay = (bx, by) if x > 1.0 - 1e-6 else (ex, ey)
     size = np.sqrt(ax * ax + ay * ay)
     tangent[0], tangent[1] = ax / size, ay / size
-    return np.nan
+    return 0.0 if line else np.nan

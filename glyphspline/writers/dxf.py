@@ -27,8 +27,8 @@ from ..curves.bspline import Spline
 from ..errors import require
 from ..extras import need
 from ..fitting.results import ContourResult, GlyphResult
-from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Contour
+from ..outlines.polygons import flattened, polygons_of
 from ..types import BoolArray, FloatArray
 from .settings import DxfKind, Settings
 from .svg.appearance import INCHES, Appearance

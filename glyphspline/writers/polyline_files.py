@@ -11,9 +11,8 @@ from json.encoder import encode_basestring_ascii as quoted
 import numpy as np
 
 from ..fitting.results import GlyphResult
-from ..outlines.flattening import flattened, polygons_of
 from ..outlines.outline import Outline
-from ..outlines.uncrossing import uncrossed
+from ..outlines.polygons import flattened, polygons_of, uncrossed
 from ..types import FloatArray, counted, rounded_up
 from .json_file import as_text, head
 from .settings import RELATIVE_FLATNESS, Settings

@@ -26,9 +26,8 @@ from glyphspline.cli import app
 from glyphspline.curves.bezier import evaluate
 from glyphspline.errors import GlyphsplineError, OptionError, OutputError
 from glyphspline.fitting.results import as_glyph
-from glyphspline.outlines.flattening import flattened
 from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
-from glyphspline.outlines.uncrossing import uncrossed
+from glyphspline.outlines.polygons import flattened, uncrossed
 from glyphspline.runs import worker as batch_worker
 from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.convert import convert_font

@@ -1,4 +1,4 @@
-"""Polygons without crossings that wind around every point as often as the given ones."""
+"""Contours as polygons within a certified distance, and polygons cut and joined again so that none cross."""
 
 from __future__ import annotations
 
@@ -7,14 +7,80 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..curves.bezier import cross, evaluate
+from ..errors import OptionError, is_positive, require
 from ..types import FloatArray, IntArray
-from .contour_arrays import offsets_of
+from .contour_arrays import ContourArrays, Polylines, offsets_of
+
+MOST_POINTS = 5_000_000
+"""Points of all polygons together: far more than a drawing has, and few enough for the memory."""
+
+ROUNDING = 16 * np.finfo(np.float64).eps
+"""Bound of the rounding errors of a point, relative to the largest coordinate."""
 
 SHIFT = 1e-9
 """Of the extent: corners are taken to be so far from where they are, each its own way, so that none lies on a side."""
 
 GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
 """The fractional parts of its multiples are spread evenly over the unit square."""
+
+
+def flattened(contours: ContourArrays, flatness: float) -> tuple[Polylines, float]:
+    """Polygons whose corners lie on the contours, and a bound of their distance from them, at most ``flatness``.
+
+    A segment becomes n chords over equal parts of its parameter range. Chord and curve at equal parameters are at most
+    max |B''| / (8 n²) apart, and |B''| is at most d (d - 1) times the longest second difference of the d + 1 Bézier
+    points (convex hull property). This bounds the distance both ways, from the curve and from the polygon.
+
+    Args:
+        contours: of lines, quadratics and cubics. flatness: a positive distance, in font units.
+
+    Returns:
+        A closed polygon for each contour, its first point not repeated at the end; and the bound.
+
+    Raises:
+        OptionError: flatness is not positive, or so small that rounding errors or millions of points would result.
+    """
+    require(is_positive(flatness), "flatness is a positive distance in font units", flatness)
+    points, degrees, offsets, starts = contours
+    rounding = ROUNDING * float(np.abs(points).max(initial=0.0))
+    aim = flatness - rounding
+    if aim < flatness / 2:
+        raise OptionError(f"flatness is more than {2 * rounding:.2g}, the rounding of such coordinates")
+    first = np.cumsum(degrees) - degrees
+    end = first + degrees
+    some = np.flatnonzero(np.diff(offsets))
+    end[offsets[some + 1] - 1] = starts[some]  # a contour ends where it begins
+    counts = np.ones(len(degrees), dtype=np.int64)
+    bound, curved = 0.0, []
+    for degree in (2, 3):
+        which = np.flatnonzero(degrees == degree)
+        index = first[which, None] + np.arange(degree + 1)
+        index[:, -1] = end[which]
+        pieces = points[index]
+        bends = np.hypot(*np.moveaxis(np.diff(pieces, n=2, axis=1), 2, 0)).max(axis=1, initial=0.0)
+        apart = degree * (degree - 1) / 8 * bends
+        needed = np.maximum(np.ceil(np.sqrt(apart / aim) * (1 + 1e-12)), 1.0)
+        if not needed.sum() <= MOST_POINTS:
+            raise OptionError(f"flatness {flatness:g} asks for {needed.sum():.3g} points, more than {MOST_POINTS}")
+        counts[which] = needed
+        bound = max(bound, float((apart / needed**2).max(initial=0.0)))
+        curved.append((which, pieces))
+    at = offsets_of(counts)
+    found = np.empty((at[-1], 2))
+    lines = degrees == 1
+    found[at[:-1][lines]] = points[first[lines]]
+    for which, pieces in curved:
+        own = np.repeat(np.arange(len(which)), counts[which])
+        step = np.arange(len(own)) - np.repeat(offsets_of(counts[which])[:-1], counts[which])
+        found[np.repeat(at[which], counts[which]) + step] = evaluate(pieces[own], step / counts[which][own])
+    closed = np.ones(contours.num_contours, dtype=np.bool_)
+    return Polylines(found, at[offsets], closed), bound + rounding if bound else 0.0
+
+
+def polygons_of(lines: Polylines) -> list[FloatArray]:
+    """The points (n, 2) of each polyline, as views."""
+    return np.split(lines.points, lines.offsets[1:-1]) if len(lines.closed) else []
 
 
 def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
@@ -39,8 +105,8 @@ def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
         return list(polygons)
     i, j = pairs.T
     apart = moved[j] - moved[i]
-    turn = _cross(sides[i], sides[j])
-    along = np.stack([_cross(apart, sides[j]) / turn, _cross(apart, sides[i]) / turn], axis=1)
+    turn = cross(sides[i], sides[j])
+    along = np.stack([cross(apart, sides[j]) / turn, cross(apart, sides[i]) / turn], axis=1)
     # Nodes: the corners, then each crossing twice, as a point of one side and of the other.
     crossings = points[i] + along[:, :1] * (points[follows[i]] - points[i])
     nodes = np.concatenate([points, np.repeat(crossings, 2, axis=0)])
@@ -53,10 +119,6 @@ def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
     after[order[ends[some + 1] - 1]] = order[ends[some]]
     after[count:] = after[count:].reshape(-1, 2)[:, ::-1].ravel()
     return [nodes[loop] for loop in _loops(after, order)]
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _crossing(points: FloatArray, sides: FloatArray, follows: IntArray, starts: IntArray) -> Iterator[IntArray]:
@@ -85,9 +147,9 @@ def _pairs(points: FloatArray, sides: FloatArray, follows: IntArray, one: IntArr
     """(k, 2) pairs of a side of the one and a side of the other that cross; of equal sets each pair once."""
     p, q, r, s = points[one], sides[one], points[other], sides[other]
     begin = r[None] - p[:, None]
-    left = _cross(q[:, None], begin) > 0
-    split = left != (_cross(q[:, None], begin + s[None]) > 0)
-    split &= (_cross(s[None], -begin) > 0) != (_cross(s[None], q[:, None] - begin) > 0)
+    left = cross(q[:, None], begin) > 0
+    split = left != (cross(q[:, None], begin + s[None]) > 0)
+    split &= (cross(s[None], -begin) > 0) != (cross(s[None], q[:, None] - begin) > 0)
     if len(one) and len(other) and one[0] <= other[-1] and other[0] <= one[-1]:  # of one polygon
         split &= one[:, None] < other[None]
         split &= (follows[one][:, None] != other[None]) & (follows[other][None] != one[:, None])
