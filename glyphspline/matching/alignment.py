@@ -19,15 +19,15 @@ STEP = 8
 
 @compiled
 def cheapest_pairs(
-    costs: FloatArray, one: FloatArray, other: FloatArray, turns: FloatArray, starts: IntArray, stretch: float
+    costs: FloatArray, one: FloatArray, other: FloatArray, starts: IntArray, stretch: float
 ) -> tuple[float, IntArray]:
     """The cheapest cyclic alignment that has one of the pairs ``starts``.
 
     Args:
         costs: (n, m) of each pair; infinite for pairs that cannot be.
-        one, other: (n, 4) and (m, 4) of the landmarks: the weight, which is the cost of having no partner, the length
-            up to it as a part of the whole, and the direction before and after it, unwrapped.
-        turns: (2,) of both contours as a whole. starts: (k, 2) pairs.
+        one, other: (2n, 4) and (2m, 4) of the landmarks in two laps: the weight, which is the cost of having no
+            partner, the length up to it as a part of the whole, and the direction before and after it, unwrapped.
+        starts: (k, 2) pairs.
         stretch: the cost of two arcs between neighbouring pairs whose shares of the lengths differ by 1.
 
     Returns:
@@ -36,12 +36,10 @@ def cheapest_pairs(
     n, m = costs.shape
     least = np.inf
     chosen = np.empty((0, 2), dtype=np.int64)
-    a, b = np.empty((n + 1, 4)), np.empty((m + 1, 4))
     reached, came = np.empty((n + 1, m + 1)), np.empty((n + 1, m + 1), dtype=np.int64)
     for s in range(len(starts)):
         i0, j0 = starts[s, 0], starts[s, 1]
-        _turned(one, i0, turns[0], a)
-        _turned(other, j0, turns[1], b)
+        a, b = one[i0:], other[j0:]
         reached[:] = np.inf
         reached[0, 0] = costs[i0, j0]
         for i in range(1, n + 1):
@@ -68,36 +66,24 @@ def cheapest_pairs(
                 reached[i, j], came[i, j] = best + own, at
         if reached[n, m] < least:
             least = float(reached[n, m])
-            chosen = _followed(came, n, m, i0, j0)
-    return least, chosen
+            chosen = _followed(came, REACH)[:-1] + np.array([i0, j0])
+    for k in range(len(chosen)):
+        chosen[k, 0], chosen[k, 1] = chosen[k, 0] % n, chosen[k, 1] % m
+    return least, chosen[np.argsort(chosen[:, 0])]
 
 
 @compiled
-def _turned(landmarks: FloatArray, first: int, lap: float, out: FloatArray) -> None:
-    """The landmarks from one on, and that one again after a lap."""
-    n = len(landmarks)
-    for i in range(n + 1):
-        k = first + i
-        for c in range(4):
-            out[i, c] = landmarks[k % n, c]
-        if k >= n:
-            out[i, 1] += 1.0
-            out[i, 2] += lap
-            out[i, 3] += lap
-
-
-@compiled
-def _followed(came: IntArray, n: int, m: int, i0: int, j0: int) -> IntArray:
-    """The pairs of an alignment, from its end back."""
-    pairs, count = np.empty((n, 2), dtype=np.int64), 0
-    i, j = n, m
-    while i > 0:
-        step = came[i, j]
-        i, j = i - step // (REACH + 1), j - step % (REACH + 1)
-        pairs[count, 0], pairs[count, 1] = (i0 + i) % n, (j0 + j) % m
+def _followed(came: IntArray, reach: int) -> IntArray:
+    """(p, 2) the cells of an alignment from the first to the last; ``came`` has di (reach + 1) + dj of its steps."""
+    i, j = came.shape[0] - 1, came.shape[1] - 1
+    cells, count = np.empty((i + j + 2, 2), dtype=np.int64), 0
+    while True:
+        cells[count, 0], cells[count, 1] = i, j
         count += 1
-    pairs = pairs[:count]
-    return pairs[np.argsort(pairs[:, 0])]
+        if i == 0 or j == 0:
+            return cells[:count][::-1].copy()
+        step = came[i, j]
+        i, j = i - step // (reach + 1), j - step % (reach + 1)
 
 
 @compiled
@@ -137,15 +123,7 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
                     total = before + bound * _mean(one, other, alike, i - di, j - dj, a, b)
                     if total > best[i, j]:
                         best[i, j], came[i, j] = total, di * (reach + 1) + dj
-    pairs, count = np.empty((n + m + 2, 2), dtype=np.int64), 0
-    i, j = n, m
-    while True:
-        pairs[count, 0], pairs[count, 1] = i, j
-        count += 1
-        if i == 0 or j == 0:
-            return pairs[:count][::-1].copy()
-        step = came[i, j]
-        i, j = i - step // (reach + 1), j - step % (reach + 1)
+    return _followed(came, reach)
 
 
 @compiled

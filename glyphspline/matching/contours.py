@@ -70,7 +70,7 @@ def features(contours: Sequence[Landmarks]) -> FloatArray:
     rows = []
     for of in contours:
         at = np.arange(len(of.cubics) * STEPS) / STEPS
-        points = (of.at(at) - low) / size
+        points = (of.contour.at(at) - low) / size
         steps = np.hypot(*(np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)).T) + 1e-12
         weights = steps / steps.sum()
         centre = weights @ points

@@ -77,9 +77,7 @@ def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
     bars = one.weights[rows, None] + other.weights[columns]
     own = costs[np.ix_(rows, columns)]
     allowed = np.where(own < bars, own, np.inf)
-    turns = np.array([one.lap_turn, other.lap_turn])
-    tables = one.table(rows), other.table(columns)
-    cost, pairs = cheapest_pairs(allowed, *tables, turns, _starts(allowed, bars), STRETCH)
+    cost, pairs = cheapest_pairs(allowed, one.table(rows), other.table(columns), _starts(allowed, bars), STRETCH)
     if not cost < np.inf:
         return np.array([np.unravel_index(int(costs.argmin()), costs.shape)]), 0.0
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
@@ -148,14 +146,12 @@ class _Lap:
 
     def __init__(self, of: Landmarks, first: int) -> None:
         self.of, m = of, len(of.cubics)
-        start = float(of.places[first])
-        self.joints: FloatArray = np.arange(np.floor(start) + 1.0, np.ceil(start + m))
-        self._at, rows = of.between(start, start + m)
-        self._along: FloatArray = (rows[:, 0] - rows[0, 0]) / (rows[-1, 0] - rows[0, 0])
-        self.inner: IntArray = np.arange(first + 1, first + len(of))
-        landmarks = self.shares(of.lap_places(self.inner))
-        self.inner %= len(of)
-        ends = np.concatenate([[0.0], landmarks, [1.0]])
+        self._at, lengths = of.lap(first)
+        self._along: FloatArray = (lengths - lengths[0]) / (lengths[-1] - lengths[0])
+        self.joints: FloatArray = np.arange(np.floor(self._at[0]) + 1.0, np.ceil(self._at[0] + m))
+        around = np.arange(first + 1, first + len(of))
+        self.inner: IntArray = around % len(of)
+        ends = np.concatenate([[0.0], self.shares(of.places[self.inner] + around // len(of) * m), [1.0]])
         gaps = np.diff(ends)
         least = np.where(gaps * of.length < SNAP * of.em, 1, LEAST)
         counts = np.maximum(np.ceil(gaps * NODES), least).astype(np.int64)
@@ -163,7 +159,7 @@ class _Lap:
         within = np.arange(len(cells)) - np.repeat(np.cumsum(counts) - counts, counts)
         self.nodes: FloatArray = np.append(ends[cells] + gaps[cells] * within / counts[cells], 1.0)
         self.marks: IntArray = np.cumsum(counts)[:-1]
-        points = of.at(self.places(self.nodes))
+        points = of.contour.at(self.places(self.nodes))
         steps = np.diff(points, axis=0)
         self.ways: FloatArray = np.arctan2(steps[:, 1], steps[:, 0])
         inside = in_box(of, points)

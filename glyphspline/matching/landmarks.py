@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..curves.bezier import evaluate
+from ..curves.comb import end_curvatures
 from ..curves.cubics import bernstein
 from ..outlines.extrema import extremal_places
 from ..outlines.outline import Contour
 from ..outlines.sampling import CORNER_ANGLE
+from ..outlines.segments import lasting
 from ..types import BoolArray, FloatArray, IntArray
 
 STEPS = 16
@@ -71,55 +72,54 @@ class Landmarks:
     """
 
     def __init__(self, contour: Contour, em: float) -> None:
-        self.contour = lasting_segments(contour)
+        lasts = np.isin(np.arange(len(contour)), lasting(contour.cubics()))
+        self.contour = Contour(contour.points[np.repeat(lasts, contour.degrees)], contour.degrees[lasts])
         self.cubics = cubics = self.contour.cubics()
         self.em = em
         m = len(cubics)
-        samples = np.einsum("ks,mkc->msc", bernstein(STEPS), cubics)
-        chords = np.diff(samples, axis=1)
+        chords = np.diff(np.einsum("ks,mkc->msc", bernstein(STEPS), cubics), axis=1)
         ways = np.einsum("ks,mkc->msc", SLOPES, np.diff(cubics, axis=1))
-        ways[:, 0], ways[:, -1] = first_direction(cubics), first_direction(-cubics[:, ::-1])
+        ways[:, 0], ways[:, -1] = arms = _first_arm(cubics), _first_arm(-cubics[:, ::-1])
         angles = np.arctan2(ways[..., 1], ways[..., 0])
         bends = wrapped(np.diff(angles, axis=1))
-        self.turns = wrapped(angles[:, 0] - np.roll(angles[:, -1], 1))
-        self.bent: FloatArray = np.abs(bends).sum(axis=1)
-        steps = np.zeros((m, STEPS + 1, 3))
+        self._turns: FloatArray = wrapped(angles[:, 0] - np.roll(angles[:, -1], 1))
+        self._bent: FloatArray = np.abs(bends).sum(axis=1)
+        steps = np.zeros((m, STEPS + 1, 2))
         steps[:, 1:, 0] = np.hypot(chords[..., 0], chords[..., 1])
-        steps[:, 1:, 1], steps[:, 1:, 2] = bends, np.abs(bends)
-        steps[1:, 0, 1] += self.turns[1:]
-        steps[1:, 0, 2] += np.abs(self.turns[1:])
-        rows = steps.reshape(-1, 3).cumsum(axis=0)
-        lap = rows[-1] + (0.0, self.turns[0], abs(self.turns[0]))
-        self.length: float = rows[-1, 0]
-        self.lap_turn: float = lap[1]
+        steps[:, 1:, 1] = bends
+        steps[1:, 0, 1] += self._turns[1:]
+        rows = steps.reshape(-1, 2).cumsum(axis=0)
+        lap = rows[-1] + (0.0, self._turns[0])
+        self.length, self._lap_turn = lap.tolist()
         rows[:, 1] += angles[0, 0]
         at = (np.arange(m)[:, None] + np.arange(STEPS + 1) / STEPS).ravel()
         self._at: FloatArray = np.concatenate([at - m, at, at + m, at + 2 * m])
         self._rows: FloatArray = np.concatenate([rows - lap, rows, rows + lap, rows + 2 * lap])
-        self._find()
+        self._find(*arms)
 
-    def _find(self) -> None:
-        m = len(self.cubics)
+    def _find(self, first_arms: FloatArray, last_arms: FloatArray) -> None:
+        m, line = len(self.cubics), self.contour.degrees == 1
         joints = np.arange(float(m))
-        degrees = np.degrees(np.maximum(np.abs(self.turns) - self._doubts(), 0.0))
-        share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
+        one, other = (np.arctan2(ROUNDING, np.hypot(*arms.T)) for arms in (first_arms, last_arms))
+        degrees = np.degrees(np.maximum(np.abs(self._turns) - one - np.roll(other, 1), 0.0))
         corner: BoolArray = degrees >= CORNER_ANGLE
-        straight = (self.contour.degrees == 1) | (np.degrees(self.bent) < STRAIGHT)
-        line = self.contour.degrees == 1
-        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * self._ends(), BREAK * self._jumps())
+        share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
+        straight = line | (np.degrees(self._bent) < STRAIGHT)
+        end, jump = self._breaks()
+        smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * end, BREAK * jump)
         smooth = np.maximum(smooth, np.where(line != np.roll(line, 1), DRAWN_END, 0.0))
         weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
-        table = self.rows(joints)[:, 0]
+        table, directions = self.rows(joints).T
         places = []
-        curved = self.bent >= np.radians(CURVED)
+        curved = self._bent >= np.radians(CURVED)
         for k in (0, 1):
-            tilt = np.abs(np.sin(self.rows(joints)[:, 1] + (np.pi / 2 if k == 0 else 0.0)))
+            tilt = np.abs(np.sin(directions + (np.pi / 2 if k == 0 else 0.0)))
             for place in extremal_places(self.cubics[..., k], HEIGHT * self.em):
                 along = (self.rows(np.array([place]))[0, 0] - table + self.length / 2) % self.length - self.length / 2
                 away = np.abs(along)
-                stands = (away < NEAR[0] * self.em) | ((away < NEAR[1] * self.em) & (tilt < np.sin(np.radians(TILT))))
-                if stands.any():
-                    nearest = int(np.argmin(np.where(stands, away, np.inf)))
+                near = (away < NEAR[0] * self.em) | ((away < NEAR[1] * self.em) & (tilt < np.sin(np.radians(TILT))))
+                if near.any():
+                    nearest = int(np.argmin(np.where(near, away, np.inf)))
                     if not corner[nearest] and curved[nearest] and curved[nearest - 1]:
                         weights[nearest] = max(EXTREMUM, weights[nearest])
                 elif curved[int(place)]:
@@ -128,45 +128,39 @@ class Landmarks:
         order = np.argsort(every, kind="stable")
         self.places: FloatArray = every[order]
         self.weights: FloatArray = np.concatenate([weights, np.full(len(places), EXTREMUM)])[order]
-        self.points: FloatArray = self.at(self.places)
-        self.before, self.after = self._directions()
+        self.points: FloatArray = self.contour.at(self.places)
         self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
+        self.before, self.after = self._direction(-1), self._direction(1)
 
-    def _directions(self) -> tuple[FloatArray, FloatArray]:
-        """Directions before and after each landmark, of chords: a short handle, off by a unit, points anywhere."""
-        here, found = self.rows(self.places)[:, 0], []
-        for side, ends in ((-1, np.ceil(self.places) - 1), (1, np.floor(self.places) + 1)):
-            stop = self.rows(ends)[:, 0] - here
-            along = here + side * np.minimum(CHORD * self.em, np.abs(stop))
-            step = side * (self.at(np.interp(along, self._rows[:, 0], self._at)) - self.points)
-            direction = self.rows(self.places, before=side < 0)[:, 1]
-            turned = wrapped(np.arctan2(step[:, 1], step[:, 0]) - direction)
-            found.append(direction + np.where(step.any(axis=1), turned, 0.0))
-        return found[0], found[1]
+    def _direction(self, side: int) -> FloatArray:
+        """Directions before or after each landmark, of chords: a short handle, off by a unit, points anywhere."""
+        here, ends = (
+            self.rows(self.places)[:, 0],
+            np.where(side < 0, np.ceil(self.places), np.floor(self.places)) + side,
+        )
+        along = here + side * np.minimum(CHORD * self.em, np.abs(self.rows(ends)[:, 0] - here))
+        step = side * (self.contour.at(np.interp(along, self._rows[:, 0], self._at)) - self.points)
+        direction = self.rows(self.places, before=side < 0)[:, 1]
+        turned = wrapped(np.arctan2(step[:, 1], step[:, 0]) - direction)
+        return direction + np.where(step.any(axis=1), turned, 0.0)
 
-    def _doubts(self) -> FloatArray:
-        """(m,) radians of the turn at each joint that rounded coordinates may have made."""
-        arms = [np.hypot(*first_direction(cubics).T) for cubics in (self.cubics, self.cubics[:, ::-1])]
-        one, other = (np.arctan2(ROUNDING, arm) for arm in arms)
-        return one + np.roll(other, 1)
+    def _breaks(self) -> tuple[FloatArray, FloatArray]:
+        """How much breaks at each joint, 0 to 1.
 
-    def _ends(self) -> FloatArray:
-        """(m,) how much one of the segments at each joint bends more, in the mean, than the other: 0 to 1."""
+        (m,) how much one of its segments bends more, in the mean, than the other; (m,) how much the curvature jumps, of
+        the larger one and of what shows.
+        """
         spans = np.diff(self.rows(np.arange(len(self.cubics) + 1.0))[:, 0])
-        means = np.stack([self.bent / spans, np.roll(self.bent / spans, 1)])
-        most = np.where(means[0] > means[1], self.bent, np.roll(self.bent, 1))
-        contrast = 1 - means.min(axis=0) / np.maximum(means.max(axis=0), 1e-12)
-        return contrast * np.minimum(np.degrees(most) / SHOWS, 1.0)
-
-    def _jumps(self) -> FloatArray:
-        """(m,) how much the curvature jumps at each joint: 0 to 1, of the larger one and of what shows."""
-        first, last = _curvatures(self.cubics), -_curvatures(self.cubics[:, ::-1])
-        one, other = np.roll(last, 1), first
-        largest = np.maximum(np.abs(one), np.abs(other))
-        spans = np.diff(self.rows(np.arange(len(self.cubics) + 1.0))[:, 0])
+        mean = self._bent / spans
+        before = np.roll(mean, 1)
+        most = np.where(mean > before, self._bent, np.roll(self._bent, 1))
+        contrast = 1 - np.minimum(mean, before) / np.maximum(np.maximum(mean, before), 1e-12)
+        curvature = np.nan_to_num(end_curvatures(self.cubics), nan=0.0, posinf=0.0, neginf=0.0)
+        after, before = curvature[:, 0], np.roll(curvature[:, 1], 1)
+        largest = np.maximum(np.abs(after), np.abs(before))
         shown = largest * np.minimum(np.minimum(spans, np.roll(spans, 1)), REACH * self.em) / np.radians(SHOWS)
-        relative = np.abs(other - one) / np.where(largest > 0, largest, 1.0)
-        return np.minimum(relative, 1.0) * np.minimum(shown, 1.0)
+        relative = np.abs(after - before) / np.where(largest > 0, largest, 1.0)
+        return contrast * np.minimum(np.degrees(most) / SHOWS, 1.0), np.minimum(relative, 1.0) * np.minimum(shown, 1.0)
 
     def __len__(self) -> int:
         return len(self.places)
@@ -176,13 +170,8 @@ class Landmarks:
         """Indices of the landmarks that are corners."""
         return np.flatnonzero(self.weights >= CORNER[0])
 
-    def at(self, places: FloatArray) -> FloatArray:
-        """(k, 2) points at places."""
-        segments = np.floor(places).astype(np.int64)
-        return evaluate(self.cubics[segments % len(self.cubics)], places - segments)
-
     def rows(self, places: FloatArray, *, before: bool = False) -> FloatArray:
-        """(k, 3) length from the start, signed turn and sum of absolute turns at places; at joints after their turn."""
+        """(k, 2) length and turn from the start at places; at joints after their turn, or before it."""
         i = np.searchsorted(self._at, places, side="left" if before else "right") - 1
         i = np.clip(i, 0, len(self._at) - 2)
         low, high = self._at[i], self._at[i + 1]
@@ -190,46 +179,24 @@ class Landmarks:
         return self._rows[i] + share[:, None] * (self._rows[i + 1] - self._rows[i])
 
     def table(self, which: IntArray) -> FloatArray:
-        """(k, 4) weight, length and directions of landmarks, as :func:`.alignment.cheapest_pairs` takes them."""
-        return np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
+        """(2k, 4) weight, length and directions of landmarks in two laps, for :func:`.alignment.cheapest_pairs`."""
+        rows = np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
+        return np.concatenate([rows, rows + np.array([0.0, 1.0, self._lap_turn, self._lap_turn])])
 
-    def lap_places(self, which: IntArray) -> FloatArray:
-        """The places of landmarks whose indices count on past their number."""
-        return self.places[which % len(self)] + which // len(self) * len(self.cubics)
-
-    def between(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
-        """Places from ``start`` to ``end``, with both, and their rows, (k,) and (k, 3): the table's, joints twice."""
-        low, high = np.searchsorted(self._at, start, side="right"), np.searchsorted(self._at, end, side="left")
-        head, tail = self.rows(np.array([start])), self.rows(np.array([end]), before=True)
-        at = np.concatenate([[start], self._at[low:high], [end]])
-        return at, np.concatenate([head, self._rows[low:high], tail])
+    def lap(self, first: int) -> tuple[FloatArray, FloatArray]:
+        """Places once around from a landmark, and the lengths up to them: those of the table, joints twice."""
+        start = self.places[first : first + 1]
+        end = start + len(self.cubics)
+        low, high = np.searchsorted(self._at, start[0], side="right"), np.searchsorted(self._at, end[0], side="left")
+        lengths = [self.rows(start)[:, 0], self._rows[low:high, 0], self.rows(end, before=True)[:, 0]]
+        return np.concatenate([start, self._at[low:high], end]), np.concatenate(lengths)
 
 
-def lasting_segments(contour: Contour) -> Contour:
-    """The contour without its segments of no length."""
-    cubics = contour.cubics()
-    lasting = (cubics[:, 1:] != cubics[:, :1]).any(axis=(1, 2))
-    if lasting.all():
-        return contour
-    return Contour.from_segments(
-        segment for segment, keep in zip(contour.segments(), lasting.tolist(), strict=True) if keep
-    )
-
-
-def first_direction(cubics: FloatArray) -> FloatArray:
+def _first_arm(cubics: FloatArray) -> FloatArray:
     """(m, 2) from the first point of each cubic (m, 4, 2) to the nearest control point that is another."""
     arms = cubics[:, 1:] - cubics[:, :1]
     first = (arms != 0).any(axis=2).argmax(axis=1)
     return arms[np.arange(len(cubics)), first]
-
-
-def _curvatures(cubics: FloatArray) -> FloatArray:
-    """(m,) signed curvature where each cubic begins; 0 where it begins without speed."""
-    d = cubics[:, 1] - cubics[:, 0]
-    e = cubics[:, 2] - cubics[:, 0]
-    speed = np.hypot(d[:, 0], d[:, 1])
-    safe = np.where(speed > 0, speed, 1.0)
-    return np.where(speed > 0, (d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]) / safe**3 * 2 / 3, 0.0)
 
 
 def wrapped(angles: FloatArray) -> FloatArray:

@@ -119,7 +119,7 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
             at[i] = corners[j] + k * (stretches[j] / parts[j])
             i += 1
     at = _graded(at, length, max_ratio, most)
-    k = np.searchsorted(at, length)  # from here on they are in the next lap
+    k = int(np.searchsorted(at, length))  # from here on they are in the next lap
     return np.concatenate((at[k:] - length, at[:k]))
 
 
