@@ -2,44 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
-from ..checks.baseline import Baseline
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError, OutputError
 from ..fields import options_of
 from ..files import writing
-from ..runs.jobs.check import STEPS, Asked, Face, check_fonts, worst_first
-from ..writers.figures.images import FigureKind
 from . import arguments as opt
 from .config import CHECK, names_of, settings
-from .findings import as_csv, as_json, as_markdown, sentences, table
-from .groups import Shown, collected
+from .groups import Shown, collected, grouped, only
 from .messages import progress, say, stop
+
+if TYPE_CHECKING:
+    from ..runs.jobs.check import Asked
 
 STDOUT = Path("-")
 
 
-def run_check(
-    inputs: Sequence[str],
+@grouped
+def check(
+    fonts: opt.FontFiles,
     options: opt.CheckOptions,
     report: opt.ReportOptions,
     subset: opt.Subset,
     instance: opt.Instance,
-    run: opt.RunOptions,
-) -> list[Face]:
-    """Check fonts, write what is asked for, and print the rest.
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "config", "quiet")],
+) -> int:
+    """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
 
-    Raises:
-        GlyphsplineError: an option, or a file that it names, is unusable.
+    The worst findings come first; kinks are WARN, the rest INFO. All glyphs are checked unless some are asked for,
+    those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
+    for it, and 2 if a font cannot be read.
     """
     from ..runs.font_search import find_fonts
+    from ..runs.jobs.check import Face, check_fonts, worst_first
+    from ..writers.figures.images import FigureKind
+    from .findings import as_csv, as_json, as_markdown, sentences, table
 
     texts = (report.csv, report.ghmarkdown, report.html)
     piped = texts.count(STDOUT) + run.as_json
@@ -51,15 +54,15 @@ def run_check(
         if path not in (None, STDOUT) and not path.parent.is_dir():
             raise OutputError("cannot be written: there is no such folder", font=str(path))
     asked = asked_of(options, report, run.as_json)
-    fonts = find_fonts(inputs)
-    if not fonts:
+    files = find_fonts(fonts)
+    if not files:
         stop("no fonts found")
-    alone = len(inputs) == 1 and fonts == [Path(inputs[0])]
+    alone = len(fonts) == 1 and files == [Path(fonts[0])]
     if report.plot is not None and not alone:
         stop("--plot takes one font")
     faces: list[Face] = []
     for face in check_fonts(
-        fonts, asked, chosen=subset.of if subset.is_given else None, face_index=instance.face_index,
+        files, asked, chosen=subset.of if subset.is_given else None, face_index=instance.face_index,
         location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
     ):  # fmt: skip
         faces.append(face)
@@ -86,7 +89,7 @@ def run_check(
         from ..writers.figures.turns import turns_figure
 
         kind: Any = report.plot.suffix[1:].lower()
-        source = open_source(fonts[0], instance.face_index or 0, instance.place)
+        source = open_source(files[0], instance.face_index or 0, instance.place)
         put(report.plot, turns_figure(source, faces[0].kinks, kind))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
@@ -95,7 +98,9 @@ def run_check(
     if not run.quiet:
         for line in sentences(faces, len(shown), report.rows, level):
             say(line)
-    return faces
+    if any(face.error is not None for face in faces):
+        return 2
+    return report.error_level is not None and any(face.reaches(report.error_level) for face in faces)
 
 
 def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:
@@ -104,6 +109,9 @@ def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool
     Raises:
         GlyphsplineError: an option or the baseline is unusable.
     """
+    from ..checks.baseline import Baseline
+    from ..runs.jobs.check import STEPS, Asked
+
     every = [kind.name for kind in KINDS]
     kinds = _listed(options.kinds)
     for name in kinds:

@@ -11,17 +11,21 @@ from typing import Annotated, Any
 
 import typer
 
+from ..datasets.spec import ROWS, TAKEN, DatasetSpec
+from ..errors import OptionError
 from ..fields import WRITTEN, About
 from ..fitting.options import Options
 from ..runs.spec import RunSpec
-from ..writers.settings import Maps, Settings
+from ..writers.settings import Maps
 from . import arguments as opt
 from . import interruption
-from .dataset_command import dataset
-from .groups import grouped, only, without
+from .check_command import check
+from .diff_command import diff
+from .groups import grouped, only, place, without
 from .messages import listen, print_json, printable, progress, say, stop
 from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, workplace
-from .tables import difference_lines, differences_table, font_lines, runs_facts, runs_table
+from .tables import font_lines, runs_facts, runs_table
+from .text_command import text
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
@@ -81,42 +85,58 @@ def convert(
     return any(one.failed for one in runs)
 
 
-app.command()(dataset)
+def place_or_url(text: Any) -> str:
+    """Parse a path or URL, which stays as it is written."""
+    place(text)
+    return str(text)
 
 
 @app.command()
 @grouped
-def text(
-    font: opt.FontFile,
+def dataset(
+    fonts: opt.FontFiles,
     out: Annotated[
-        list[Path],
+        str,
         About(
-            "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
-            WRITTEN,
-            "FILE",
+            "Write to this folder, or s3://bucket/folder.",
+            None,
+            "DIR|URL",
             ("--out", "-o"),
-            more={"show_default": False},
+            more={"parser": place_or_url, "show_default": False},
         ),
     ],
-    lines: opt.TextOptions,
-    along: opt.PathOptions,
-    options: Annotated[Options, without("measure")],
-    settings: Annotated[Settings, without("size")],
-    drawings: opt.DrawingOptions,
-    run: Annotated[opt.RunOptions, only("config", "quiet")],
-    words: Annotated[
-        str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
-    ] = None,
-    instance: opt.Instance = opt.FIRST,
+    spec: DatasetSpec,
+    run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
+    fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
+    text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
 ) -> int:
-    """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
+    """Make a data set of the glyphs of fonts: Parquet files that datasets, pandas, DuckDB and Arrow open.
 
-    Each glyph is fitted once, however often it stands there. The exit status is 1 if the fonts lack characters of the
-    text, or glyphs cannot be read.
-    """  # fmt: skip
-    from .text_command import TextCall, set_text
+    Splits are by family. The same fonts and options give the same bytes, and a run that was interrupted goes on.
+    """
+    from ..datasets.run import dataset as make
 
-    return set_text(TextCall(font, instance, words, lines, along, options, settings, drawings), out, run.quiet)
+    if not fit:
+        spec = replace(spec, options=None)
+    if text_file is not None:
+        if spec.characters:
+            raise OptionError("give --characters or --text-file, not both")
+        text = text_file.read_text(encoding="utf-8-sig")
+        spec = replace(spec, characters="".join(sorted(set(text) - set("\r\n"))))
+    with progress(run.quiet) as observer:
+        summary = make(
+            fonts, out, spec, jobs=run.jobs, scheduler=run.scheduler, restart=not run.resume, observer=observer
+        )
+    if not run.quiet:
+        for line in summary.lines():
+            say(line)
+        say(f"written to {out}: read {out.rstrip('/')}/README.md")
+    if run.as_json:
+        print_json(summary.facts())
+    return bool(summary.failed or summary.fonts["failed"])
+
+
+app.command()(text)
 
 
 @app.command()
@@ -218,72 +238,10 @@ def atlas(
     return bool(failed)
 
 
-@app.command()
-@grouped
-def check(
-    fonts: opt.FontFiles,
-    options: opt.CheckOptions,
-    report: opt.ReportOptions,
-    subset: opt.Subset,
-    instance: opt.Instance,
-    run: Annotated[opt.RunOptions, only("as_json", "jobs", "config", "quiet")],
-) -> int:
-    """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
-
-    The worst findings come first; kinks are WARN, the rest INFO. All glyphs are checked unless some are asked for,
-    those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
-    for it, and 2 if a font cannot be read.
-    """
-    from .check_command import run_check
-
-    faces = run_check(fonts, options, report, subset, instance, run)
-    if any(face.error is not None for face in faces):
-        return 2
-    level = report.error_level
-    return level is not None and any(face.reaches(level) for face in faces)
+app.command()(check)
 
 
-@app.command()
-@grouped
-def diff(
-    old: Annotated[Path, typer.Argument(metavar="OLD", help=opt.FONT_HELP, show_default=False)],
-    new: Annotated[
-        Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
-    ],
-    subset: opt.Subset,
-    report: Annotated[opt.ReportOptions, only("rows")],
-    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
-    tolerance: Annotated[
-        float | None,
-        About("Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.", metavar="UNITS"),
-    ] = None,
-    instance: opt.Instance = opt.FIRST,
-    html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
-) -> int:
-    """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
-
-    Exit status 1 if anything differs by more than the tolerance: an outline or an advance, contours or glyphs that only
-    one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
-    for.
-    """
-    from ..runs.jobs.diff import compare_fonts
-    from .diff_command import chosen_pairs, open_both, write_page
-
-    sources = open_both(old, new, instance)
-    pairs = chosen_pairs(*sources, subset)
-    with progress(run.quiet) as observer:
-        found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
-    if html is not None:
-        write_page(html, *sources, found)
-    worst, rows = found.worst_first(), report.rows
-    if run.as_json:
-        print_json(found.facts())
-    elif worst and rows:
-        typer.echo(differences_table(worst, rows, found.tolerance))
-    if not run.quiet:
-        for line in difference_lines(found, 0 if run.as_json else rows):
-            say(line)
-    return found.is_beyond
+app.command()(diff)
 
 
 @app.command()

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from ..errors import GlyphsplineError
+from ..fields import About
 from . import arguments as opt
-from .tables import difference_lines
+from .groups import grouped, only
+from .messages import print_json, progress, say
+from .tables import difference_lines, differences_table
 
 if TYPE_CHECKING:
     from ..readers import Source
@@ -15,6 +20,47 @@ if TYPE_CHECKING:
 
 DRAWN = 500
 """Glyphs on a page, the worst first; with more of them a browser takes seconds to open it."""
+
+
+@grouped
+def diff(
+    old: Annotated[Path, typer.Argument(metavar="OLD", help=opt.FONT_HELP, show_default=False)],
+    new: Annotated[
+        Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
+    ],
+    subset: opt.Subset,
+    report: Annotated[opt.ReportOptions, only("rows")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
+    tolerance: Annotated[
+        float | None,
+        About("Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.", metavar="UNITS"),
+    ] = None,
+    instance: opt.Instance = opt.FIRST,
+    html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
+) -> int:
+    """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
+
+    Exit status 1 if anything differs by more than the tolerance: an outline or an advance, contours or glyphs that only
+    one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
+    for.
+    """
+    from ..runs.jobs.diff import compare_fonts
+
+    sources = open_both(old, new, instance)
+    pairs = chosen_pairs(*sources, subset)
+    with progress(run.quiet) as observer:
+        found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
+    if html is not None:
+        write_page(html, *sources, found)
+    worst, rows = found.worst_first(), report.rows
+    if run.as_json:
+        print_json(found.facts())
+    elif worst and rows:
+        typer.echo(differences_table(worst, rows, found.tolerance))
+    if not run.quiet:
+        for line in difference_lines(found, 0 if run.as_json else rows):
+            say(line)
+    return found.is_beyond
 
 
 def open_both(old: Path, new: Path, instance: opt.Instance) -> tuple[Source, Source]:

@@ -5,20 +5,24 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import inf
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from pathlib import Path as File
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from ..errors import GlyphsplineError, OptionError
+from ..fields import WRITTEN, About
+from ..fitting.options import Options
+from ..writers.settings import Settings
 from . import arguments as opt
+from .groups import grouped, only, without
 from .messages import say
 
 if TYPE_CHECKING:
-    from ..fitting.options import Options
-    from ..runs.jobs.text import TextJob
+    from ..readers import AnySource
+    from ..typesetting.path import Path
     from ..typesetting.placed import Layout
-    from ..writers.settings import Settings
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
@@ -33,53 +37,71 @@ BY_SUFFIX = {
 LENGTH = re.compile(r"(-?\d{1,9}(?:\.\d{1,9})?)([a-z]*)")
 
 
-@dataclass(frozen=True)
-class TextCall:
-    """A text, how it is set, fitted and drawn: the arguments of the command ``text``."""
+@grouped
+def text(
+    font: opt.FontFile,
+    out: Annotated[
+        list[File],
+        About(
+            "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+            WRITTEN,
+            "FILE",
+            ("--out", "-o"),
+            more={"show_default": False},
+        ),
+    ],
+    lines: opt.TextOptions,
+    along: opt.PathOptions,
+    options: Annotated[Options, without("measure")],
+    settings: Annotated[Settings, without("size")],
+    drawings: opt.DrawingOptions,
+    run: Annotated[opt.RunOptions, only("config", "quiet")],
+    words: Annotated[
+        str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
+    ] = None,
+    instance: opt.Instance = opt.FIRST,
+) -> int:
+    """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
-    font: Path
-    instance: opt.Instance
-    words: str | None
-    lines: opt.TextOptions
-    along: opt.PathOptions
-    options: Options
-    settings: Settings
-    drawings: opt.DrawingOptions
-
-
-def set_text(call: TextCall, out: Sequence[Path], quiet: bool) -> int:
-    """Lay a text out and write its drawings; returns the exit status: 1 if something is left out of them, else 0.
-
-    Raises:
-        GlyphsplineError: the text cannot be laid out, or a format is unknown.
-        OSError: a file cannot be read or written.
+    Each glyph is fitted once, however often it stands there. The exit status is 1 if the fonts lack characters of the
+    text, or glyphs cannot be read.
     """
     from ..runs.schedule import kinds_for, workers
 
-    files = list(formats_of(out, call.drawings.format_name))
+    files = list(formats_of(out, drawings.format_name))
     names = tuple(name for _, name in files)
     # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
-    with workers(1, inf, kinds_for(call.options, names), 1) as executor:
-        from ..runs.jobs.text import drawings
+    with workers(1, inf, kinds_for(options, names), 1) as executor:
+        from ..readers import open_source
+        from ..runs.jobs.text import TextJob
+        from ..runs.jobs.text import drawings as draw
         from ..typesetting.placed import LEFT_OUT
 
-        job = job_of(call, names)
-        drawn = executor.submit(drawings, job).result()
-    for (file, _), content in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
+        content = words_of(words, lines.text_file)
+        source = open_source(font, instance.face_index or 0, instance.place)
+        em, look = source.metrics.units_per_em, settings.look
+        curve = curve_of(lines, along, em, look)
+        layout = laid_out(source, content, lines, curve is not None, look)
+        align: Any = lines.align  # "justify" is refused with the path
+        drawn = executor.submit(draw, TextJob(
+            layout, options, names, settings, drawings.each_glyph, curve, along.bend, align, along.side,
+            length("offset", along.offset, em, look) or 0.0,
+        )).result()  # fmt: skip
+    for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":
-            sys.stdout.buffer.write(content)
+            sys.stdout.buffer.write(drawing)
         else:
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
-    remarks = [*missing(job.layout), *drawn.notes]
+            file.write_bytes(drawing)
+    remarks = [*missing(layout), *drawn.notes]
     if len(remarks) > SHOWN:
         remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
-    for line in () if quiet else remarks:
+    for line in () if run.quiet else remarks:
         say(line)
-    return 1 if job.layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
+    return 1 if layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
 
 
-def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, str]]:
+def formats_of(files: Sequence[File], name: str | None) -> Iterator[tuple[File, str]]:
     """The name of the format of each file: as said, or by its suffix.
 
     Raises:
@@ -102,7 +124,7 @@ def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, 
         yield file, known
 
 
-def words_of(words: str | None, file: Path | None) -> str:
+def words_of(words: str | None, file: File | None) -> str:
     """The text: the argument, or that of a file; - is standard input.
 
     Raises:
@@ -119,44 +141,41 @@ def words_of(words: str | None, file: Path | None) -> str:
     return words
 
 
-def job_of(call: TextCall, formats: tuple[str, ...]) -> TextJob:
-    """The text on its lines, with the path that it is to follow, and how it is drawn.
+def curve_of(lines: opt.TextOptions, along: opt.PathOptions, em: float, look: Appearance) -> Path | None:
+    """The path that the text follows, in font units; None for text on lines.
 
     Raises:
-        GlyphsplineError: it cannot be laid out, or options clash.
+        GlyphsplineError: it cannot be read, or options clash.
     """
-    from ..readers import open_source
-    from ..runs.jobs.text import TextJob
-    from ..typesetting.lay_out import layout
-
-    lines, along, look = call.lines, call.along, call.settings.look
-    text = words_of(call.words, lines.text_file)
-    font = open_source(call.font, call.instance.face_index or 0, call.instance.place)
-    fallbacks = [open_source(file) for file in lines.fallbacks or ()]
-    em = font.metrics.units_per_em
-    width, line_height = length("width", lines.width, em, look), length("line_height", lines.line_height, em, look)
-    align: Any = lines.align  # "justify" is refused with the path
-    curve = None
     if along.path is None:
         for name in ("bend", "offset", "side"):
             if getattr(along, name) != getattr(opt.PathOptions, name):
                 raise GlyphsplineError(f"--{name} is for text on a --path")
-    else:
-        if lines.width is not None:
-            raise GlyphsplineError("--width is for lines; text on a --path is one")
-        if lines.direction in ("ttb", "btt"):
-            raise GlyphsplineError("columns cannot stand on a --path")
-        from ..typesetting.path_file import open_path
+        return None
+    if lines.width is not None:
+        raise GlyphsplineError("--width is for lines; text on a --path is one")
+    if lines.direction in ("ttb", "btt"):
+        raise GlyphsplineError("columns cannot stand on a --path")
+    from ..typesetting.path_file import open_path
 
-        curve = open_path(along.path).scaled(pixel(em, look))
-    laid_out = layout(
-        font, text, fallbacks=fallbacks, features=lines.features, script=lines.script, language=lines.language,
-        direction=lines.direction, width=width, line_height=line_height,
-        align=align if curve is None else "start",
-    )  # fmt: skip
-    return TextJob(
-        laid_out, call.options, formats, call.settings, call.drawings.each_glyph, curve, along.bend, align,
-        along.side, length("offset", along.offset, em, look) or 0.0,
+    return open_path(along.path).scaled(pixel(em, look))
+
+
+def laid_out(source: AnySource, text: str, lines: opt.TextOptions, on_path: bool, look: Appearance) -> Layout:
+    """The text on its lines, or on one for a path.
+
+    Raises:
+        GlyphsplineError: it cannot be laid out.
+    """
+    from ..readers import open_source
+    from ..typesetting.lay_out import layout
+
+    em = source.metrics.units_per_em
+    return layout(
+        source, text, fallbacks=[open_source(file) for file in lines.fallbacks or ()], features=lines.features,
+        script=lines.script, language=lines.language, direction=lines.direction,
+        width=length("width", lines.width, em, look), line_height=length("line_height", lines.line_height, em, look),
+        align="start" if on_path else lines.align,
     )  # fmt: skip
 
 
