@@ -1,12 +1,20 @@
-"""Two small TrueType fonts drawn point by point: what real fonts contain now and then, and readers trip over."""
+"""Three small fonts drawn point by point: what real fonts contain now and then, and readers trip over.
+
+Two are TrueType fonts. One is variable and has cubic outlines in a CFF2 table: two axes, named instances, metrics that
+vary.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from fontTools import varLib
+from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument, InstanceDescriptor, SourceDescriptor
 from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPointPen
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables.TupleVariation import TupleVariation
@@ -15,6 +23,7 @@ DATE = 3_566_073_600  # 2017-01-01, in the seconds since 1904 of a head table: f
 UNITS_PER_EM, ASCENDER, DESCENDER = 1000, 800, -200
 
 Point: TypeAlias = tuple[int, int]
+Metrics: TypeAlias = dict[str, tuple[int, int]]
 Placed: TypeAlias = tuple[str, tuple[float, float, float, float, int, int]]
 
 
@@ -80,11 +89,12 @@ def weighted(stem: int) -> dict[str, Drawing]:
 def variable() -> TTFont:
     """One axis, weight 400 to 900: composites (nested, slanted, mirrored), an off-curve-only contour, no HVAR."""
     light, bold = weighted(60), weighted(200)
-    builder = _built(light, "Drawn Variable", {" ": "space", "o": "o", "i": "i", "l": "stem", ".": "dot"})
+    font = _built(light, "Drawn Variable", {" ": "space", "o": "o", "i": "i", "l": "stem", ".": "dot"})
+    builder = FontBuilder(font=font)
     builder.setupFvar([("wght", 400, 400, 900, "Weight")], [])
     peak = {"wght": (0.0, 1.0, 1.0)}
     builder.setupGvar({name: [TupleVariation(peak, _deltas(light[name], bold[name]))] for name in light})
-    return builder.font
+    return font
 
 
 def edge_cases() -> TTFont:
@@ -116,7 +126,7 @@ def edge_cases() -> TTFont:
         glyphs,
         "Drawn Edge Cases",
         {" ": "space", "a": "a", "A": "A", "\N{GREEK SMALL LETTER ALPHA}": "a", "8": "eight"},
-    ).font
+    )
 
 
 def _each_twice(path: Path) -> Path:
@@ -125,20 +135,33 @@ def _each_twice(path: Path) -> Path:
     return Path(tuple(p for p, _ in doubled), frozenset(k for k, (_, off) in enumerate(doubled) if off))
 
 
-def _built(glyphs: dict[str, Drawing], family: str, characters: dict[str, str]) -> FontBuilder:
-    builder = FontBuilder(UNITS_PER_EM, isTTF=True)
-    builder.setupHead(unitsPerEm=UNITS_PER_EM, created=DATE, modified=DATE, fontRevision=1.0)
-    builder.setupGlyphOrder(list(glyphs))
-    builder.setupCharacterMap({ord(character): name for character, name in characters.items()})
+def begun(names: Iterable[str], characters: dict[int, str], *, cubic: bool, em: int = UNITS_PER_EM) -> FontBuilder:
+    """A font with its glyph order and character map."""
+    builder = FontBuilder(em, isTTF=not cubic)
+    builder.setupHead(unitsPerEm=em, created=DATE, modified=DATE, fontRevision=1.0)
+    builder.setupGlyphOrder(list(names))
+    builder.setupCharacterMap(characters)
+    return builder
+
+
+def ended(
+    builder: FontBuilder, metrics: Metrics, family: str, ascender: int = ASCENDER, highest: int = ASCENDER
+) -> TTFont:
+    """The font with metrics and names."""
+    builder.setupHorizontalMetrics(metrics)
+    builder.setupHorizontalHeader(ascent=ascender, descent=DESCENDER)
+    builder.setupNameTable({"familyName": family, "styleName": "Regular", "psName": family.replace(" ", "")})
+    builder.setupOS2(sTypoAscender=ascender, sTypoDescender=DESCENDER, usWinAscent=highest, usWinDescent=-DESCENDER)
+    builder.setupPost()
+    return builder.font
+
+
+def _built(glyphs: dict[str, Drawing], family: str, characters: dict[str, str]) -> TTFont:
+    builder = begun(glyphs, {ord(character): name for character, name in characters.items()}, cubic=False)
     builder.setupGlyf({name: _glyph(drawing, glyphs) for name, drawing in glyphs.items()})
     outlines = builder.font["glyf"]
     metrics = {name: (drawing.advance, getattr(outlines[name], "xMin", 0)) for name, drawing in glyphs.items()}
-    builder.setupHorizontalMetrics(metrics)
-    builder.setupHorizontalHeader(ascent=ASCENDER, descent=DESCENDER)
-    builder.setupNameTable({"familyName": family, "styleName": "Regular", "psName": family.replace(" ", "")})
-    builder.setupOS2(sTypoAscender=ASCENDER, sTypoDescender=DESCENDER, usWinAscent=ASCENDER, usWinDescent=-DESCENDER)
-    builder.setupPost()
-    return builder
+    return ended(builder, metrics, family)
 
 
 def _glyph(drawing: Drawing, glyphs: dict[str, Drawing]) -> Any:
@@ -162,3 +185,84 @@ def _deltas(light: Drawing, bold: Drawing) -> list[Point]:
 def _movable(drawing: Drawing) -> list[Point]:
     points = [point for path in drawing.paths for point in path.points]
     return points + [transformation[4:] for _, transformation in drawing.components]
+
+
+CUBIC_FAMILY = "Drawn Cubic Variable"
+AXES = {"wght": ("Weight", 400, 400, 900), "wdth": ("Width", 75, 100, 100)}
+MASTERS = [{"wght": 400, "wdth": 100}, {"wght": 900, "wdth": 100}, {"wght": 400, "wdth": 75}]
+INSTANCES = {"Regular": MASTERS[0], "Bold": {"wght": 700, "wdth": 100}, "Bold Condensed": {"wght": 700, "wdth": 75}}
+HANDLE = 0.5523  # of the radius: the cubic nearest to a quarter of a circle
+CUBIC_CHARACTERS = {" ": "space", "o": "o", "l": "l", "n": "n"}
+
+
+def variable_cff2() -> TTFont:
+    """The font, merged from its masters."""
+    document = DesignSpaceDocument()
+    for tag, (name, low, default, high) in AXES.items():
+        document.addAxis(AxisDescriptor(tag=tag, name=name, minimum=low, default=default, maximum=high))
+    for at in MASTERS:
+        location = {AXES[tag][0]: value for tag, value in at.items()}
+        document.addSource(SourceDescriptor(font=master(at["wght"], at["wdth"]), location=location))
+    for style, at in INSTANCES.items():
+        location = {AXES[tag][0]: value for tag, value in at.items()}
+        document.addInstance(InstanceDescriptor(familyName=CUBIC_FAMILY, styleName=style, location=location))
+    font, _, _ = varLib.build(document)
+    font.recalcTimestamp = False
+    font["head"].created = font["head"].modified = DATE
+    return font
+
+
+def master(weight: int, width: int) -> TTFont:
+    """One end of the design space, as CFF."""
+    stem, half = 60 + (weight - 400) * 140 // 500, 250 * width // 100
+    advances = {".notdef": 500, "space": 2 * half // 2, "o": 2 * half + 100, "l": stem + 120, "n": 2 * half + 60}
+    characters = {ord(character): name for character, name in CUBIC_CHARACTERS.items()}
+    builder = begun(advances, characters, cubic=True)
+    pens = {name: T2CharStringPen(advance, None) for name, advance in advances.items()}
+    cubic_box(pens[".notdef"], 50, 0, 450, 700)
+    ellipse(pens["o"], 50 + half, 250, half, 250)
+    ellipse(pens["o"], 50 + half, 250, -(half - stem), 250 - stem)
+    cubic_box(pens["l"], 60, 0, 60 + stem, 700 + stem // 4)
+    arch(pens["n"], 60, 2 * half, stem)
+    strings = {name: pen.getCharString(optimize=False) for name, pen in pens.items()}
+    builder.setupCFF(CUBIC_FAMILY.replace(" ", ""), {"FamilyName": CUBIC_FAMILY, "FullName": CUBIC_FAMILY}, strings, {})
+    metrics = {name: (advance, bearing(strings[name])) for name, advance in advances.items()}
+    return ended(builder, metrics, CUBIC_FAMILY, ASCENDER + (weight - 400) // 10, 900)
+
+
+def bearing(string: Any) -> int:
+    """The left side bearing of a char string that has no subroutines."""
+    bounds = string.calcBounds(None)
+    return round(bounds[0]) if bounds else 0
+
+
+def cubic_box(pen: Any, left: int, bottom: int, right: int, top: int) -> None:
+    """A rectangle, counter-clockwise as CFF has outer contours."""
+    pen.moveTo((left, bottom))
+    for point in ((right, bottom), (right, top), (left, top)):
+        pen.lineTo(point)
+    pen.closePath()
+
+
+def ellipse(pen: Any, x: int, y: int, across: int, up: int) -> None:
+    """Four cubics, counter-clockwise; clockwise with ``across`` negative."""
+    a, b = round(HANDLE * across), round(HANDLE * up)
+    pen.moveTo((x + across, y))
+    pen.curveTo((x + across, y + b), (x + a, y + up), (x, y + up))
+    pen.curveTo((x - a, y + up), (x - across, y + b), (x - across, y))
+    pen.curveTo((x - across, y - b), (x - a, y - up), (x, y - up))
+    pen.curveTo((x + a, y - up), (x + across, y - b), (x + across, y))
+    pen.closePath()
+
+
+def arch(pen: Any, left: int, right: int, stem: int) -> None:
+    """Two legs under a vault: lines and curves in one contour."""
+    middle = (left + right) // 2
+    pen.moveTo((left, 0))
+    pen.lineTo((left + stem, 0))
+    pen.curveTo((left + stem, 300), (middle - 40, 500 - stem), (middle, 500 - stem))
+    pen.curveTo((middle + 40, 500 - stem), (right - stem, 300), (right - stem, 0))
+    pen.lineTo((right, 0))
+    pen.curveTo((right, 380), (middle + 120, 520), (middle, 520))
+    pen.curveTo((middle - 120, 520), (left, 380), (left, 0))
+    pen.closePath()

@@ -9,7 +9,7 @@ DIR is where they are, by default where Debian's package puts them. To get it wi
     apt-get download fonts-kouzan-mouhitsu && dpkg-deb -x fonts-kouzan-mouhitsu_*.deb kouzan
     python scripts/make_test_fonts.py --kouzan kouzan/usr/share/fonts/truetype/kouzan-mouhitsu
 
-Three more fonts are drawn point by point (drawn_fonts.py, drawn_cff2.py); ``--drawn-only`` makes just these,
+Three more fonts are drawn point by point (drawn_fonts.py); ``--drawn-only`` makes just these,
 without the package.
 """
 
@@ -18,9 +18,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import drawn_cff2
 import drawn_fonts
-from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.reverseContourPen import ReverseContourPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.subset import Options, Subsetter
@@ -44,7 +42,7 @@ def main() -> None:
         parser.error(f"no {missing[0]} in {args.kouzan}: see --help for how to get it, or use --drawn-only")
     args.out.mkdir(parents=True, exist_ok=True)
     drawn_fonts.variable().save(args.out / "variable.ttf")
-    drawn_cff2.variable_cff2().save(args.out / "variable-cff2.otf")
+    drawn_fonts.variable_cff2().save(args.out / "variable-cff2.otf")
     drawn_fonts.edge_cases().save(args.out / "edge-cases.ttf")
     if not args.drawn_only:
         write_kouzan(args.kouzan, args.out)
@@ -99,11 +97,7 @@ def set_names(font: TTFont, family: str) -> None:
 def as_cff(font: TTFont) -> TTFont:
     """The same outlines as CFF: quadratics raised to cubics, rounded to whole units, run the other way."""
     glyphs = font.getGlyphSet()
-    units_per_em, date = font["head"].unitsPerEm, drawn_fonts.DATE
-    builder = FontBuilder(units_per_em, isTTF=False)
-    builder.setupHead(unitsPerEm=units_per_em, created=date, modified=date, fontRevision=1.0)
-    builder.setupGlyphOrder(font.getGlyphOrder())
-    builder.setupCharacterMap(font.getBestCmap())
+    builder = drawn_fonts.begun(font.getGlyphOrder(), font.getBestCmap(), cubic=True, em=font["head"].unitsPerEm)
     char_strings = {}
     for name in font.getGlyphOrder():
         pen = T2CharStringPen(glyphs[name].width, glyphs)
