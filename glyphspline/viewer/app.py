@@ -1,4 +1,7 @@
-"""The viewer's server, on the loopback interface only: the page and its files, the font, and what the page asks for."""
+"""The viewer's server, on the loopback interface only: the page and its files, the font, and what the page asks for.
+
+A page elsewhere must not read a font through the visitor's browser: :class:`Guard` answers only pages of this server.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +17,12 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .. import compiled
 from ..errors import GlyphsplineError
@@ -26,15 +31,10 @@ from ..readers.facts import axis_facts
 from ..report.gallery import measures
 from ..report.pages import palette
 from ..writers.svg.document import to_svg
-from .conversion import COMPARED, Work, steps
-from .guard import Guard
-from .payload import glyph_payload, instance_payload, result_payload, step_payload
+from .conversion import COMPARED, Work, glyph_payload, instance_payload, result_payload, step_payload, steps
 from .requests import State, read_state, search
 
 HOST = "127.0.0.1"
-
-LONGEST_BODY = 200_000
-"""Bytes of a request; moved vertices take most of it."""
 
 PACKAGES = {
     **dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), "glyphspline.viewer"),
@@ -44,6 +44,61 @@ PACKAGES = {
 
 FIRST = "龍龙好gSa"
 """The first of these in the font is shown first: the paper's characters, or some with curves."""
+
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:;"
+    " base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+
+class Guard:
+    """Answers only requests whose ``Host`` is one of ``hosts`` and whose ``Origin``, if any, is a page there.
+
+    Checking the host prevents DNS rebinding: a foreign name that resolves to this machine.
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Iterable[str]) -> None:
+        self.app = app
+        self.hosts = frozenset(hosts)
+        self.origins = frozenset(f"http://{host}" for host in self.hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse the request, or pass it on and add the headers to the response."""
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        if scope["type"] != "http":
+            return
+        refusal = self.refusal(scope["method"], Headers(scope=scope))
+        app: ASGIApp = PlainTextResponse(refusal, status_code=403) if refusal else self.app
+
+        async def send_guarded(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message).update(HEADERS)
+            await send(message)
+
+        await app(scope, receive, send_guarded)
+
+    def refusal(self, method: str, headers: Headers) -> str | None:
+        """Why a request is refused, or None."""
+        if headers.get("host") not in self.hosts:
+            return "wrong host"
+        if "origin" in headers and headers["origin"] not in self.origins:
+            return "wrong origin"
+        if headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
+            return "asked for by another site"
+        if method == "POST" and headers.get("content-type") != "application/json":
+            return "not JSON"
+        return None
 
 
 def serve(
@@ -198,7 +253,7 @@ def _computed(work: Work, make: Callable[[Work, State], dict[str, Any]]) -> Call
         body = b""
         async for part in request.stream():
             body += part
-            if len(body) > LONGEST_BODY:
+            if len(body) > 200_000:  # moved vertices take most of it
                 return JSONResponse({"error": "too long"}, status_code=413)
         try:
             state = read_state(json.loads(body), work.em)
