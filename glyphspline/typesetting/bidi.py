@@ -5,7 +5,7 @@ It is here because the Python packages for it return a reordered string: shaping
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from unicodedata import bidirectional, normalize
 
@@ -64,7 +64,7 @@ def embedding_levels(text: str, base: int | None = None) -> tuple[int, list[int]
     levels, kinds = _explicit(classes, base, matching)
     for sequence, sos, eos in _sequences(classes, levels, base, matching):
         _weak(sequence, kinds, sos)
-        _neutral(sequence, kinds, levels, sos, eos, text, classes)
+        _neutral(sequence, kinds, "LR"[levels[sequence[0]] % 2], sos, eos, text, classes)
         for i in sequence:  # rules I1 and I2
             odd = levels[i] % 2
             levels[i] += int(kinds[i] != "R") if odd else {"L": 0, "R": 1}.get(kinds[i], 2)
@@ -95,18 +95,10 @@ def visual_order(levels: Sequence[int]) -> list[int]:
     order = list(range(len(levels)))
     odd = [level for level in levels if level % 2]
     for level in range(max(levels, default=0), min(odd, default=DEEPEST + 2) - 1, -1):
-        done = 0
-        for high, those in _stretches(order, [levels[i] >= level for i in order]):
-            if high:
-                order[done : done + len(those)] = those[::-1]
-            done += len(those)
+        is_high = [own >= level for own in levels]
+        stretches = [(high, list(those)) for high, those in groupby(order, is_high.__getitem__)]
+        order = [i for high, those in stretches for i in (those[::-1] if high else those)]
     return order
-
-
-def _stretches(items: Sequence[int], kinds: Sequence[bool]) -> list[tuple[bool, list[int]]]:
-    """Items in stretches of one kind."""
-    pairs = zip(kinds, items, strict=True)
-    return [(kind, [item for _, item in group]) for kind, group in groupby(pairs, lambda pair: pair[0])]
 
 
 def _isolates(classes: Sequence[str]) -> dict[int, int]:
@@ -126,16 +118,24 @@ def _explicit(classes: Sequence[str], base: int, matching: dict[int, int]) -> tu
     stack: list[tuple[int, str, bool]] = [(base, "", False)]  # level, override, isolate
     isolates_over = embeddings_over = isolates = 0
     for i, kind in enumerate(classes):
-        level, override, _ = stack[-1]
+        if kind == "PDI":
+            if isolates_over:
+                isolates_over -= 1
+            elif isolates:
+                embeddings_over = 0
+                while not stack.pop()[2]:
+                    pass
+                isolates -= 1
+        level, override, isolate = stack[-1]
+        if kind != "B":
+            levels[i] = level
+            if override and kind not in REMOVED:
+                kinds[i] = override
         if kind in EMBEDDINGS or kind in ISOLATES:
             if kind == "FSI":
-                inner = classes[i + 1 : matching.get(i, len(classes))]
-                kind = "RLI" if paragraph_level(inner) else "LRI"
-            isolate = kind in ISOLATES
-            levels[i] = level
-            if isolate and override:
-                kinds[i] = override
+                kind = "RLI" if paragraph_level(classes[i + 1 : matching.get(i, len(classes))]) else "LRI"
             new = (level + 1) | 1 if kind[0] == "R" else (level + 2) & ~1
+            isolate = kind in ISOLATES
             if new <= DEEPEST and not isolates_over and not embeddings_over:
                 isolates += isolate
                 stack.append((new, {"RLO": "R", "LRO": "L"}.get(kind, ""), isolate))
@@ -143,80 +143,49 @@ def _explicit(classes: Sequence[str], base: int, matching: dict[int, int]) -> tu
                 isolates_over += 1
             elif not isolates_over:
                 embeddings_over += 1
-        elif kind == "PDI":
-            if isolates_over:
-                isolates_over -= 1
-            elif isolates:
-                embeddings_over = 0
-                while not stack[-1][2]:
-                    stack.pop()
+        elif kind == "PDF" and not isolates_over:
+            if embeddings_over:
+                embeddings_over -= 1
+            elif not isolate and len(stack) > 1:
                 stack.pop()
-                isolates -= 1
-            level, override, _ = stack[-1]
-            levels[i] = level
-            kinds[i] = override or kind
-        elif kind == "PDF":
-            levels[i] = level
-            if not isolates_over:
-                if embeddings_over:
-                    embeddings_over -= 1
-                elif not stack[-1][2] and len(stack) > 1:
-                    stack.pop()
-        elif kind != "B":
-            levels[i] = level
-            if override and kind != "BN":
-                kinds[i] = override
     return levels, kinds
 
 
 def _sequences(
     classes: Sequence[str], levels: Sequence[int], base: int, matching: dict[int, int]
-) -> Iterator[tuple[list[int], str, str]]:
-    """BD13 and X10: isolating run sequences, each with sos and eos. Removed characters (X9) are in none.
-
-    All are found before the first is returned, as the caller changes the levels.
-    """
+) -> list[tuple[list[int], str, str]]:
+    """BD13 and X10: isolating run sequences, each with sos and eos. Removed characters (X9) are in none."""
     kept = [i for i, kind in enumerate(classes) if kind not in REMOVED and kind != "B"]
-    runs = [list(group) for _, group in groupby(kept, lambda i: levels[i])]
-    beginning = {run[0]: run for run in runs}
-    continued = {matching[run[-1]] for run in runs if run[-1] in matching}
-    place = {i: k for k, i in enumerate(kept)}
+    runs = {run[0]: run for run in (list(group) for _, group in groupby(kept, levels.__getitem__))}
+    continued = {matching[run[-1]] for run in runs.values() if run[-1] in matching}
+    before = dict(zip(kept, [base, *(levels[i] for i in kept)], strict=False))
+    after = dict(zip(kept, [*(levels[i] for i in kept[1:]), base], strict=False))
     found = []
-    for run in runs:
-        if run[0] in continued:
-            continue
-        sequence = list(run)
-        while sequence[-1] in matching:
-            sequence += beginning[matching[sequence[-1]]]
-        first, last = sequence[0], sequence[-1]
-        level, k = levels[first], place[first]
-        before = levels[kept[k - 1]] if k else base
-        k = place[last] + 1
-        after = levels[kept[k]] if k < len(kept) and classes[last] not in ISOLATES else base
-        found.append((sequence, "LR"[max(level, before) % 2], "LR"[max(level, after) % 2]))
-    yield from found
+    for start, sequence in runs.items():
+        if start not in continued:
+            while sequence[-1] in matching:
+                sequence = sequence + runs[matching[sequence[-1]]]
+            end, level = sequence[-1], levels[start]
+            last = base if classes[end] in ISOLATES else after[end]
+            found.append((sequence, "LR"[max(level, before[start]) % 2], "LR"[max(level, last) % 2]))
+    return found
 
 
 def _weak(sequence: Sequence[int], kinds: list[str], sos: str) -> None:
     """Rules W1 to W7."""
-    before, strong = sos, sos
+    before = strong = sos
     for i in sequence:  # W1, W2 and W3
         if kinds[i] == "NSM":
             kinds[i] = "ON" if before in ISOLATES or before == "PDI" else before
         before = kinds[i]
-    for i in sequence:
-        if kinds[i] in ("L", "R", "AL"):
-            strong = kinds[i]
-        elif kinds[i] == "EN" and strong == "AL":
+        strong = before if before in ("L", "R", "AL") else strong
+        if before == "EN" and strong == "AL":
             kinds[i] = "AN"
-    for i in sequence:
-        kinds[i] = "R" if kinds[i] == "AL" else kinds[i]
+        elif before == "AL":
+            kinds[i] = "R"
     for a, i, b in zip(sequence, sequence[1:], sequence[2:], strict=False):  # W4
-        around = kinds[a]
-        if around == kinds[b] and (
-            (kinds[i] in ("ES", "CS") and around == "EN") or (kinds[i] == "CS" and around == "AN")
-        ):
-            kinds[i] = around
+        if kinds[a] == kinds[b] and (kinds[i], kinds[a]) in (("ES", "EN"), ("CS", "EN"), ("CS", "AN")):
+            kinds[i] = kinds[a]
     for numbers, group in groupby(sequence, lambda i: kinds[i] in ("ET", "EN")):  # W5
         those = list(group)
         if numbers and any(kinds[i] == "EN" for i in those):
@@ -233,25 +202,15 @@ def _weak(sequence: Sequence[int], kinds: list[str], sos: str) -> None:
 
 
 def _neutral(
-    sequence: Sequence[int],
-    kinds: list[str],
-    levels: Sequence[int],
-    sos: str,
-    eos: str,
-    text: str,
-    classes: Sequence[str],
+    sequence: Sequence[int], kinds: list[str], along: str, sos: str, eos: str, text: str, classes: Sequence[str]
 ) -> None:
-    """Rules N0 to N2."""
-    along = "LR"[levels[sequence[0]] % 2]
+    """Rules N0 to N2; ``along`` is the direction of the sequence's level."""
     for a, b in _bracket_pairs(sequence, kinds, text):  # N0
         inside = {_strong(kinds[i]) for i in sequence[a + 1 : b]}
-        if along in inside:
-            found = along
-        elif inside - {""}:
-            before = next((kind for i in reversed(sequence[:a]) if (kind := _strong(kinds[i]))), sos)
-            found = before if before != along else along
-        else:
+        if not any(inside):
             continue
+        before = next((kind for i in reversed(sequence[:a]) if (kind := _strong(kinds[i]))), sos)
+        found = along if along in inside else before
         for k in (a, b):
             kinds[sequence[k]] = found
             for i in sequence[k + 1 :]:
@@ -281,18 +240,14 @@ def _bracket_pairs(sequence: Sequence[int], kinds: Sequence[str], text: str) -> 
         return []
     pairs, open_ones = [], list[tuple[str, int]]()
     for k, i in enumerate(sequence):
-        character = text[i]
-        if character not in PAIRED or kinds[i] != "ON":
+        if text[i] not in PAIRED or kinds[i] != "ON":
             continue
-        character = normalize("NFC", character)
+        character = normalize("NFC", text[i])
         if character in CLOSING:
             if len(open_ones) == 63:
                 return []
             open_ones.append((CLOSING[character], k))
-        else:
-            for depth in range(len(open_ones) - 1, -1, -1):
-                if open_ones[depth][0] == character:
-                    pairs.append((open_ones[depth][1], k))
-                    del open_ones[depth:]
-                    break
+        elif (depth := max((d for d, (closing, _) in enumerate(open_ones) if closing == character), default=-1)) >= 0:
+            pairs.append((open_ones[depth][1], k))
+            del open_ones[depth:]
     return sorted(pairs)
