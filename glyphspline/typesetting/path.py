@@ -104,14 +104,16 @@ class Path:
     def __post_init__(self) -> None:
         cubics = np.array(self.cubics, dtype=np.float64)
         if cubics.ndim != 3 or cubics.shape[1:] != (4, 2):
-            raise GlyphsplineError(f"a path is an array (m, 4, 2) of cubics, not {cubics.shape}", font=self.name)
+            raise GlyphsplineError(
+                f"a path is a polyline (n, 2) or cubics (m, 4, 2), not {cubics.shape}", font=self.name
+            )
         if not np.isfinite(cubics).all():
             raise GlyphsplineError("coordinates of the path are not finite", font=self.name)
+        if np.abs(cubics).max(initial=0.0) > LARGEST:
+            raise GlyphsplineError(f"coordinates of the path above {LARGEST:g}", font=self.name)
         extent = float(np.ptp(cubics.reshape(-1, 2), axis=0).max()) if len(cubics) else 0.0
         least = COINCIDENT * extent
-        if len(cubics) and np.abs(cubics).max() > LARGEST:
-            raise GlyphsplineError(f"coordinates of the path above {LARGEST:g}", font=self.name)
-        cubics = cubics[np.abs(cubics[:, 1:] - cubics[:, :1]).max(axis=(1, 2)) > least] if len(cubics) else cubics
+        cubics = cubics[np.abs(cubics[:, 1:] - cubics[:, :1]).max(axis=(1, 2)) > least]
         if not len(cubics) or extent < SMALLEST:
             raise GlyphsplineError("the path has no length", font=self.name)
         gaps = np.abs(cubics[:, 0] - np.roll(cubics[:, 3], 1, axis=0)).max(axis=1)[0 if self.closed else 1 :]
@@ -145,19 +147,16 @@ class Path:
                 return cls(cubic_approximation(pieces, COINCIDENT * extent or 1.0), curve.closed, name)
             return cls(np.array([as_cubic(piece) for piece in pieces]), curve.closed, name)
         array = np.asarray(curve, dtype=np.float64)
-        if not np.isfinite(array).all():
-            raise GlyphsplineError("coordinates of the path are not finite", font=name)
         if array.ndim == 2 and array.shape[1] == 2 and len(array):
             if closed and (array[0] != array[-1]).any():
                 array = np.concatenate([array, array[:1]])
             share = (np.arange(4) / 3)[:, None]
             array = array[:-1, None] * (1 - share) + array[1:, None] * share
             array[:-1, 3] = array[1:, 0]
-        if array.ndim != 3 or array.shape[1:] != (4, 2):
-            raise GlyphsplineError(f"a path is a polyline (n, 2) or cubics (m, 4, 2), not {array.shape}", font=name)
-        if closed is None:
-            closed = bool(len(array)) and _meets(array)
-        return cls(array, closed, name)
+        if closed is None and array.shape[1:] == (4, 2) and len(array):
+            extent = np.ptp(array.reshape(-1, 2), axis=0).max()
+            closed = bool(np.abs(array[-1, 3] - array[0, 0]).max() <= COINCIDENT * extent)
+        return cls(array, bool(closed), name)
 
     def __repr__(self) -> str:
         kind, count = "closed" if self.closed else "open", len(self.cubics)
@@ -190,14 +189,12 @@ class Path:
             if not long.any() or len(parts) + int(long.sum()) > MOST_PARTS:
                 break
             left, right = split(parts[long])
-            width[long] /= 2
-            parts = np.concatenate([parts, right])
-            parts[: len(long)][long] = left
-            segment = np.concatenate([segment, segment[long]])
-            first = np.concatenate([first, first[long] + width[long]])
-            width = np.concatenate([width, width[long]])
-            order = np.lexsort([first, segment])
-            parts, segment, first, width = parts[order], segment[order], first[order], width[order]
+            counts = 1 + long
+            halves = (np.cumsum(counts) - 1)[long]  # where the second ones come
+            width = np.repeat(width / counts, counts)
+            parts, segment, first = (np.repeat(column, counts, axis=0) for column in (parts, segment, first))
+            parts[halves - 1], parts[halves] = left, right
+            first[halves] += width[halves]
         d = derivative_points(parts)
         velocities = np.stack([d[:, 0], 2 * (d[:, 1] - d[:, 0]), d[:, 2] - 2 * d[:, 1] + d[:, 0]], axis=1)
         a, b, c = np.moveaxis(velocities[:, :, None], 1, 0)
@@ -367,9 +364,3 @@ def _spread(*cubics: FloatArray) -> float:
     chord = cubics[0][3] - cubics[0][0]
     heights = cross(chord / np.hypot(*chord), np.concatenate(cubics) - cubics[0][0])
     return float(np.ptp(heights))
-
-
-def _meets(cubics: FloatArray) -> bool:
-    """Whether a chain of cubics ends where it begins."""
-    extent = float(np.ptp(cubics.reshape(-1, 2), axis=0).max())
-    return bool(np.abs(cubics[-1, 3] - cubics[0, 0]).max() <= COINCIDENT * extent)

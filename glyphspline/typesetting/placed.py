@@ -17,8 +17,7 @@ from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Contours, FontMetrics, Outline
 from ..readers import Source
 from ..types import FloatArray, IntArray, counted
-from .joined_glyphs import Parts, joined_where_touching
-from .moved import Motion, moved_contours, moved_results, ranges
+from .moved import Motion, Parts, joined_where_touching, moved_contours, moved_results, ranges
 
 LEFT_OUT = "left out"
 """How the note on a glyph begins that cannot be read or converted."""
@@ -200,7 +199,7 @@ class Layout:
 def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:
     """Which contours stand in the text, and how each is moved; ``ends``: where those of each part begin."""
     counts = np.diff(ends)[parts.which]
-    return ranges(ends[:-1][parts.which], counts), Motion(parts.origin, parts.angle).repeated(counts)
+    return ranges(ends[:-1][parts.which], counts), Motion.by(parts.origin, parts.angle).repeated(counts)
 
 
 def _rounded_anew(parts: Parts, precision: int) -> bool:
