@@ -111,20 +111,26 @@ def joined_where_touching(parts: Parts) -> Parts:
 
     A glyph by itself stays as it is. A group of several becomes one outline, and equal groups are the same outline.
     """
-    found: dict[object, Outline] = {}
+    found: dict[object, tuple[int, Outline]] = {}
     which, first, angle = [], [], []
     for group in _groups(_boxes(parts)):
         offsets, angles = parts.origin[group] - parts.origin[group[0]], parts.angle[group]
         members = parts.which[group].tolist()
         # Sums of advances differ in the last bits.
-        key = (*members, *np.round(offsets, 6).ravel().tolist(), *angles.tolist()) if len(group) > 1 else members[0]
+        alone = len(group) == 1
+        key = members[0] if alone else (*members, *np.round(offsets, 6).ravel().tolist(), *angles.tolist())
         if key not in found:
             outlines = [parts.outlines[k] for k in members]
-            found[key] = outlines[0] if len(group) == 1 else _one(outlines, Motion.by(offsets, angles))
-        which.append(list(found).index(key))
+            found[key] = len(found), outlines[0] if alone else _one(outlines, Motion.by(offsets, angles))
+        which.append(found[key][0])
         first.append(group[0])
-        angle.append(angles[0] if len(group) == 1 else 0.0)
-    return Parts(list(found.values()), np.array(which, dtype=np.int64), parts.origin[first], np.array(angle))
+        angle.append(angles[0] if alone else 0.0)
+    return Parts(
+        [outline for _, outline in found.values()],
+        np.array(which, dtype=np.int64),
+        parts.origin[first],
+        np.array(angle),
+    )
 
 
 def _one(outlines: Sequence[Outline], motion: Motion) -> Outline:

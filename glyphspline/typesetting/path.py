@@ -151,7 +151,8 @@ class Path:
             if closed and (array[0] != array[-1]).any():
                 array = np.concatenate([array, array[:1]])
             share = (np.arange(4) / 3)[:, None]
-            array = array[:-1, None] * (1 - share) + array[1:, None] * share
+            with np.errstate(invalid="ignore"):
+                array = array[:-1, None] * (1 - share) + array[1:, None] * share
             array[:-1, 3] = array[1:, 0]
         if closed is None and array.shape[1:] == (4, 2) and len(array):
             extent = np.ptp(array.reshape(-1, 2), axis=0).max()
@@ -192,7 +193,8 @@ class Path:
             counts = 1 + long
             halves = (np.cumsum(counts) - 1)[long]  # where the second ones come
             width = np.repeat(width / counts, counts)
-            parts, segment, first = (np.repeat(column, counts, axis=0) for column in (parts, segment, first))
+            parts, segment = np.repeat(parts, counts, axis=0), np.repeat(segment, counts)
+            first = np.repeat(first, counts)
             parts[halves - 1], parts[halves] = left, right
             first[halves] += width[halves]
         d = derivative_points(parts)
