@@ -174,7 +174,7 @@ def _pieces(
     backward, text, extra = paragraph.base % 2, paragraph.text, 0.0
     before = {"center": 0.5, "end": 1.0 - backward}.get(setting.align, backward) * room
     if setting.align == "justify" and not line.last:
-        spaces = sum(text[c] in WIDENED for piece in line.pieces for c in piece.glyphs.cluster.tolist())
+        spaces = sum(text[c] in WIDENED for _, glyphs in line.pieces for c in glyphs.cluster.tolist())
         extra, before = (room / spaces, 0.0) if spaces else (0.0, before)
     pen = along * before - ([number * height, 0.0] if setting.vertical else [0.0, number * height])
     for run, glyphs in line.pieces:

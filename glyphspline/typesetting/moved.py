@@ -125,12 +125,8 @@ def joined_where_touching(parts: Parts) -> Parts:
         which.append(found[key][0])
         first.append(group[0])
         angle.append(angles[0] if alone else 0.0)
-    return Parts(
-        [outline for _, outline in found.values()],
-        np.array(which, dtype=np.int64),
-        parts.origin[first],
-        np.array(angle),
-    )
+    places = np.array(which, dtype=np.int64), parts.origin[first], np.array(angle)
+    return Parts([outline for _, outline in found.values()], *places)
 
 
 def _one(outlines: Sequence[Outline], motion: Motion) -> Outline:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect, bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .bidi import embedding_levels, visual_order
 from .scripts import scripts_of, upright_in_columns
 from .setting import Setting
-from .shaping import HarfBuzzShaper, Run, Shaped, Shaper
+from .shaping import Run, Shaped, Shaper
 
 HANGING = frozenset(" \t\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2008\u2009\u200a\u200b\u205f\u3000")
 """Spaces that a line broken at ``width`` leaves out at its end."""
@@ -27,20 +26,10 @@ SOFT_HYPHEN, HYPHENS = "\u00ad", "\u2010-"
 """A line that ends after the first shows the first of the others that its font has."""
 
 
-class Piece(NamedTuple):
-    """Glyphs of one run in a line."""
+class Line(NamedTuple):
+    """A line of a paragraph: its runs and their glyphs, in visual order, and whether it is the last one."""
 
-    run: Run
-    glyphs: Shaped
-
-
-@dataclass(frozen=True, eq=False)
-class Line:
-    """A line of a paragraph: characters ``start`` to ``stop``, and pieces in visual order."""
-
-    start: int
-    stop: int
-    pieces: tuple[Piece, ...]
+    pieces: tuple[tuple[Run, Shaped], ...]
     last: bool
 
 
@@ -76,23 +65,17 @@ class Paragraph:
         text, setting = self.text, self._setting
         base = {"ltr": 0, "rtl": 1}.get(setting.direction or "")
         if setting.stacked:
-            self.base, levels = int(setting.direction == "btt"), [int(setting.direction == "btt")] * len(text)
+            self.base = int(setting.direction == "btt")
+            levels, upright = [self.base] * len(text), [True] * len(text)
         else:
             self.base, levels = embedding_levels(text, 0 if setting.vertical and base is None else base)
+            upright = upright_in_columns(text, self._clusters.tolist()) if setting.vertical else [False] * len(text)
         scripts = [setting.script] * len(text) if setting.script else scripts_of(text)
-        fonts = self._fonts()
-        if setting.stacked:
-            upright = [True] * len(text)
-        elif setting.vertical:
-            upright = upright_in_columns(text, self._clusters.tolist())
-        else:
-            upright = [False] * len(text)
         runs, start = [], 0
-        traits = list(zip(fonts, scripts, levels, upright, strict=True))
-        for i in range(1, len(text) + 1):
-            if i == len(text) or traits[i] != traits[start]:
-                runs += [Run(a, b, *traits[start]) for a, b in self._cut(start, i)]
-                start = i
+        for traits, those in groupby(zip(self._fonts(), scripts, levels, upright, strict=True)):
+            stop = start + len(list(those))
+            runs += [Run(a, b, *traits) for a, b in self._cut(start, stop)]
+            start = stop
         return runs
 
     def _cut(self, start: int, stop: int) -> Iterator[tuple[int, int]]:
@@ -127,19 +110,14 @@ class Paragraph:
         return clusters(self.text)
 
     def _shape(self, codes: Sequence[int], run: Run) -> Shaped:
-        shaper = self._shapers[run.font]
-        if isinstance(shaper, HarfBuzzShaper):
-            shaper.origin = self._origin
-        backward = run.level % 2
-        if run.upright:
-            return shaper.shape(codes, run, "btt" if backward else "ttb")
-        glyphs = shaper.shape(codes, run, "rtl" if backward else "ltr")
-        if not self._setting.vertical:
+        directions = ("ttb", "btt") if run.upright else ("ltr", "rtl")
+        glyphs = self._shapers[run.font].shape(codes, run, directions[run.level % 2], self._origin)
+        if run.upright or not self._setting.vertical:
             return glyphs
         # Turned clockwise, with the middle between ascender and descender of the first font on the column's centre.
         metrics = self._shapers[0].source.metrics
         turned = glyphs.offset[:, ::-1] * [1.0, -1.0] - [(metrics.ascender + metrics.descender) / 2, 0.0]
-        return replace(glyphs, advance=glyphs.advance[:, ::-1] * [1.0, -1.0], offset=turned)
+        return glyphs._replace(advance=glyphs.advance[:, ::-1] * [1.0, -1.0], offset=turned)
 
     def _along(self, advances: FloatArray) -> FloatArray:
         """(n,) what advances (n, 2) are along a line."""
@@ -147,7 +125,7 @@ class Paragraph:
 
     def length(self, line: Line) -> float:
         """The length of a line's glyphs."""
-        return float(sum(self._along(piece.glyphs.advance).sum() for piece in line.pieces))
+        return float(sum(self._along(glyphs.advance).sum() for _, glyphs in line.pieces))
 
     @cached_property
     def _ends(self) -> FloatArray:
@@ -172,7 +150,7 @@ class Paragraph:
             ]
             hyphens: dict[Run, float] = {}
             for k in soft:
-                run = replace(self._run_of(int(seen[k]) - 1), start=0, stop=1)
+                run = self._run_of(int(seen[k]) - 1)._replace(start=0, stop=1)
                 if run not in hyphens:
                     hyphens[run] = float(self._along(self._shape([self._hyphen(int(seen[k]))], run).advance).sum())
                 lengths[k] += hyphens[run]
@@ -205,7 +183,7 @@ class Paragraph:
         pieces = []
         for k in (inside[i] for i in order):
             run, glyphs = self.runs[k], self.shaped[k]
-            part = replace(run, start=max(run.start, start), stop=min(run.stop, stop))
+            part = run._replace(start=max(run.start, start), stop=min(run.stop, stop))
             cuts = [place for place in (part.start, part.stop) if run.start < place < run.stop]
             if hyphen and part.stop == stop:
                 self.codes[stop - 1] = hyphen
@@ -215,8 +193,8 @@ class Paragraph:
                 glyphs = self._shape(self.codes, part)
             elif cuts:
                 glyphs = glyphs.part(part.start, part.stop)
-            pieces.append(Piece(part, glyphs))
-        return Line(start, stop, tuple(pieces), last)
+            pieces.append((part, glyphs))
+        return Line(tuple(pieces), last)
 
     def _run_of(self, place: int) -> Run:
         return self.runs[bisect(self._starts, place) - 1]

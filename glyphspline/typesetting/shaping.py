@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 from unicodedata import category, normalize
 
 import numpy as np
@@ -31,8 +31,7 @@ IGNORED = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u180b\u180c\u180d\u180f\u316
 """Characters that are not drawn where a font lacks them, beside format characters and variation selectors."""
 
 
-@dataclass(frozen=True)
-class Run:
+class Run(NamedTuple):
     """Characters of a paragraph, ``start`` to ``stop``, that are shaped together.
 
     Attributes:
@@ -48,8 +47,7 @@ class Run:
     upright: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Shaped:
+class Shaped(NamedTuple):
     """n glyphs in visual order, in units of the first font's em, as they stand on the page.
 
     Attributes:
@@ -64,26 +62,18 @@ class Shaped:
     offset: FloatArray
     unsafe: BoolArray
 
-    @cached_property
-    def rising(self) -> bool:
-        """Whether clusters rise from left to right."""
-        return len(self.cluster) < 2 or bool(self.cluster[0] <= self.cluster[-1])
-
     def part(self, first: int, last: int) -> Shaped:
         """The glyphs of the characters from ``first`` up to ``last``."""
-        if self.rising:
-            a, b = np.searchsorted(self.cluster, [first, last]).tolist()
-        else:
-            a, b = np.searchsorted(-self.cluster, [1 - last, 1 - first]).tolist()
-        return Shaped(self.gid[a:b], self.cluster[a:b], self.advance[a:b], self.offset[a:b], self.unsafe[a:b])
+        clusters, ends = self.cluster, [first, last]
+        if len(clusters) and clusters[0] > clusters[-1]:  # they fall from left to right
+            clusters, ends = -clusters, [1 - last, 1 - first]
+        chosen = slice(*np.searchsorted(clusters, ends).tolist())
+        return Shaped._make(column[chosen] for column in self)
 
     def may_be_cut(self, place: int) -> bool:
         """Whether the glyphs before and after a character's place are those of both texts shaped by themselves."""
-        if self.rising:
-            a, b = np.searchsorted(self.cluster, [place, place + 1]).tolist()
-        else:
-            a, b = np.searchsorted(-self.cluster, [-place, 1 - place]).tolist()
-        return b > a and not bool(self.unsafe[a:b].any())
+        unsafe = self.part(place, place + 1).unsafe
+        return len(unsafe) > 0 and not unsafe.any()
 
 
 class Shaper(ABC):
@@ -97,11 +87,12 @@ class Shaper(ABC):
         self.source, self.scale = source, scale
 
     @abstractmethod
-    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+    def shape(self, codes: Sequence[int], run: Run, direction: str, origin: int) -> Shaped:
         """Shape a run.
 
         Args:
-            codes: of the paragraph. run: what of it. direction: "ltr", "rtl", "ttb" or "btt".
+            codes: of the paragraph, which begins at character ``origin`` of the text. run: what of it.
+            direction: "ltr", "rtl", "ttb" or "btt".
 
         Returns:
             Glyphs along a horizontal line, or, for "ttb" and "btt", a vertical one.
@@ -128,7 +119,7 @@ class HarfBuzzShaper(Shaper):
         self._language, self._features = language, features
         self._buffer = hb.Buffer()
 
-    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+    def shape(self, codes: Sequence[int], run: Run, direction: str, origin: int) -> Shaped:
         """See :meth:`Shaper.shape`."""
         first, last = max(run.start - CONTEXT, 0), min(run.stop + CONTEXT, len(codes))
         buffer = self._buffer
@@ -140,19 +131,16 @@ class HarfBuzzShaper(Shaper):
         flags = hb.BufferFlags.BOT if run.start == 0 else hb.BufferFlags.DEFAULT
         buffer.flags = flags | hb.BufferFlags.EOT if run.stop == len(codes) else flags
         try:
-            hb.shape(self.source.shaper, buffer, for_buffer(self._features, self.origin + first))
+            hb.shape(self.source.shaper, buffer, for_buffer(self._features, origin + first))
         except MemoryError as error:
             raise GlyphsplineError(
                 "HarfBuzz gives up on the text: its tables grow it beyond measure", font=str(self.source.path)
             ) from error
-        infos, n = buffer.glyph_infos, len(buffer.glyph_infos)
-        numbers = np.array([(info.codepoint, info.cluster, info.flags) for info in infos], dtype=np.int64).reshape(n, 3)
-        positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(n, 4) * self.scale
+        infos = [(info.codepoint, info.cluster, info.flags) for info in buffer.glyph_infos]
+        numbers = np.array(infos, dtype=np.int64).reshape(-1, 3)
         unsafe: BoolArray = (numbers[:, 2] & UNSAFE) != 0
+        positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(-1, 4) * self.scale
         return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2], unsafe)
-
-    origin = 0
-    """Number in the text of the first character of the paragraph: ranges of features are in the text."""
 
     def _has(self, character: str) -> bool:
         return (
@@ -169,16 +157,14 @@ class HarfBuzzShaper(Shaper):
 class PlainShaper(Shaper):
     """A source without tables for shaping, such as a UFO: a glyph a character, one after the other."""
 
-    def shape(self, codes: Sequence[int], run: Run, direction: str) -> Shaped:
+    def shape(self, codes: Sequence[int], run: Run, direction: str, origin: int) -> Shaped:
         """See :meth:`Shaper.shape`."""
-        own = [self._glyph(codes[i]) for i in range(run.start, run.stop)]
-        found = [(i, gid) for i, gid in enumerate(own, run.start) if gid >= 0]
-        placed = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
-        advance = np.zeros((len(placed), 2))
-        advance[:, 0] = [self._advances[gid] * self.scale for gid in placed[:, 1].tolist()]
-        return Shaped(
-            placed[:, 1], placed[:, 0], advance, np.zeros_like(advance), np.zeros(len(placed), dtype=np.bool_)
-        )
+        found = [(i, gid) for i in range(run.start, run.stop) if (gid := self._glyph(codes[i])) >= 0]
+        glyphs = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
+        cluster, glyph = glyphs[:, 0], glyphs[:, 1]
+        advance, offset = np.zeros((2, len(glyph), 2))
+        advance[:, 0] = [self._advances[number] * self.scale for number in glyph.tolist()]
+        return Shaped(glyph, cluster, advance, offset, np.zeros(len(glyph), dtype=np.bool_))
 
     def prepare(self, text: str) -> None:
         """Read the advances of all glyphs of a text."""
