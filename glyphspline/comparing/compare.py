@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from ..types import FloatArray, IntArray
 from .difference import PER_EM, SIDES, Apart, Difference, Turn
 
 PARTNER = 0.1
-"""Share of the em up to which two contours may be partners, by :func:`.outline_distance.hull_distances`."""
+"""Share of the em by which the :func:`extents` of two contours may differ that are partners."""
+
+DIRECTIONS = 16
+"""Directions in which contours are measured to pair them."""
 
 MOVED = 0.01
 """Share of the em by which a kink may move with its outline and still be the same."""
@@ -47,14 +51,11 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
 def compare_many(old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None) -> list[Difference]:
     """As :func:`compare`, of many pairs at once; the result of a pair does not depend on the others."""
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
-    from .outline_distance import equal_glyphs  # imported here, so that the package opens without a compiler
-
     scales = [a.metrics.units_per_em / b.metrics.units_per_em for a, b in zip(old, new, strict=True)]
     mine = [outline.arrays for outline in old]
     its = [scaled(outline.arrays, scale) for outline, scale in zip(new, scales, strict=True)]
-    equal = equal_glyphs(*_flat(mine), *_flat(its))
-    changed = np.flatnonzero(~equal).tolist()
-    found = [_advances(a, b, scale) for a, b, scale in zip(old, new, scales, strict=True)]
+    changed = [k for k, pair in enumerate(zip(mine, its, strict=True)) if not _are_equal(*pair)]
+    found = [_difference(a, b, scale) for a, b, scale in zip(old, new, scales, strict=True)]
     if changed:
         one, other = ([outlines[k] for k in changed] for outlines in (old, new))
         those = _changed(one, other, [its[k] for k in changed], [scales[k] for k in changed], tolerance)
@@ -68,18 +69,21 @@ def scaled(contours: ContourArrays, scale: float) -> ContourArrays:
     return contours if scale == 1 else contours._replace(points=contours.points * scale)
 
 
-def _flat(outlines: Sequence[ContourArrays]) -> tuple[FloatArray, IntArray, IntArray, IntArray]:
-    """Points, degrees and offsets end to end, and where the contours of each outline begin."""
-    every = joined(outlines)
-    return every.points, every.degrees, every.offsets, offsets_of([len(own.offsets) - 1 for own in outlines])
+def _are_equal(one: ContourArrays, other: ContourArrays) -> bool:
+    """Whether contours are the same numbers in the same order."""
+    return all(a.tobytes() == b.tobytes() or np.array_equal(a, b) for a, b in zip(one, other, strict=True))
 
 
-def _advances(old: Outline, new: Outline, scale: float) -> Difference:
-    """The difference of two outlines with the same contours."""
+def _difference(
+    old: Outline, new: Outline, scale: float, identical: bool = True, bound: float = 0.0, seen: float = 0.0,
+    worst: Apart | None = None, *gone_and_new: Any,
+) -> Difference:  # fmt: skip
+    """The difference of two outlines, with what both of them say themselves."""
     codes = old.unicodes if old.unicodes == new.unicodes else tuple(sorted({*old.unicodes, *new.unicodes}))
     return Difference(
-        old.name, old.gid, new.name, new.gid, codes, True, 0.0, 0.0, None, old.advance, new.advance * scale, scale
-    )
+        old.name, old.gid, new.name, new.gid, codes, identical, bound, seen, worst, old.advance, new.advance * scale,
+        scale, *gone_and_new,
+    )  # fmt: skip
 
 
 def _changed(
@@ -87,8 +91,8 @@ def _changed(
     tolerance: float | None,
 ) -> Iterator[Difference]:  # fmt: skip
     """The differences of outlines whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
-    from ..outlines.segments import all_cubics
-    from .outline_distance import hull_distances, outline_distances
+    from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
+    from .outline_distance import outline_distances
 
     every, other = joined([outline.arrays for outline in old]), joined(moved)
     firsts = offsets_of([len(outline.contours) for outline in old])
@@ -96,21 +100,41 @@ def _changed(
     cubics, other_cubics = all_cubics(every), all_cubics(other)
     ems = np.array([outline.metrics.units_per_em for outline in old])
     rows = outline_distances(cubics, every.offsets, firsts, other_cubics, other.offsets, others, ems / 1000)
+    hulls, other_hulls = extents(cubics, every.offsets), extents(other_cubics, other.offsets)
     kinks, other_kinks = turns(old), turns(new, scales)
     for g, (em, row) in enumerate(zip(ems.tolist(), rows.tolist(), strict=True)):
         bound, seen, x, y, side, contour, near_x, near_y = row
         bound += old[g].snapped + scales[g] * new[g].snapped
-        worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
-        a, b, c, d = firsts[g], firsts[g + 1], others[g], others[g + 1]
-        costs = hull_distances(cubics, every.offsets[a : b + 1], other_cubics, other.offsets[c : d + 1])
+        costs = np.abs(hulls[firsts[g] : firsts[g + 1], None] - other_hulls[others[g] : others[g + 1]]).max(axis=2)
         gone, came = without_partner(costs, PARTNER * em)
         reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, MOVED * em))
         turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
-        plain = _advances(old[g], new[g], scales[g])
-        yield Difference(
-            plain.glyph, plain.gid, plain.new_glyph, plain.new_gid, plain.unicodes, False, bound, seen, worst,
-            plain.advance, plain.new_advance, plain.scale, gone, came, turns_gone, turns_new,
+        worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
+        yield _difference(
+            old[g], new[g], scales[g], False, bound, seen, worst, gone, came, turns_gone, turns_new
         )  # fmt: skip
+
+
+def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
+    """(C, DIRECTIONS + 1) how far contours reach in each direction, and the square roots of their areas.
+
+    The distance of the convex hulls of two contours is the largest difference of their extents in any direction. The
+    areas tell a ring's outer contour from a disc in several pieces. A contour is taken as the polygon of its points at
+    every quarter of a segment.
+    """
+    from ..curves.cubics import bernstein
+
+    if len(cubics) == 0:
+        return np.empty((len(offsets) - 1, DIRECTIONS + 1))
+    weights, starts, counts = bernstein(4)[:, :4], 4 * offsets[:-1], 4 * np.diff(offsets)
+    x, y = (sum(weights[k] * cubics[:, k, axis, None] for k in range(4)).ravel() for axis in range(2))
+    found = []
+    for angle in np.pi * np.arange(DIRECTIONS // 2) / (DIRECTIONS // 2):
+        along = np.cos(angle) * x + np.sin(angle) * y
+        found += [np.maximum.reduceat(along, starts), -np.minimum.reduceat(along, starts)]
+    x, y = x - np.repeat(x[starts], counts), y - np.repeat(y[starts], counts)  # so that each begins and ends at 0
+    areas = np.add.reduceat(np.roll(x, 1) * y - np.roll(y, 1) * x, starts) / 2
+    return np.column_stack([*found, np.sqrt(np.abs(areas))])
 
 
 def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -119,12 +143,8 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
 
     rows, columns = linear_sum_assignment(costs)
     near = costs[rows, columns] <= most
-    left: list[tuple[int, ...]] = []
-    for size, paired in zip(costs.shape, (rows[near], columns[near]), strict=True):
-        alone = np.ones(size, dtype=np.bool_)
-        alone[paired] = False
-        left.append(tuple(np.flatnonzero(alone).tolist()))
-    return left[0], left[1]
+    gone, came = (set(range(n)) - set(p[near].tolist()) for n, p in zip(costs.shape, (rows, columns), strict=True))
+    return tuple(sorted(gone)), tuple(sorted(came))
 
 
 def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:

@@ -1,25 +1,31 @@
-"""A certified bound of the two-sided (Hausdorff) distance of two outlines, compiled.
+"""A certified bound of the two-sided (Hausdorff) distance of two outlines.
 
 The bound is for the outlines as sets of points: no point of either is farther from the other than that. Contours need
 not correspond. Every segment of one outline is cut into sections, each of which is bounded by pairing it with a section
-of the other (:mod:`..curves.paired`): the one between the points nearest to its ends, or, where these are on different
+of the other (:mod:`..curves.pairing`): the one between the points nearest to its ends, or, where these are on different
 segments, with the stretch between them cut at the joints, or with a section of either segment by itself. Any pairing
 gives a bound, so the least of these is taken.
 
 Points whose nearest point is known give the distance *seen*, from below: ends of segments first, then middles of
 sections that are halved. The section with the largest bound is halved first. A section is done when its bound exceeds
 the largest distance seen by no more than is asked.
+
+The nearest point is sought on all contours, and none is missed. A stretch of a cubic over [a, b] is within
+``bend (b - a)²`` of its chord at equal parameters, where ``bend`` is 3/4 of the largest second difference of its Bézier
+points. So the distance to the chord, less that, bounds the distance to the stretch from below. Stretches that cannot be
+nearer than the best point found are left out, and others are halved.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import extent, nearest, section
-from ..curves.paired import ROUNDING, points_apart
-from ..types import BoolArray, FloatArray, IntArray
-from .nearest_places import STACK, Chains, chains_of, nearest_of_outline, neighbour, point
+from ..curves.cubics import extent, length, nearest, section
+from ..curves.pairing import ROUNDING, points_apart
+from ..types import FloatArray, IntArray
 
 SHARP = 0.01
 """The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em."""
@@ -36,52 +42,174 @@ DEEPEST = 40
 MOST_HALVINGS = 20_000
 """Halvings of a glyph's sections, after which bounds count as they are: hostile outlines would take minutes."""
 
+GROUP = 16
+"""Segments in a row that have a common box."""
+
+STACK = 64
+"""Stretches of a segment that wait to be searched: one a halving, and no parameter can be halved more often."""
+
+CLOSER = 2e-4
+"""Share of its distance by which a place may miss the nearest one."""
+
 COLUMNS = 8
 BOUND, SEEN, X, Y, SIDE, CONTOUR, NEAR_X, NEAR_Y = range(COLUMNS)
 """Columns of distances: certified bound; largest distance seen; the point where, of outline SIDE (0 old, 1 new), its
 contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
 
-DIRECTIONS = 16
-"""Directions in which contours are measured to pair them."""
+
+class Chains(NamedTuple):
+    """The contours of one outline, ready to be searched.
+
+    Attributes:
+        cubics: (m, 4, 2) the segments of all contours. offsets: (C + 1,) where contours begin in these.
+        owners: (m,) the contour of each segment. bends: (m,) as above.
+        boxes: (m, 4) left, bottom, right, top of Bézier points. groups: (g, 4) likewise of ``GROUP`` segments in a row.
+    """
+
+    cubics: FloatArray
+    offsets: IntArray
+    owners: IntArray
+    bends: FloatArray
+    boxes: FloatArray
+    groups: FloatArray
 
 
 @compiled
-def equal_glyphs(
-    old_points: FloatArray, old_degrees: IntArray, old_offsets: IntArray, old_glyphs: IntArray,
-    new_points: FloatArray, new_degrees: IntArray, new_offsets: IntArray, new_glyphs: IntArray,
-) -> BoolArray:  # fmt: skip
-    """(G,) whether the contours of glyphs are the same numbers in the same order.
+def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
+    """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,), which may begin at any number."""
+    m = len(cubics)
+    own, owners, bends = offsets - offsets[0], np.empty(m, dtype=np.int64), np.empty(m)
+    boxes, groups = np.empty((m, 4)), np.empty(((m + GROUP - 1) // GROUP, 4))
+    for c in range(len(own) - 1):
+        for s in range(own[c], own[c + 1]):
+            owners[s] = c
+    for s in range(m):
+        b, box, group = cubics[s], boxes[s], groups[s // GROUP]
+        for axis in range(2):
+            box[axis] = min(min(b[0, axis], b[1, axis]), min(b[2, axis], b[3, axis]))
+            box[axis + 2] = max(max(b[0, axis], b[1, axis]), max(b[2, axis], b[3, axis]))
+            first = s % GROUP == 0
+            group[axis] = box[axis] if first else min(group[axis], box[axis])
+            group[axis + 2] = box[axis + 2] if first else max(group[axis + 2], box[axis + 2])
+        bends[s] = 0.0
+        for k in range(2):
+            x = b[k, 0] - 2 * b[k + 1, 0] + b[k + 2, 0]
+            y = b[k, 1] - 2 * b[k + 1, 1] + b[k + 2, 1]
+            bends[s] = max(bends[s], 0.75 * length(x, y))
+    return Chains(cubics, own, owners, bends, boxes, groups)
+
+
+@compiled
+def from_box(box: FloatArray, x: float, y: float) -> float:
+    """Distance of a point from a box (4,)."""
+    return length(max(max(box[0] - x, x - box[2]), 0.0), max(max(box[1] - y, y - box[3]), 0.0))
+
+
+@compiled
+def reached(cubic: FloatArray, guess: float, x: float, y: float) -> tuple[float, float]:
+    """The parameter of a cubic (4, 2) near a guess that is nearest a point, and its distance; never worse than the
+    guess."""
+    z = nearest(cubic, 0.0, 1.0, guess, x, y)
+    px, py = point(cubic, z)
+    d = length(px - x, py - y)
+    px, py = point(cubic, guess)
+    before = length(px - x, py - y)
+    return (z, d) if d <= before else (guess, before)
+
+
+@compiled
+def point(cubic: FloatArray, z: float) -> tuple[float, float]:
+    """The point of a cubic (4, 2) at a parameter."""
+    y = 1.0 - z
+    a, b, c, d = y * y * y, 3.0 * y * y * z, 3.0 * y * z * z, z * z * z
+    return (
+        a * cubic[0, 0] + b * cubic[1, 0] + c * cubic[2, 0] + d * cubic[3, 0],
+        a * cubic[0, 1] + b * cubic[1, 1] + c * cubic[2, 1] + d * cubic[3, 1],
+    )
+
+
+@compiled
+def neighbour(chains: Chains, s: int, step: int) -> int:
+    """The segment after (1) or before (-1) segment s of its contour."""
+    c = chains.owners[s]
+    first, last = chains.offsets[c], chains.offsets[c + 1]
+    s += step
+    return first if s == last else last - 1 if s < first else s
+
+
+@compiled
+def nearest_on(
+    chains: Chains, s: int, x: float, y: float, best: float, slack: float, places: FloatArray
+) -> tuple[float, float]:
+    """The parameter of segment s that is nearest a point, and its distance, if less than ``best`` by more than
+    ``slack``; or else NaN, and ``best``.
 
     Args:
-        old_points, old_degrees, old_offsets: of all glyphs' contours end to end, as in :class:`ContourArrays`.
-        old_glyphs: (G + 1,) where the contours of each glyph begin. The rest likewise.
+        places: (STACK, 2) scratch array.
     """
-    count = len(old_glyphs) - 1
-    equal = np.ones(count, dtype=np.bool_)
-    p = q = 0
-    for g in range(count):
-        a, b, c, d = old_glyphs[g], old_glyphs[g + 1], new_glyphs[g], new_glyphs[g + 1]
-        i, j, m, n = old_offsets[a], old_offsets[b], new_offsets[c], new_offsets[d]
-        mine = its = 0
-        for s in range(i, j):
-            mine += old_degrees[s]
-        for s in range(m, n):
-            its += new_degrees[s]
-        same = b - a == d - c and j - i == n - m and mine == its
-        if same:
-            for s in range(b - a + 1):
-                same = same and old_offsets[a + s] - i == new_offsets[c + s] - m
-            for s in range(j - i):
-                same = same and old_degrees[i + s] == new_degrees[m + s]
-            for s in range(mine):
-                same = (
-                    same
-                    and old_points[p + s, 0] == new_points[q + s, 0]
-                    and old_points[p + s, 1] == new_points[q + s, 1]
-                )
-        equal[g] = same
-        p, q = p + mine, q + its
-    return equal
+    cubic, bend = chains.cubics[s], chains.bends[s]
+    at = np.nan
+    places[0, 0], places[0, 1] = 0.0, 1.0
+    top = 0
+    while top >= 0:
+        a, b = places[top, 0], places[top, 1]
+        top -= 1
+        ax, ay = point(cubic, a)
+        bx, by = point(cubic, b)
+        ux, uy = bx - ax, by - ay
+        whole = ux * ux + uy * uy
+        share = min(max(((x - ax) * ux + (y - ay) * uy) / whole, 0.0), 1.0) if whole > 0.0 else 0.0
+        near = length(ax + share * ux - x, ay + share * uy - y)
+        off = bend * (b - a) * (b - a)
+        allowed = max(slack, CLOSER * best)
+        if near - off >= best - allowed:
+            continue
+        guess = a + share * (b - a)
+        if near < best:
+            z, d = reached(cubic, guess, x, y)
+            if d < best:
+                at, best = z, d
+        if off > allowed and top + 2 < STACK:
+            middle = (a + b) / 2
+            near_first = share < 0.5  # searched first, so at the top
+            places[top + 1, 0], places[top + 1, 1] = (middle, b) if near_first else (a, middle)
+            places[top + 2, 0], places[top + 2, 1] = (a, middle) if near_first else (middle, b)
+            top += 2
+    return at, best
+
+
+@compiled
+def nearest_of_outline(
+    chains: Chains, x: float, y: float, s: int, z: float, slack: float, places: FloatArray
+) -> tuple[int, float, float]:
+    """The segment and parameter of an outline nearest a point, and its distance.
+
+    No point is nearer by more than ``slack`` or a share ``CLOSER``, whichever is larger.
+
+    Args:
+        s, z: where to begin. Where several places are as near, as far as that matters, the one near there is taken.
+        places: (STACK, 2) scratch array.
+    """
+    at, best = reached(chains.cubics[s], z, x, y)
+    segment = s
+    for step in range(-1, 2, 2):
+        other = neighbour(chains, s, step)
+        if other != s and from_box(chains.boxes[other], x, y) < best:
+            guess, d = reached(chains.cubics[other], 0.0 if step > 0 else 1.0, x, y)
+            if d < best:
+                segment, at, best = other, guess, d
+    for g in range(len(chains.groups)):
+        if best <= slack:
+            break
+        if from_box(chains.groups[g], x, y) >= best - max(slack, CLOSER * best):
+            continue
+        for k in range(GROUP * g, min(GROUP * (g + 1), len(chains.cubics))):
+            if from_box(chains.boxes[k], x, y) < best - max(slack, CLOSER * best):
+                guess, d = nearest_on(chains, k, x, y, best, slack, places)
+                if d < best:
+                    segment, at, best = k, guess, d
+    at, best = reached(chains.cubics[segment], at, x, y)  # where the guess was poor, Newton's steps were too few
+    return segment, at, best
 
 
 @compiled
@@ -203,18 +331,24 @@ def section_bound(
         limit: bounds up to this are small enough: no smaller one is sought.
         sections: (2, 4, 2) scratch array.
     """
-    best = np.inf
-    if s0 == s1:
-        best = paired(cubic, low, high, other.cubics[s0], z0, z1, sections)
-    elif other.owners[s0] == other.owners[s1]:
-        c = other.owners[s0]
-        n = other.offsets[c + 1] - other.offsets[c]
-        ahead = (s1 - s0) % n
-        step, joints = (1, ahead) if 2 * ahead <= n else (-1, n - ahead)
-        if n == 2 and 2.0 * z0 < 1.0:  # both ways have one joint: that of the nearer end
-            step = -1
-        if joints < LONGEST:
-            best = stretch_bound(cubic, low, high, other, s0, z0, z1, step, joints, limit, sections)
+    best, n = np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
+    ahead = (s1 - s0) % n
+    step, joints = (1, ahead) if 2 * ahead <= n else (-1, n - ahead)
+    if n == 2 and 2.0 * z0 < 1.0:  # both ways have one joint: that of the nearer end
+        step = -1
+    if other.owners[s0] == other.owners[s1] and joints < LONGEST:
+        best, x, s, z = 0.0, low, s0, z0
+        for k in range(joints + 1):
+            segment, stop, cut = other.cubics[s], z1, high
+            if k < joints:
+                stop = 1.0 if step > 0 else 0.0
+                px, py = point(segment, stop)
+                cut = nearest(cubic, x, high, x + (high - x) / (joints + 1 - k), px, py)
+            best = max(best, paired(cubic, x, cut, segment, z, stop, sections))
+            if best > limit and k < joints:
+                best = np.inf
+                break
+            x, z, s = cut, 1.0 - stop, neighbour(other, s, step)
     if best > limit:
         x, y = point(cubic, high)
         z = nearest(other.cubics[s0], 0.0, 1.0, z0, x, y)
@@ -227,32 +361,6 @@ def section_bound(
 
 
 @compiled
-def stretch_bound(
-    cubic: FloatArray, low: float, high: float, other: Chains, s: int, z: float, z_end: float, step: int, joints: int,
-    limit: float, sections: FloatArray,
-) -> float:  # fmt: skip
-    """As :func:`section_bound`, by pairing with the stretch from segment s on over a number of joints.
-
-    Args:
-        step: 1 along the contour, -1 against it. z, z_end: parameters where the stretch begins and ends.
-    """
-    most, x = 0.0, low
-    for k in range(joints + 1):
-        segment = other.cubics[s]
-        stop, cut = z_end, high
-        if k < joints:
-            end = 3 if step > 0 else 0
-            stop = 1.0 if step > 0 else 0.0
-            cut = nearest(cubic, x, high, x + (high - x) / (joints + 1 - k), segment[end, 0], segment[end, 1])
-        most = max(most, paired(cubic, x, cut, segment, z, stop, sections))
-        if most > limit and k < joints:
-            return np.inf
-        x, z = cut, 0.0 if step > 0 else 1.0
-        s = neighbour(other, s, step)
-    return most
-
-
-@compiled
 def paired(
     cubic: FloatArray, low: float, high: float, other: FloatArray, z0: float, z1: float, sections: FloatArray
 ) -> float:
@@ -260,44 +368,4 @@ def paired(
     may be the larger one."""
     section(cubic, low, high, sections[0])
     section(other, z0, z1, sections[1])
-    return points_apart(sections[0], sections[1], 0, 4)
-
-
-@compiled
-def hull_distances(old: FloatArray, old_offsets: IntArray, new: FloatArray, new_offsets: IntArray) -> FloatArray:
-    """(C, D) distances of the convex hulls of the contours of two outlines; arguments as :func:`outline_distances`.
-
-    The distance of two convex sets is the largest difference of their extents in any direction: here in ``DIRECTIONS``
-    of them, and of points of the contours at every quarter of a segment. Whichever is larger counts, that or the
-    difference of the square roots of the areas: it tells a ring's outer contour from a disc in several pieces.
-    """
-    mine, its = extents(old, old_offsets), extents(new, new_offsets)
-    found = np.zeros((len(mine), len(its)))
-    for c in range(len(mine)):
-        for d in range(len(its)):
-            for k in range(DIRECTIONS + 1):
-                found[c, d] = max(found[c, d], abs(mine[c, k] - its[d, k]))
-    return found
-
-
-@compiled
-def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
-    """(C, DIRECTIONS + 1) extents of contours, and the square roots of the areas of the polygons of their points."""
-    found = np.full((len(offsets) - 1, DIRECTIONS + 1), -np.inf)
-    ux, uy = np.empty(DIRECTIONS), np.empty(DIRECTIONS)
-    for k in range(DIRECTIONS):
-        ux[k], uy[k] = np.cos(2 * np.pi * k / DIRECTIONS), np.sin(2 * np.pi * k / DIRECTIONS)
-    for c in range(len(offsets) - 1):
-        area = 0.0
-        first = offsets[c]
-        ox, oy = cubics[first, 0, 0], cubics[first, 0, 1]
-        ax = ay = 0.0
-        for s in range(first, offsets[c + 1]):
-            for q in range(4):
-                x, y = point(cubics[s], q / 4)
-                area += ax * (y - oy) - ay * (x - ox)
-                ax, ay = x - ox, y - oy
-                for k in range(DIRECTIONS):
-                    found[c, k] = max(found[c, k], ux[k] * x + uy[k] * y)
-        found[c, DIRECTIONS] = np.sqrt(abs(area) / 2)
-    return found
+    return points_apart(sections[0], sections[1])

@@ -23,9 +23,6 @@ CLOSE = 1e-6
 
 ONE = np.uint64(1)
 
-COARSE = 8
-"""Intervals a segment whose ends are compared for a first guess of the nearest point."""
-
 
 @compiled
 def length(x: float, y: float) -> float:
@@ -105,27 +102,6 @@ def nearest(cubic: FloatArray, low: float, high: float, guess: float, x: float, 
         if abs(at - before) < CLOSE:
             break
     return at
-
-
-@compiled
-def nearest_place(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
-    """The place between two places of a closed chain that is nearest (x, y), as far as coarse points tell."""
-    m = len(cubics)
-    if high <= low:
-        return low
-    best, at = np.inf, low
-    for s in range(int(np.floor(low)), int(np.ceil(high))):
-        a, b = max(low - s, 0.0), min(high - s, 1.0)
-        for k in range(COARSE + 1):
-            z = a + (b - a) * k / COARSE
-            px, py, _, _, _, _ = jet(cubics, s % m, z)
-            d = (px - x) ** 2 + (py - y) ** 2
-            if d < best:
-                best, at = d, s + z
-    s = min(int(np.floor(at)), int(np.ceil(high)) - 1)
-    z = nearest(cubics[s % m], max(low - s, 0.0), min(high - s, 1.0), at - s, x, y)
-    px, py, _, _, _, _ = jet(cubics, s % m, z)
-    return s + z if (px - x) ** 2 + (py - y) ** 2 <= best else at
 
 
 @compiled

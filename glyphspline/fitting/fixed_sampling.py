@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..curves.pairing import SHARPNESS, pair_stretches
 from ..errors import GlyphsplineError
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
@@ -14,7 +15,6 @@ from ..outlines.places import sampled
 from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray, Views
-from .certified_distance import SHARPNESS, pair_stretches
 from .closed_curves import beziers, interpolated
 from .faithful import Fits
 from .measures import distance_columns, solved_columns

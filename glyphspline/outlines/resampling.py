@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import directions, jet, nearest_place, turns
+from ..curves.cubics import directions, jet, turns
+from ..curves.nearest import search_place
 from ..types import BoolArray, FloatArray, IntArray
 from .canonical_outlines import lower_left
 from .contour_arrays import ContourArrays, Polylines
@@ -115,7 +116,10 @@ def at_vertices(contours: ContourArrays, polygons: Polylines, corner_angle: floa
         for i in range(len(own)):
             x, y = own[i, 0], own[i, 1]
             joint = np.flatnonzero((cubics[:, 0, 0] == x) & (cubics[:, 0, 1] == y))
-            place = float(joint[0]) if len(joint) > 0 else nearest_place(cubics, 0.0, float(len(cubics)), x, y)
+            if len(joint) > 0:
+                place = float(joint[0])
+            else:
+                place = search_place(1, cubics, 0.0, float(len(cubics)), own.reshape(1, -1, 2), 0, i)
             s = min(int(place), len(cubics) - 1)
             line = contours.degrees[contours.offsets[c] + s] == 1
             curvature[a + i] = _frame(cubics, s, place - s, line, near, tangents[a + i])

@@ -8,8 +8,9 @@ import pytest
 import glyphspline as gs
 from glyphspline.compiled import compiled
 from glyphspline.curves.bezier import evaluate, split
-from glyphspline.curves.cubics import bernstein, length_table, nearest_place, section, spline_beziers, turns
+from glyphspline.curves.cubics import bernstein, length_table, section, spline_beziers, turns
 from glyphspline.curves.cubics import split as cut
+from glyphspline.curves.nearest import search_place
 from glyphspline.curves.sorting import ascending
 from glyphspline.types import FloatArray, IntArray
 from tests.polygons import circle_contour, random_polygon, square_contour
@@ -33,11 +34,6 @@ def parts(cubic: FloatArray, x: float, y: float) -> FloatArray:
     cut(found[1], x, found[0])
     section(cubic, x, y, found[2])
     return found
-
-
-@compiled
-def place_of(cubics: FloatArray, low: float, high: float, x: float, y: float) -> float:
-    return nearest_place(cubics, low, high, x, y)
 
 
 @compiled
@@ -69,7 +65,7 @@ def test_the_nearest_place_is_as_near_as_any_within_its_segment() -> None:
     points = evaluate(circle[places.astype(int)], places % 1)
     compared = 0
     for x, y in np.random.default_rng(1).uniform(-150, 150, (60, 2)):
-        at = place_of(circle, 0.0, 4.0, x, y)
+        at = search_place(1, circle, 0.0, 4.0, np.array([[[x, y]]]), 0, 0)
         own = np.hypot(*(evaluate(circle[[int(at) % 4]], np.array([at % 1]))[0] - (x, y)))
         distances = np.hypot(*(points - (x, y)).T)
         assert own <= distances[::125].min()  # coarse places

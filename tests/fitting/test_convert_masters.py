@@ -18,8 +18,9 @@ import glyphspline as gs
 from glyphspline.cli.commands import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
+from glyphspline.curves.pairing import pair_instances
+from glyphspline.curves.slip import regular
 from glyphspline.fitting.convert_masters import changes_at
-from glyphspline.fitting.stacked_distance import pair_stacks, regular
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.readers.single_fonts import masters_of_fonts
@@ -155,17 +156,17 @@ def test_the_slip_bound_holds_in_between_and_is_not_the_plain_one() -> None:
     results = sources.copy()
     results[0, 0] = np.array([[0.0, 0], [80, 1.9], [180, 2.2], [300, 0]])
     results[1, 0] = np.array([[0.0, 0], [140, 2.1], [260, 1.9], [360, 0]])
-    anchors = np.array([[0.0, 0], [1, 1], [2, 2]])
-    ranges = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]])
-    both = np.ones(2, dtype=np.bool_)
-    bounds = pair_stacks(results, sources, anchors, ranges, False, both, 0.5)
+    anchors, bounds = np.array([[0.0, 0], [1, 1], [2, 2]]), np.full(2, np.nan)
+    arcs, two, three = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]]), np.array([0, 2]), np.array([0, 3])
+    chains = [each.swapaxes(0, 1).reshape(-1, 4, 2) for each in (results, sources)]
+    pair_instances(2, chains[0], two, chains[1], two, anchors, three, arcs, 0.0, 0.5, bounds, np.zeros(2))
     assert bounds[1] < 1e-9
     assert np.abs(results - sources).max() > 15
     assert bounds[0] <= 0.5
     for w in np.linspace(0, 1, 21):
         a, b = (w * each[0] + (1 - w) * each[1] for each in (results, sources))
         assert apart(a, b) <= bounds[0] + 0.01
-    assert regular(results).all()
+    assert regular(results.swapaxes(0, 1)).all()
 
 
 def test_a_cusp_in_between_is_not_called_regular() -> None:

@@ -11,7 +11,6 @@ import pytest
 import glyphspline as gs
 from glyphspline.curves.curvature import comb
 from glyphspline.curves.integrals import shape
-from glyphspline.fitting.certified_distance import sharpen_spans
 from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.faithful import faithful
 from glyphspline.fitting.measures import geometry
@@ -38,7 +37,7 @@ def wobbly(radius: float, seed: int) -> gs.Contour:
 def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     contour = wobbly(100, seed)
     canonical = canonical_contours(Contours([contour]).arrays)
-    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    which, near = np.zeros(1, dtype=np.int64), 0.01
     places = np.linspace(0, len(canonical.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
     found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
@@ -47,7 +46,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     np.testing.assert_array_equal(written, np.round(pieces, 2))
     measured = steps.measured(canonical, which, places, offsets, found.controls, written, near)
     bounds = measured.bounds
-    bound, gap = sharpen_spans(written, canonical.cubics, bounds, measured.gaps, measured.ends, 0.01)
+    bound, gap = steps.sharpened(written, canonical.cubics, bounds, measured.gaps, measured.ends, 0.01)
     truth = true_distance(gs.Contour.from_segments(written), contour)
     assert truth - 0.06 <= bound
     assert gap <= bound <= gap + 0.011
@@ -66,7 +65,7 @@ def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
     ends, none = np.array([0, 8]), np.zeros(8)
     canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros((8, 17)))
     places = np.array([1.02, 3.02, 5.02, 7.02])  # in the second part of each quarter; the spans begin with the first
-    which, near = np.zeros(1, dtype=np.int64), np.array([0.01])
+    which, near = np.zeros(1, dtype=np.int64), 0.01
     trial = steps.measured(canonical, which, places, np.array([0, 4]), outline[::2, 0].copy(), pieces, near)
     assert trial.bounds.max() < 1
     np.testing.assert_allclose(trial.ends, np.arange(0, 10, 2), atol=0.05)
@@ -110,8 +109,7 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
-    near = np.ones(2)
-    _, places, offsets = steps.first_places(canonical, np.arange(2), np.radians(12), 4.0, near, 2)
+    _, places, offsets = steps.first_places(canonical, np.radians(12), 4.0, 1.0, 2)
     points = steps.polygons(canonical, np.arange(2), places, offsets)
     square = points[: offsets[1]]
     h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)

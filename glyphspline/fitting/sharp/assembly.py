@@ -8,11 +8,12 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import spline_beziers
+from ...curves.nearest import near_places
+from ...curves.pairing import pair_instances, pair_stretches
+from ...curves.slip import regular
 from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
-from ..certified_distance import near_place, pair_stretches
-from ..stacked_distance import near_places, pair_stacks, regular
 from .pieces import CLOSED, CONTOUR, FIRST, LAST, SPANS, Pieces
 from .split_contours import SplitContours
 
@@ -105,13 +106,11 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
         m = len(outline)
         end = own[0] + m if closed else own[k]
         for s in range(k):
-            place = own[s]
-            if s > 0 or closed:
-                before = own[s - 1] if s > 0 else own[k - 1] - m
-                after = own[s + 1] if s + 1 < k else end
-                x, y = cubics[at + s, 0, 0], cubics[at + s, 0, 1]
-                place = near_place(outline, place, (before + place) / 2, (place + after) / 2, x, y)
-            anchors[at + c + s, 0], anchors[at + c + s, 1] = at - offsets[c] + s, place
+            anchors[at + c + s, 0], anchors[at + c + s, 1] = at - offsets[c] + s, own[s]
+        if closed or k > 1:
+            s = 0 if closed else 1  # an arc begins where the source's does
+            places = anchors[at + c + s : at + c + k, 1]
+            near_places(1, outline, own[s:k], cubics[at + s : at + k], closed > 0, own[0], end, places)
         anchors[at + c + k, 0] = at - offsets[c] + k
         anchors[at + c + k, 1] = anchors[at + c, 1] + m if closed else end
         if closed and anchors[at + c, 1] < 0.0:
@@ -130,7 +129,7 @@ def certify(
 
     Args:
         segments: see :class:`Assembly`. written: the curves, rounded.
-        sharpness, limit: see :func:`..certified_distance.certified_distance`.
+        sharpness, limit: see :func:`...curves.pairing.pair_stretches`.
     """
     cubics, ends = all_cubics(written), written.offsets + np.arange(len(written.offsets))
     anchors = find_anchors(pieces, cubics, written.offsets, contours)
@@ -152,7 +151,10 @@ def certify_masters(
         bounds: (P,) receives the certified bounds of those pieces for which it is NaN.
         speed: (P,) receives whether their curves have speed everywhere.
     """
-    results, sources = (np.einsum("vk,kmpc->vmpc", mixes, cubics) for cubics in (curves, contours.cubics))
+    V = len(mixes)
+    results, sources = (
+        np.einsum("vk,kmpc->mvpc", mixes, cubics).reshape(-1, 4, 2) for cubics in (curves, contours.cubics)
+    )
     first = pieces.starts[:-1]
     spans = np.diff(segments)
     for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
@@ -160,26 +162,27 @@ def certify_masters(
         wanted = np.isnan(bounds[own])
         if not wanted.any():
             continue
-        source = np.ascontiguousarray(sources[:, contours.offsets[c] : contours.offsets[c + 1]])
-        result = np.ascontiguousarray(results[:, a:b])
-        m, r = source.shape[1], result.shape[1]
+        source = sources[V * contours.offsets[c] : V * contours.offsets[c + 1]]
+        result, m, r = results[V * a : V * b], len(source) // V, b - a
         closed = bool(pieces.where[own[0], CLOSED])
-        places, ranges = np.empty(r), np.empty((r, 4))
+        places, arcs = np.empty(r), np.empty((r, 4))
         for q, look in zip(own, wanted, strict=True):
             s, e = segments[q] - a, segments[q + 1] - a
             low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
-            ranges[s:e] = s, e, low, high
+            arcs[s:e] = (-np.inf, np.inf, -np.inf, np.inf) if closed else (s, e, low, high)
             places[s:e] = pieces.places[first[q] : first[q] + e - s]
             inner = s if closed else s + 1  # an arc begins where the source's does
             if look and inner < e:
-                knots = np.ascontiguousarray(result[:, inner:e, 0])
-                places[inner:e] = near_places(source, places[inner:e].copy(), knots, closed, low, high)
+                begins = result[V * inner : V * e]
+                near_places(V, source, places[inner:e], begins, closed, low, high, places[inner:e])
         if closed:
             places += m * np.ceil(max(-places[0], 0.0) / m)
         anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
         each = np.repeat(wanted, spans[own])
-        found = pair_stacks(result, source, anchors, ranges, closed, each, limit)
-        good = regular(np.ascontiguousarray(result[:, each]))
+        found = np.where(each, np.nan, 0.0)
+        ends = [np.array([0, count]) for count in (r, m, r + 1)]
+        pair_instances(V, result, ends[0], source, ends[1], anchors, ends[2], arcs, 0.0, limit, found, np.zeros(r))
+        good = regular(result.reshape(r, V, 4, 2)[each])
         starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
         bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
         speed[own[wanted]] = np.logical_and.reduceat(good, starts)

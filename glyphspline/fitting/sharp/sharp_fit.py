@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.bspline import Spline
+from ...curves.pairing import SHARPNESS
 from ...errors import PolygonError
 from ...interpolation.api import interpolate_many
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
-from ..certified_distance import SHARPNESS
 from ..faithful import Fits
 from ..ladders import MOST_SPANS, MOVED, RETRIES, RETRIES_OF_MASTERS, SEARCHES, SHARP_TRIES
 from ..measures import Columns, distance_columns

@@ -1,22 +1,48 @@
-"""The smooth mode: one closed curve for each contour."""
+"""The smooth mode: one closed C2 curve for each contour, within a tolerance, for all contours of a batch at once.
+
+Each round interpolates the unfinished contours in one compiled call, measures the curves as they are written, and where
+a span misses the tolerance lays vertices anew, more and evenly, between the corners beside it. A contour that still
+misses it after some rounds gets vertices where it does. The measure is the certificate: a contour that passes is
+certified.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...interpolation.result import Interpolation, reversed_interpolation, turned
+from ...curves.pairing import SHARPNESS, pair_stretches
+from ...errors import GlyphsplineError
+from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
-from ...types import Views
-from ..certified_distance import SHARPNESS, certified_distance, sharpen_spans
+from ...types import FloatArray, IntArray, Views
+from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
 from ..ladders import SMOOTH_TRIES, TRY_APART
 from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
+from . import steps
 from .canonical_contours import CanonicalContours, canonical_contours
-from .refine import Round, refined
+
+ROUNDS = 80
+"""Rounds before giving up."""
+
+EARLY = 1
+"""Rounds that also remove vertices that seem unnecessary."""
+
+LAID = 6
+"""Rounds that lay vertices anew; later ones put them into the spans that fail, which ends sooner but is uneven."""
+
+POWERS = (3.0, 2.0, 1.5, 1.0)
+"""In turn, the assumed power of a span's length with which its error grows when a vertex is removed."""
+
+PRUNINGS = {"fast": 0, "best": 12}
+"""How often a contour that passed loses such vertices and is refined again until it passes."""
+
+THINNINGS = {"fast": 0, "best": 30}
+"""Final trials that only remove vertices; those that prove necessary are restored."""
 
 
 def smooth_fits(options: Options, tolerance: float) -> Fits:
@@ -24,56 +50,158 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = SMOOTH_TRIES[attempt]
-        canonical = canonical_contours(contours)
-        near = np.full(contours.num_contours, share * tolerance)
-        kept = refined(canonical, np.arange(contours.num_contours), options, near, early)
-        fits = [kept[k] for k in range(contours.num_contours)]
-        return _converted(contours, canonical, fits, tolerance)
+        search = _Search(canonical_contours(contours), options, share * tolerance)
+        search.refine(EARLY if early is None else early)
+        search.thin()
+        return search.converted(contours, tolerance)
 
     return Fits(len(SMOOTH_TRIES), fit, apart=TRY_APART)
 
 
-def _converted(
-    contours: ContourArrays, canonical: CanonicalContours, kept: Sequence[tuple[Round, int]], tolerance: float
-) -> ConvertedContours:
-    """Results from rounds: measured in the fitted direction, returned in the given one."""
-    flipped = canonical.flipped.tolist()
-    points = [found.part(found.trial.points, i) for found, i in kept]
-    pieces = [found.part(found.pieces, i) for found, i in kept]
-    controls = [found.part(found.found.controls, i) for found, i in kept]
-    offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
-    distances = [_certificate(canonical, k, found, i, tolerance) for k, (found, i) in enumerate(kept)]
-    bounds, gaps = [bound for bound, _ in distances], [gap for _, gap in distances]
-    for n in [n for n, back in enumerate(flipped) if back]:
-        points[n], controls[n], pieces[n] = turned(points[n]), turned(controls[n]), pieces[n][::-1, ::-1]
+@dataclass(frozen=True, eq=False)
+class Round:
+    """One interpolation of some contours, measured; parts of the ragged arrays belong to these.
 
-    def arcs() -> list[Interpolation]:
-        each = zip(kept, flipped, strict=True)
-        return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
+    Attributes:
+        trial: the polygons, and the distances of the curves as written from the outline.
+        found: the curves through the polygons. pieces: ragged (n, 4, 2), the curves as Béziers; written: the same,
+            rounded as they are written.
+        most: (k,) the largest bound of each contour.
+    """
 
-    curves = cubic_contours(np.concatenate(pieces), offsets)
-    polygons = Polylines(np.concatenate(points), offsets, closed)
-    return ConvertedContours(
-        contours,
-        curves,
-        polygons,
-        Views(len(kept), arcs),
-        Polylines(np.concatenate(controls), offsets, closed),
-        np.arange(len(kept) + 1),
-        solved_columns([(found.found, np.array([i])) for found, i in kept]) | distance_columns(gaps, bounds, tolerance),
-    )
+    trial: steps.Trial
+    found: BatchedInterpolation
+    pieces: FloatArray
+    written: FloatArray
+    most: FloatArray
+
+    def part(self, values: FloatArray, i: int) -> FloatArray:
+        """Part i of a ragged array."""
+        return values[self.trial.offsets[i] : self.trial.offsets[i + 1]]
 
 
-def _certificate(canonical: CanonicalContours, k: int, found: Round, i: int, tolerance: float) -> tuple[float, float]:
-    """Certified bound, and distance seen, of part i of a round from contour k."""
-    trial, start = found.trial, found.trial.offsets[i] + i
-    written, outline = found.part(found.written, i), canonical.cubics[slice(*canonical.offsets[k : k + 2])]
-    ends = trial.ends[start : start + len(written) + 1]
-    bounds, gaps = found.part(trial.bounds, i), found.part(trial.gaps, i)
-    bound, gap = sharpen_spans(written, outline, bounds, gaps, ends, SHARPNESS * tolerance)
-    if bound <= tolerance:
-        return bound, gap
-    # Pairing in both directions is slow and seldom better.
-    anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
-    other = certified_distance(written, outline, anchors, SHARPNESS * tolerance, tolerance)
-    return (other.bound, other.measured) if other.bound < bound else (bound, gap)
+class _Search:
+    """The search for the vertices of a glyph's contours.
+
+    Attributes:
+        near: the distance allowed, in font units.
+        kept: by contour, a round and which part of it: that with the fewest vertices that passed; if none did, that
+            with the smallest bound.
+    """
+
+    def __init__(self, contours: CanonicalContours, options: Options, near: float) -> None:
+        self.contours, self.options, self.near = contours, options, near
+        self.angle = float(np.radians(options.corner_angle))
+        self.kept: dict[int, tuple[Round, int]] = {}
+
+    def refine(self, early: int) -> None:
+        """Start from vertices spaced by the outline; add and remove vertices until all contours pass."""
+        contours, options, near, count = self.contours, self.options, self.near, len(self.contours.flipped)
+        left, which = np.full(count, PRUNINGS[options.effort]), np.arange(count)
+        passed, every = np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
+        fields, places, offsets = steps.first_places(contours, self.angle, options.max_ratio, near, options.variant)
+        for turn in range(ROUNDS):
+            done = self.attempt(which, places, offsets)
+            passed[which] = done.most <= near
+            fewer = every if turn < early else passed & (left > 0)
+            left[which] -= passed[which]
+            which, places, offsets = steps.changed(
+                contours, fields, done.trial, near, ~passed, fewer, self.angle, options.max_ratio, options.variant,
+                POWERS[turn % len(POWERS)], turn < LAID,
+            )  # fmt: skip
+            if len(which) == 0:
+                break
+
+    def thin(self) -> None:
+        """Remove vertices of the contours that passed, as long as they still pass."""
+        which = np.array([k for k, found in sorted(self.kept.items()) if self.passes(found)], dtype=np.int64)
+        trials = THINNINGS[self.options.effort]
+        if len(which) == 0 or trials == 0:
+            return
+        parts = [found.part(found.trial.places, i) for found, i in map(self.kept.__getitem__, which.tolist())]
+        trial = self.attempt(which, np.concatenate(parts), offsets_of([len(part) for part in parts])).trial
+        keep = np.ones(len(trial.places), dtype=np.bool_)
+        good = steps.Good(
+            which, trial.offsets, np.diff(trial.offsets), trial.places.copy(), trial.points.copy(), trial.gaps.copy(),
+            keep, ~keep,
+        )  # fmt: skip
+        for _ in range(trials):
+            which, places, offsets = steps.thinned(
+                self.contours, self.near, self.angle, self.options.max_ratio, trial, good
+            )
+            if len(which) == 0:
+                break
+            trial = self.attempt(which, places, offsets).trial
+
+    def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
+        """Interpolate contours through their points at places, measure, and keep improvements."""
+        points = steps.polygons(self.contours, which, places, offsets)
+        try:
+            found = interpolated(points, offsets, self.options)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else int(which[error.contour])
+            raise
+        if found.whole[:, 1].sum() < len(places):  # duplicates were merged
+            kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
+            return self.attempt(which, places[np.concatenate(kept)], offsets_of([len(part) for part in kept]))
+        pieces, written = beziers(found.controls, found.knots, offsets, 10.0**self.options.precision)
+        trial = steps.measured(self.contours, which, places, offsets, points, written, self.near)
+        done = Round(trial, found, pieces, written, np.maximum.reduceat(trial.bounds, offsets[:-1]))
+        for i, k in enumerate(which.tolist()):
+            if k not in self.kept or self.is_better((done, i), self.kept[k]):
+                self.kept[k] = done, i
+        return done
+
+    def passes(self, found: tuple[Round, int]) -> bool:
+        """Whether a part of a round is within the distance allowed."""
+        return bool(found[0].most[found[1]] <= self.near)
+
+    def is_better(self, new: tuple[Round, int], old: tuple[Round, int]) -> bool:
+        """Whether a part of a round replaces another one."""
+        if self.passes(old):
+            counts = [len(found.part(found.trial.places, i)) for found, i in (new, old)]
+            return self.passes(new) and counts[0] < counts[1]
+        return bool(new[0].most[new[1]] < old[0].most[old[1]])
+
+    def converted(self, contours: ContourArrays, tolerance: float) -> ConvertedContours:
+        """The results: measured in the fitted direction, returned in the given one."""
+        flipped = self.contours.flipped.tolist()
+        kept = [self.kept[k] for k in range(len(flipped))]
+        points = [found.part(found.trial.points, i) for found, i in kept]
+        pieces = [found.part(found.pieces, i) for found, i in kept]
+        controls = [found.part(found.found.controls, i) for found, i in kept]
+        offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
+        bounds, gaps = zip(*(self.certificate(k, tolerance) for k in range(len(kept))), strict=True)
+        for n in np.flatnonzero(flipped).tolist():
+            points[n], controls[n], pieces[n] = turned(points[n]), turned(controls[n]), pieces[n][::-1, ::-1]
+
+        def arcs() -> list[Interpolation]:
+            each = zip(kept, flipped, strict=True)
+            return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
+
+        solved = solved_columns([(found.found, np.array([i])) for found, i in kept])
+        return ConvertedContours(
+            contours,
+            cubic_contours(np.concatenate(pieces), offsets),
+            Polylines(np.concatenate(points), offsets, closed),
+            Views(len(kept), arcs),
+            Polylines(np.concatenate(controls), offsets, closed),
+            np.arange(len(kept) + 1),
+            solved | distance_columns(gaps, bounds, tolerance),
+        )
+
+    def certificate(self, k: int, tolerance: float) -> tuple[float, float]:
+        """Certified bound, and distance seen, of the curve kept for contour k."""
+        (found, i), trial = self.kept[k], self.kept[k][0].trial
+        written, outline = found.part(found.written, i), self.contours.cubics[slice(*self.contours.offsets[k : k + 2])]
+        ends = trial.ends[trial.offsets[i] + i : trial.offsets[i + 1] + i + 1]
+        spans = found.part(trial.bounds, i), found.part(trial.gaps, i)
+        bound, gap = steps.sharpened(written, outline, *spans, ends, SHARPNESS * tolerance)
+        if bound <= tolerance:
+            return bound, gap
+        # Pairing in both directions is slow and seldom better.
+        anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
+        each = [np.array([0, len(part)]) for part in (written, outline, anchors)]
+        others = pair_stretches(written, each[0], outline, each[1], anchors, each[2], SHARPNESS * tolerance, tolerance)
+        other, seen = (float(values.max()) for values in others)
+        return (other, seen) if other < bound else (bound, gap)

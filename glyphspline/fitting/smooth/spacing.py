@@ -1,4 +1,4 @@
-"""First places for the vertices of a contour, even: how far apart they may lie, by what is known of the outline.
+"""Where the vertices of a contour lie along it: even at first, laid anew where the curve fails, put in, and graded.
 
 A *field* says at every point how long a chord may be there. Three things bound it, each measured on the curve of a
 model outline:
@@ -11,6 +11,10 @@ model outline:
 
 Away from its bounds the field grows by ``log(growth)`` a unit of length: chords laid end to end along such a field grow
 by the factor ``growth``. Vertices lie at all corners and, between two, where the integral of 1/field is whole.
+
+Where spans fail the field is lowered, and the stretches between corners in which one does are laid again. A vertex put
+into a span would leave chords of half the length beside whole ones, which the curve answers with a wobble, which fails
+in turn: a round letter took twice the vertices, with a curvature extremum at each.
 """
 
 from __future__ import annotations
@@ -20,8 +24,9 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import jet
 from ...curves.sorting import in_order
-from ...types import FloatArray, IntArray
-from .canonical_contours import TABLE
+from ...types import BoolArray, FloatArray, IntArray
+from ..closed_curves import chords_of
+from .canonical_contours import TABLE, length_at, place_at, points_at
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 """The three numbers, with something to spare at corners, where a span that just fails costs a vertex."""
@@ -41,8 +46,20 @@ BEND = 2.5
 SPARE = 0.05
 """Share of a vertex by which an integral may exceed a whole number without one more."""
 
-FEWEST = 4
-"""Vertices a contour has at least."""
+FEWEST, MOST = 4, 2000
+"""Vertices that a contour has at least, and up to which its polygon is refined."""
+
+BELOW, LEAST = 0.95, 0.4
+"""Of a failed span, the share tried of the length by which it would just pass, and the least share of its own."""
+
+SHORTEST = 1e-5
+"""No span shorter than this share of the contour is divided: it would end in duplicate vertices."""
+
+NEAR_RATIO = 0.98
+"""Share of the ratio allowed that a chord cut off beside a shorter one has to it."""
+
+MARGIN = 0.3
+"""Share of a span at either end where it is not divided."""
 
 
 @compiled
@@ -53,14 +70,14 @@ def first_field(
     """Write the field of a contour, at all entries of ``lengths`` in turn.
 
     Args:
-        cubics: (m, 4, 2). lengths, turns: as :class:`.canonical_contours.CanonicalContours` has them.
+        cubics: (m, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
         corner_angle: turn in radians from which a joint is a vertex. ratio: at most, of adjacent chords.
         near: distance allowed, in font units. field: (m TABLE + 1,).
     """
     factor, at_corner = growth_of(ratio, variant), AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
     write_bounds(cubics, lengths, turns, first / at_corner, near, field)
-    total, corners = lengths[-1, TABLE], corners_of(turns, corner_angle)
+    total, corners = lengths[-1, TABLE], at_corners(np.arange(len(turns)).astype(np.float64), turns, corner_angle)
     for k in range(len(corners)):
         a, b = corners[k], corners[(k + 1) % len(corners)]
         reach = lengths[b, 0] - lengths[a, 0] + (total if b <= a else 0.0)
@@ -76,16 +93,17 @@ def growth_of(ratio: float, variant: int) -> float:
 
 
 @compiled
-def corners_of(turns: FloatArray, corner_angle: float) -> IntArray:
-    """The joints at which a contour has corners; the first joint if it has none."""
-    corners, count = np.empty(len(turns), dtype=np.int64), 0
-    for j in range(len(turns)):
-        if turns[j] >= corner_angle:
-            corners[count] = j
+def at_corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> IntArray:
+    """Which of a contour's places are at corners; without one, that at the first joint, if there is one."""
+    at, count = np.empty(len(places), dtype=np.int64), 0
+    for i in range(len(places)):
+        j = int(places[i])
+        if places[i] == j and turns[j] >= corner_angle:
+            at[count] = i
             count += 1
-    if count == 0:
-        corners[0], count = 0, 1
-    return corners[:count]
+    if count == 0 and places[0] == 0.0:
+        at[0], count = 0, 1
+    return at[:count]
 
 
 @compiled
@@ -148,6 +166,22 @@ def write_bounds(
 
 
 @compiled
+def failed(corners: IntArray, errors: FloatArray, near: float) -> BoolArray:
+    """The stretches from each vertex at a corner to the next in which a span's error exceeds ``near``."""
+    n, fails = len(errors), np.zeros(len(corners), dtype=np.bool_)
+    for k in range(len(corners)):
+        for j in range(spans_after(corners, k, n)):
+            fails[k] = fails[k] or errors[(corners[k] + j) % n] > near
+    return fails
+
+
+@compiled
+def spans_after(corners: IntArray, k: int, n: int) -> int:
+    """The number of spans of stretch k; one corner alone has all n."""
+    return (corners[(k + 1) % len(corners)] - corners[k] - 1) % n + 1
+
+
+@compiled
 def steps_of(field: FloatArray, lengths: FloatArray) -> FloatArray:
     """(m TABLE,) the integral of 1/field, which goes linearly from one entry to the next, over each step."""
     steps = np.empty(len(field) - 1)
@@ -159,8 +193,9 @@ def steps_of(field: FloatArray, lengths: FloatArray) -> FloatArray:
 
 
 @compiled
-def spans_in(steps: FloatArray, a: int, b: int) -> float:
-    """The integral of 1/field from joint a to joint b, or once round if they are one joint."""
+def spans_in(steps: FloatArray, places: FloatArray, corners: IntArray, k: int) -> float:
+    """The integral of 1/field over stretch k, once round if there is one corner."""
+    a, b = int(places[corners[k]]), int(places[corners[(k + 1) % len(corners)]])
     n, total = len(steps), 0.0
     stop = b * TABLE
     for i in range(a * TABLE, stop if b > a else stop + n):
@@ -169,9 +204,66 @@ def spans_in(steps: FloatArray, a: int, b: int) -> float:
 
 
 @compiled
-def spans_for(whole: float) -> int:
-    """The number of spans for an integral of 1/field."""
-    return max(int(np.ceil(whole - SPARE)), 1)
+def lowered(
+    field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, again: BoolArray, errors: FloatArray,
+    near: float, growth: float,
+) -> None:  # fmt: skip
+    """Lower a field over the spans that fail, and over those beside them less and less.
+
+    Args:
+        field: (m TABLE + 1,), which changes. places: (n,) of the vertices, of which ``corners`` are at corners.
+        again: the stretches between corners in which spans fail. errors: (n,) of the span after each vertex.
+        near: distance allowed. growth: logarithm of the factor by which chords grow at most.
+    """
+    n, entries, before = len(places), len(field) - 1, field.copy()
+    shares, steps = np.ones(n), steps_of(field, lengths)
+    for k in range(len(corners)):
+        if again[k]:
+            spans, whole = spans_after(corners, k, n), spans_in(steps, places, corners, k)
+            for j in range(spans):
+                i = (corners[k] + j) % n
+                if errors[i] > near:
+                    # Between corners and jumps, the error grows with the fourth power of the length. Chords are
+                    # shorter than the field by whole / spans, for their number to be whole.
+                    shares[i] = max(BELOW * (near / errors[i]) ** 0.25, LEAST) * min(whole / spans, 1.0)
+    for i in range(n):
+        start, stop = places[i] * TABLE, places[(i + 1) % n] * TABLE
+        if i == n - 1:
+            stop += entries
+        last, here, after = shares[i - 1], shares[i], shares[(i + 1) % n]
+        if min(last, min(here, after)) < 1:
+            for e in range(int(np.floor(start)), int(np.ceil(stop)) + 1):
+                x = min(max((e - start) / (stop - start), 0.0), 1.0)
+                share = min(here, min(last + x * (1 - last), 1 - x * (1 - after)))
+                field[e % entries] = min(field[e % entries], share * before[e % entries])
+    field[entries] = field[0]
+    limit_growth(field, lengths, growth)
+
+
+@compiled
+def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, again: BoolArray) -> FloatArray:
+    """The places, increasing, with those of some stretches between corners laid evenly by the field."""
+    n, count, steps, total = len(places), len(corners), steps_of(field, lengths), 0
+    parts, wholes = np.empty(count, dtype=np.int64), np.empty(count)
+    for k in range(count):
+        parts[k] = spans_after(corners, k, n)
+        if again[k]:
+            wholes[k] = spans_in(steps, places, corners, k)
+            parts[k] = max(int(np.ceil(wholes[k] - SPARE)), 1)
+        total += parts[k]
+    while total < FEWEST:
+        for k in range(count):
+            if again[k]:
+                total, parts[k] = total + parts[k], 2 * parts[k]
+    new, at = np.empty(total), 0
+    for k in range(count):
+        if again[k]:
+            lay(field, steps, int(places[corners[k]]), wholes[k], parts[k], new[at : at + parts[k]])
+        else:
+            for j in range(parts[k]):
+                new[at + j] = places[(corners[k] + j) % n]
+        at += parts[k]
+    return in_order(new)
 
 
 @compiled
@@ -190,20 +282,76 @@ def lay(field: FloatArray, steps: FloatArray, a: int, whole: float, parts: int, 
 
 
 @compiled
-def laid(field: FloatArray, lengths: FloatArray, corners: IntArray) -> FloatArray:
-    """Places at the corners and, evenly by the field, between them, increasing."""
-    c, steps = len(corners), steps_of(field, lengths)
-    counts, wholes, total = np.empty(c, dtype=np.int64), np.empty(c), 0
-    for k in range(c):
-        wholes[k] = spans_in(steps, corners[k], corners[(k + 1) % c])
-        counts[k] = spans_for(wholes[k])
-        total += counts[k]
-    times = 1
-    while times * total < FEWEST:
-        times *= 2
-    places, at = np.empty(times * total), 0
-    for k in range(c):
-        parts = times * counts[k]
-        lay(field, steps, corners[k], wholes[k], parts, places[at : at + parts])
-        at += parts
-    return in_order(places)
+def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(n,) length along the contour at which each place lies, and to the next one."""
+    n = len(places)
+    at, h = np.empty(n), np.empty(n)
+    for i in range(n):
+        at[i] = length_at(lengths, places[i])
+    for i in range(n - 1):
+        h[i] = at[i + 1] - at[i]
+    h[n - 1] = at[0] + lengths[-1, TABLE] - at[n - 1]
+    return at, h
+
+
+@compiled
+def with_more(
+    lengths: FloatArray, places: FloatArray, errors: FloatArray, worst: FloatArray, near: float
+) -> FloatArray:
+    """The places with more in each span whose error exceeds ``near`` and its neighbours'; the same if there is none.
+
+    A vertex is put at the span's worst place, or as near to it as the middle two fifths. A span that is many times too
+    far off is divided evenly into three or four.
+    """
+    at, h = spans_of(lengths, places)
+    n = len(places)
+    parts, shares = np.ones(n, dtype=np.int64), np.empty(n)
+    for i in range(n):
+        # What is wrong with a span is most often wrong with its worse neighbour.
+        if errors[i] > near and errors[i] >= max(errors[i - 1], errors[(i + 1) % n]):
+            parts[i] = 2 if errors[i] < 6 * near else (3 if errors[i] < 30 * near else 4)
+            shares[i] = min(max((length_at(lengths, worst[i]) - at[i]) / h[i], MARGIN), 1 - MARGIN)
+    return divided(lengths, places, at, h, parts, shares)
+
+
+@compiled
+def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: float) -> FloatArray:
+    """The places with chords cut where they are more than ``ratio`` times a neighbour, until none is.
+
+    Up to a ratio of 4 this certifies convergence before the interpolation is run (Theorem 2).
+    """
+    while True:
+        n = len(places)
+        chords, even = chords_of(points_at(cubics, places), ratio)
+        if n > MOST or even:
+            return places
+        at, h = spans_of(lengths, places)
+        parts, shares = np.ones(n, dtype=np.int64), np.empty(n)
+        for i in range(n):
+            before, after = chords[i - 1], chords[(i + 1) % n]
+            if chords[i] > ratio * min(before, after):
+                cut = min(NEAR_RATIO * ratio * min(before, after) / chords[i], 0.5)
+                parts[i], shares[i] = 2, cut if before <= after else 1 - cut
+        places = divided(lengths, places, at, h, parts, shares)
+        if len(places) == n:
+            return places
+
+
+@compiled
+def divided(
+    lengths: FloatArray, places: FloatArray, at: FloatArray, h: FloatArray, parts: IntArray, shares: FloatArray
+) -> FloatArray:
+    """The places with more in the spans that have several parts: of two, the first has a share; more are equal.
+
+    Args:
+        at, h: see :func:`spans_of`.
+    """
+    new, count, m = np.empty(parts.sum()), 0, len(lengths)
+    for i in range(len(places)):
+        new[count] = places[i]
+        count += 1
+        for part in range(1, parts[i] if h[i] > SHORTEST * lengths[-1, TABLE] else 1):
+            share = shares[i] if parts[i] == 2 else part / parts[i]
+            new[count] = place_at(lengths, at[i] + share * h[i]) % m
+            count += 1
+    return in_order(new[:count])

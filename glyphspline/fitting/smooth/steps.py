@@ -1,6 +1,7 @@
 """The steps of a smooth fit for all contours of a glyph that are not done yet, on ragged arrays.
 
-Part i of a ragged array belongs to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
+Vertices are laid, the curves through them measured, and vertices put in and taken out. Part i of a ragged array belongs
+to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
 """
 
 from __future__ import annotations
@@ -10,34 +11,36 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import extent
+from ...curves.nearest import near_places
+from ...curves.pairing import ROUNDING, pair_span, room_for
+from ...curves.sorting import ascending
 from ...types import BoolArray, FloatArray, IntArray
-from ..certified_distance import measure_spans
 from .canonical_contours import TABLE, CanonicalContours, points_at
-from .insertion import MOST_VERTICES, graded, with_more
-from .pruning import put_back, sparse
-from .respacing import failed, relaid, vertices_at_corners
-from .spacing import corners_of, first_field, growth_of, laid
+from .spacing import MOST, at_corners, failed, first_field, graded, growth_of, laid, lowered, spans_after, with_more
 
 ROUGHLY = 0.1
-"""Sharpness of the bounds during the search, as a share of ``near``."""
+"""Sharpness of the bounds during the search, as a share of the distance allowed."""
 
 
 @compiled
 def first_places(
-    contours: CanonicalContours, which: IntArray, corner_angle: float, ratio: float, near: FloatArray, variant: int
+    contours: CanonicalContours, corner_angle: float, ratio: float, near: float, variant: int
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """The fields of all contours end to end, and ragged places to begin with, of the contours ``which``."""
-    fields = np.empty(len(contours.cubics) * TABLE + len(near))
-    offsets, values = np.empty(len(which) + 1, dtype=np.int64), np.empty(1024)
-    offsets[0] = 0
-    for i in range(len(which)):
-        a, b = contours.offsets[which[i]], contours.offsets[which[i] + 1]
-        cubics, lengths = contours.cubics[a:b], contours.lengths[a:b]
-        turns, field = contours.turns[a:b], field_of(fields, contours.offsets, which[i])
-        first_field(cubics, lengths, turns, corner_angle, ratio, near[which[i]], variant, field)
-        part = graded(cubics, lengths, laid(field, lengths, corners_of(turns, corner_angle)), ratio)
-        values = appended(values, offsets[i], part)
-        offsets[i + 1] = offsets[i] + len(part)
+    """The fields of all contours end to end, and ragged places to begin with."""
+    count = len(contours.offsets) - 1
+    fields = np.empty(len(contours.cubics) * TABLE + count)
+    offsets, values = np.zeros(count + 1, dtype=np.int64), np.empty(1024)
+    for k in range(count):
+        a, b = contours.offsets[k], contours.offsets[k + 1]
+        cubics, lengths, turns = contours.cubics[a:b], contours.lengths[a:b], contours.turns[a:b]
+        field, joints = field_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
+        first_field(cubics, lengths, turns, corner_angle, ratio, near, variant, field)
+        corners = at_corners(joints, turns, corner_angle)
+        even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
+        part = graded(cubics, lengths, even, ratio)
+        values = appended(values, offsets[k], part)
+        offsets[k + 1] = offsets[k] + len(part)
     return fields, values[: offsets[-1]], offsets
 
 
@@ -65,10 +68,8 @@ def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, o
     """Ragged points (n, 2) of the outline at the places."""
     points = np.empty((len(places), 2))
     for i in range(len(which)):
-        a, b = offsets[i], offsets[i + 1]
-        own = points_at(contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]], places[a:b])
-        for j in range(b - a):
-            points[a + j, 0], points[a + j, 1] = own[j, 0], own[j, 1]
+        cubics = contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]]
+        points[offsets[i] : offsets[i + 1]] = points_at(cubics, places[offsets[i] : offsets[i + 1]])
     return points
 
 
@@ -77,8 +78,9 @@ class Trial(NamedTuple):
 
     Attributes:
         which: (k,) numbers of the contours. places, offsets, points: the vertices.
-        bounds, gaps, worst, ends: see :func:`..certified_distance.measure_spans`; ends of part i begin at
-            ``offsets[i] + i``.
+        bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline.
+        ends: where the stretch of outline that a span is paired with begins; those of part i begin at
+            ``offsets[i] + i``, and the first is repeated a lap later.
     """
 
     which: IntArray
@@ -94,27 +96,59 @@ class Trial(NamedTuple):
 @compiled
 def measured(
     contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-    pieces: FloatArray, near: FloatArray,
+    pieces: FloatArray, near: float,
 ) -> Trial:  # fmt: skip
-    """Measure closed curves with vertices at ``places`` of their contours.
+    """Measure closed curves with vertices at ``places`` of their contours, only as sharply as the search needs.
+
+    A span is paired with the stretch of outline between the points nearest to its ends.
 
     Args:
-        pieces: (n, 4, 2) the curves as they are written. near: (K,) by contour, the distance allowed.
+        pieces: (n, 4, 2) the curves as they are written. near: the distance allowed.
     """
-    n = len(places)
+    n, no_arc, (work, marks, found) = len(places), np.empty(0), room_for(1)
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
-        k, a, b = which[i], offsets[i], offsets[i + 1]
-        measure_spans(
-            pieces[a:b], contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], places[a:b], near[k],
-            ROUGHLY * near[k], bounds[a:b], gaps[a:b], worst[a:b], ends[a + i : b + i + 1],
-        )  # fmt: skip
+        a, b = offsets[i], offsets[i + 1]
+        outline, spans = contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]], pieces[a:b]
+        begins, rounding = ends[a + i : b + i + 1], ROUNDING * max(extent(spans), extent(outline))
+        near_places(1, outline, places[a:b], spans, True, 0.0, 0.0, begins)
+        begins[b - a] = begins[0] + len(outline)
+        for j in range(b - a):
+            y, y_end = begins[j], begins[j + 1]
+            found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
+            pair_span(
+                1, spans, j, 0.0, 1.0, outline, y, y_end, no_arc, False, near - rounding, ROUGHLY * near, work, marks,
+                found,
+            )  # fmt: skip
+            bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]
     return Trial(which, places, offsets, points, bounds, gaps, worst, ends)
 
 
 @compiled
+def sharpened(
+    pieces: FloatArray, outline: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
+) -> tuple[float, float]:
+    """Bound and gap of a contour from those of its spans, within ``sharpness`` of each other; see :class:`Trial`."""
+    no_arc, (work, marks, found) = np.empty(0), room_for(1)
+    rounding = ROUNDING * max(extent(pieces), extent(outline))
+    left, bound, gap = bounds.copy(), 0.0, gaps.max()
+    while True:
+        i = int(left.argmax())
+        enough = max(bound, gap + sharpness)
+        if left[i] <= enough:
+            return max(bound, left[i]), gap
+        found[:] = 0.0
+        pair_span(
+            1, pieces, i, 0.0, 1.0, outline, ends[i], ends[i + 1], no_arc, False, enough - rounding, sharpness, work,
+            marks, found,
+        )  # fmt: skip
+        gap, bound = max(gap, found[1]), max(bound, found[0] + rounding)
+        left[i] = 0.0
+
+
+@compiled
 def changed(
-    contours: CanonicalContours, fields: FloatArray, trial: Trial, near: FloatArray, more: BoolArray, fewer: BoolArray,
+    contours: CanonicalContours, fields: FloatArray, trial: Trial, near: float, more: BoolArray, fewer: BoolArray,
     corner_angle: float, ratio: float, variant: int, power: float, anew: bool,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours of a trial that change, and their ragged places.
@@ -128,57 +162,55 @@ def changed(
         anew: whether more vertices are laid anew, evenly, or put into the spans that miss the tolerance.
     """
     which, places, offsets, points, bounds, gaps, worst, _ = trial
-    those, new = np.empty(len(which), dtype=np.int64), np.empty(len(which) + 1, dtype=np.int64)
-    values, needed = np.empty(len(places) + 1024), np.empty(len(places), dtype=np.bool_)
-    for i in range(len(places)):
-        needed[i] = False
-    count = new[0] = 0
+    those, new = np.empty(len(which), dtype=np.int64), np.zeros(len(which) + 1, dtype=np.int64)
+    values, count = np.empty(len(places) + 1024), 0
+    growth = np.log(growth_of(ratio, variant))
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
         s, t = contours.offsets[k], contours.offsets[k + 1]
         cubics, lengths, turns = contours.cubics[s:t], contours.lengths[s:t], contours.turns[s:t]
         here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
-        n = b - a
-        again = anew and more[k]
-        if again:  # what is laid anew is not thinned first
-            _, needed[a:b] = failed(vertices_at_corners(here, turns, corner_angle), bound, near[k])
         if fewer[k]:
-            keep = sparse(points[a:b], here, turns, corner_angle, needed[a:b], gaps[a:b], near[k], ratio, power)
-            n = 0
-            for j in range(b - a):
-                if keep[j]:
-                    here[n], bound[n], at[n] = here[j], bound[j], at[j]
-                    n += 1
-            here = here[:n]
+            needed = np.zeros(b - a, dtype=np.bool_)
+            if anew and more[k]:  # what is laid anew is not thinned first
+                corners = at_corners(here, turns, corner_angle)
+                fails = failed(corners, bound, near)
+                for c in range(len(corners)):
+                    for j in range(spans_after(corners, c, b - a) + 1 if fails[c] else 0):
+                        needed[(corners[c] + j) % (b - a)] = True
+            keep = sparse(points[a:b], here, turns, corner_angle, needed, gaps[a:b], near, ratio, power)
+            here, bound, at = here[keep], bound[keep], at[keep]
         if more[k]:
-            corners = vertices_at_corners(here, turns, corner_angle)
-            if again and len(corners) > 0:
-                field, growth = field_of(fields, contours.offsets, k), np.log(growth_of(ratio, variant))
-                here = relaid(field, lengths, here, corners, bound[:n], near[k], growth)
+            corners = at_corners(here, turns, corner_angle)
+            if anew and len(corners) > 0:
+                field, fails = field_of(fields, contours.offsets, k), failed(corners, bound, near)
+                lowered(field, lengths, here, corners, fails, bound, near, growth)
+                here = laid(field, lengths, here, corners, fails)
             else:
-                here = with_more(lengths, here, bound[:n], at[:n], near[k])
-        same = len(here) == b - a
-        for j in range(len(here)):
-            same = same and here[j] == places[a + j]
-        if not same:
-            here = graded(cubics, lengths, here, ratio)
-            if len(here) <= MOST_VERTICES:
-                values = appended(values, new[count], here)
-                those[count], new[count + 1] = k, new[count] + len(here)
-                count += 1
+                here = with_more(lengths, here, bound, at, near)
+        if len(here) == b - a and (here == places[a:b]).all():
+            continue
+        here = graded(cubics, lengths, here, ratio)
+        if len(here) <= MOST:
+            values = appended(values, new[count], here)
+            those[count], new[count + 1] = k, new[count] + len(here)
+            count += 1
     return those[:count], values[: new[count]], new[: count + 1]
 
 
 class Good(NamedTuple):
-    """Polygons that passed, and the next vertices to try; all ragged, with ``offsets``.
+    """Polygons that passed, and the next vertices to try; all ragged, and of each part only the first values count.
 
     Attributes:
+        which: (k,) numbers of the contours. counts: (k,) vertices of the polygons, of which there were more at first.
         places, points, gaps: of the polygons and their spans.
         keep: vertices of the next trial. needed: vertices that every further trial keeps.
     """
 
-    places: FloatArray
+    which: IntArray
     offsets: IntArray
+    counts: IntArray
+    places: FloatArray
     points: FloatArray
     gaps: FloatArray
     keep: BoolArray
@@ -187,49 +219,133 @@ class Good(NamedTuple):
 
 @compiled
 def thinned(
-    contours: CanonicalContours, near: FloatArray, corner_angle: float, ratio: float, power: float, trial: Trial,
-    good: Good,
-) -> tuple[IntArray, Good]:  # fmt: skip
-    """The next polygons to try, to find the vertices that are needed.
+    contours: CanonicalContours, near: float, corner_angle: float, ratio: float, trial: Trial, good: Good
+) -> tuple[IntArray, FloatArray, IntArray]:
+    """The contours that are not finished, and their next places, to find the vertices that are needed.
 
     A trial that passes replaces the good polygon, and the next trial omits vertices of it that seem unnecessary. If a
     trial fails, the vertices beside the failure are restored and kept from then on.
 
     Args:
-        good: the polygons that passed, of the contours of the trial.
-
-    Returns:
-        Numbers and polygons of the contours that are not finished.
+        good: the polygons that passed, of all contours of the trial, in their order; they change.
     """
-    which, places, offsets, points, bounds, gaps, _, _ = trial
-    n = len(good.places)
-    those, count, at = np.empty_like(which), 0, 0
-    new = Good(
-        np.empty(n), np.zeros(len(which) + 1, dtype=np.int64), np.empty((n, 2)), np.empty(n),
-        np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_),
-    )  # fmt: skip
-    for i in range(len(which)):
-        k, a, b, c, d = which[i], offsets[i], offsets[i + 1], good.offsets[i], good.offsets[i + 1]
-        here, p, e, keep, needed = good.places[c:d], good.points[c:d], good.gaps[c:d], good.keep[c:d], good.needed[c:d]
-        if bounds[a:b].max() <= near[k]:
-            here, p, e, needed = places[a:b], points[a:b], gaps[a:b], needed[keep]
-            keep = np.ones(b - a, dtype=np.bool_)
+    those, new = np.empty(len(trial.which), dtype=np.int64), np.zeros(len(trial.which) + 1, dtype=np.int64)
+    values, count, part = np.empty(len(trial.places)), 0, 0
+    for i in range(len(trial.which)):
+        k, a, b = trial.which[i], trial.offsets[i], trial.offsets[i + 1]
+        while good.which[part] != k:
+            part += 1
+        c, d = good.offsets[part], good.offsets[part] + good.counts[part]
+        keep, needed = good.keep[c:d], good.needed[c:d]
+        if trial.bounds[a:b].max() <= near:
+            left = needed[keep]
+            d = c + b - a
+            keep, needed, good.counts[part] = good.keep[c:d], good.needed[c:d], b - a
+            keep[:], needed[:] = True, left
+            good.places[c:d], good.points[c:d] = trial.places[a:b], trial.points[a:b]
+            good.gaps[c:d] = trial.gaps[a:b]
         else:
-            back = put_back(p, keep, bounds[a:b], near[k], ratio)
-            needed = needed | (back & ~keep)
-            keep = back
+            back = put_back(good.points[c:d], keep, trial.bounds[a:b], near, ratio)
+            needed |= back & ~keep
+            keep[:] = back
         if keep.all():
             turns = contours.turns[contours.offsets[k] : contours.offsets[k + 1]]
-            keep = sparse(p, here, turns, corner_angle, needed, e, near[k], ratio, power)
-        if keep.all():
+            # Optimistic: the error grows with the length alone, as each trial is measured.
+            keep[:] = sparse(
+                good.points[c:d], good.places[c:d], turns, corner_angle, needed, good.gaps[c:d], near, ratio, 1.0
+            )
+        if not keep.all():
+            here = good.places[c:d][keep]
+            values = appended(values, new[count], here)
+            those[count], new[count + 1] = k, new[count] + len(here)
+            count += 1
+    return those[:count], values[: new[count]], new[: count + 1]
+
+
+@compiled
+def sparse(
+    points: FloatArray, places: FloatArray, turns: FloatArray, corner_angle: float, needed: BoolArray,
+    errors: FloatArray, near: float, ratio: float, power: float,
+) -> BoolArray:  # fmt: skip
+    """Which vertices of a closed polygon to keep: not those without which the error would still be small enough.
+
+    The error of a span is taken to grow with the given power of its length. Smallest errors first, no two neighbours
+    at once, and none without which adjacent chords would be beyond ``ratio``. Without a vertex at a corner, the error
+    is at least its height over the chord that takes its place.
+
+    Args:
+        points: (n, 2), at places (n,). turns: at the joints; from ``corner_angle`` a joint is a corner.
+        needed: (n,) vertices that are kept in any case. errors: (n,) of the span after each vertex.
+    """
+    n = len(points)
+    keep, expected = np.empty(n, dtype=np.bool_), np.empty(n)
+    for i in range(n):
+        keep[i], expected[i] = True, np.inf
+        if needed[i]:
             continue
-        those[count] = k
-        stop = at + len(here)
-        new.places[at:stop], new.points[at:stop], new.gaps[at:stop] = here, p, e
-        new.keep[at:stop], new.needed[at:stop] = keep, needed
-        count, at = count + 1, stop
-        new.offsets[count] = stop
-    return those[:count].copy(), Good(
-        new.places[:at].copy(), new.offsets[: count + 1].copy(), new.points[:at].copy(), new.gaps[:at].copy(),
-        new.keep[:at].copy(), new.needed[:at].copy(),
-    )  # fmt: skip
+        k = (i + 1) % n
+        h, g = chord(points, i - 1, i), chord(points, i, k)
+        expected[i] = max(errors[i - 1], errors[i]) * ((g + h) / max(g, h)) ** power
+        j = int(places[i])
+        if places[i] == j and turns[j] >= corner_angle:
+            ax, ay = points[k, 0] - points[i - 1, 0], points[k, 1] - points[i - 1, 1]
+            bx, by = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
+            square = ax * ax + ay * ay
+            along = min(max((ax * bx + ay * by) / square, 0.0), 1.0) if square > 0 else 0.0
+            expected[i] = max(expected[i], np.sqrt((bx - along * ax) ** 2 + (by - along * ay) ** 2))
+    order, left = ascending(expected), n
+    for k in range(n):
+        i = order[k]
+        if not expected[i] <= near or left <= 4:
+            break
+        before, after = (i - 1) % n, (i + 1) % n
+        if not (keep[before] and keep[after]):
+            continue
+        further, beyond = (before - 1) % n, (after + 1) % n
+        while not keep[further]:
+            further = (further - 1) % n
+        while not keep[beyond]:
+            beyond = (beyond + 1) % n
+        h, g, f = chord(points, further, before), chord(points, before, after), chord(points, after, beyond)
+        if max(h, g) <= ratio * min(h, g) and max(f, g) <= ratio * min(f, g):
+            keep[i] = False
+            left -= 1
+    return keep
+
+
+@compiled
+def chord(points: FloatArray, i: int, j: int) -> float:
+    """Distance between vertices i and j."""
+    return np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+
+
+@compiled
+def put_back(points: FloatArray, keep: BoolArray, errors: FloatArray, near: float, ratio: float) -> BoolArray:
+    """Keep again what had been taken out of the spans that are now too far off, or of those beside them.
+
+    Args:
+        points: (n, 2) the polygon before. keep: (n,) the vertices of the polygon after. errors: of its spans.
+    """
+    n = len(points)
+    kept = np.flatnonzero(keep)
+    m = len(kept)
+    after = keep.copy()
+    for j in range(m):
+        if errors[j] > near:
+            last = kept[(j + 2) % m]
+            i = (kept[j - 1] + 1) % n
+            while i != last:
+                after[i] = True
+                i = (i + 1) % n
+    while True:
+        kept = np.flatnonzero(after)
+        m = len(kept)
+        changed = False
+        for j in range(m):
+            a, b, c, d = kept[j - 1], kept[j], kept[(j + 1) % m], kept[(j + 2) % m]
+            h = chord(points, b, c)
+            if (b + 1) % n != c and h > ratio * min(chord(points, a, b), chord(points, c, d)):
+                after[(b + 1) % n] = True
+                changed = True
+        if not changed:
+            return after
