@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import bernstein, directions, length_table
+from ..curves.cubics import bernstein, length_table, turns
 from ..types import BoolArray, FloatArray, IntArray
 
 TABLE = 32
@@ -48,7 +48,7 @@ def sampled(
     for k in range(contours):
         pieces = cubics[offsets[k] : offsets[k + 1]]
         table = length_table(pieces, WEIGHTS)
-        corners = _corners(pieces, table, np.cos(corner_angle))
+        corners = table[:-1:TABLE][np.abs(turns(pieces, 0.0)) >= corner_angle]
         if count > 0:
             at = _even(corners, table[-1], count, max_ratio)
         else:
@@ -64,85 +64,48 @@ def sampled(
 
 
 @compiled
-def _corners(pieces: FloatArray, table: FloatArray, turn: float) -> FloatArray:
-    """Distances along a contour of the joints that turn by an angle whose cosine is ``turn`` or less."""
-    m = len(pieces)
-    corners, c = np.empty(m), 0
-    ax = ay = 0.0
-    for j in range(-1, m):
-        bx, by, x, y = directions(pieces, j, 0.0)
-        if j >= 0 and ax * bx + ay * by <= turn * np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by)):
-            corners[c] = table[j * TABLE]
-            c += 1
-        ax, ay = x, y
-    return corners[:c]
-
-
-@compiled
 def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> FloatArray:
     """Even distances; the nearest to each corner moves onto it where spacings stay within ``max_ratio``."""
     at = length * np.arange(count) / count
     for corner in corners:
-        nearest = np.argmin(np.abs(at - corner))
-        before = at[nearest]
-        at[nearest] = corner
-        for k in range(nearest - 1, nearest + 2):
-            h, g = _spacing(at, k - 1, length), _spacing(at, k, length)
-            if not max(h, g) <= max_ratio * min(h, g):
-                at[nearest] = before
-                break
+        moved = at.copy()
+        moved[np.argmin(np.abs(at - corner))] = corner
+        gaps = np.append(moved[1:], moved[0] + length) - moved
+        before = np.roll(gaps, 1)
+        if np.all(np.maximum(gaps, before) <= max_ratio * np.minimum(gaps, before)):
+            at = moved
     return at
 
 
 @compiled
-def _spacing(at: FloatArray, k: int, length: float) -> float:
-    """Distance from vertex k to the next, cyclically."""
-    k %= len(at)
-    return at[k + 1] - at[k] if k + 1 < len(at) else at[0] + length - at[k]
-
-
-@compiled
 def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, most: int) -> FloatArray:
-    """Ascending distances of the vertices along a contour; empty if there are too many."""
+    """Ascending distances of the vertices along a contour; empty if there are too many.
+
+    Sections between corners are divided evenly, and then spacings larger than ``max_ratio`` times a neighbour halved.
+    """
     if len(corners) == 0:
         corners = np.zeros(1)
-    stretches = np.append(corners[1:], corners[0] + length) - corners
-    if not np.max(stretches) / step < most:
+    sections = np.append(corners[1:], corners[0] + length) - corners
+    if not np.max(sections) / step < most:
         return np.empty(0)
-    parts = np.maximum(np.rint(stretches / step - TIE), 1.0)
+    parts = np.maximum(np.rint(sections / step - TIE), 1.0)
     parts *= 3 if np.sum(parts) < 3 else 1
     if np.sum(parts) > most:
         return np.empty(0)
     at, i = np.empty(int(np.sum(parts))), 0
     for j in range(len(corners)):
         for k in range(int(parts[j])):
-            at[i] = corners[j] + k * (stretches[j] / parts[j])
+            at[i] = corners[j] + k * (sections[j] / parts[j])
             i += 1
-    at = _graded(at, length, max_ratio, most)
-    k = int(np.searchsorted(at, length))  # from here on they are in the next lap
-    return np.concatenate((at[k:] - length, at[:k]))
-
-
-@compiled
-def _graded(at: FloatArray, length: float, max_ratio: float, most: int) -> FloatArray:
-    """Halve spacings larger than max_ratio times a neighbour until there are none; empty if that fails."""
     for _ in range(ROUNDS):
-        n = len(at)
-        finer, k = np.empty(2 * n), 0
-        before, here = _spacing(at, n - 1, length), _spacing(at, 0, length)
-        for i in range(n):
-            after = _spacing(at, i + 1, length)
-            finer[k] = at[i]
-            k += 1
-            if here > (max_ratio + TIE) * min(before, after):
-                finer[k] = at[i] + 0.5 * here
-                k += 1
-            before, here = here, after
-        if k == n:
-            return at
-        if k > most:
+        gaps = np.append(at[1:], at[0] + length) - at
+        wide = np.flatnonzero(gaps > (max_ratio + TIE) * np.minimum(np.roll(gaps, 1), np.roll(gaps, -1)))
+        if len(wide) == 0:
+            k = int(np.searchsorted(at, length))  # from here on they are in the next lap
+            return np.concatenate((at[k:] - length, at[:k]))
+        if len(at) + len(wide) > most:
             break
-        at = finer[:k]
+        at = np.sort(np.append(at, at[wide] + 0.5 * gaps[wide]))
     return np.empty(0)
 
 

@@ -22,10 +22,7 @@ def all_cubics(contours: ContourArrays) -> FloatArray:
     """(m, 4, 2) the segments of all contours as cubics; those of contour c begin at ``offsets[c]``."""
     cubics = np.empty((len(contours.degrees), 4, 2))
     for c in range(len(contours.offsets) - 1):
-        own, first = contour_cubics(contours, c), contours.offsets[c]
-        for j in range(len(own)):
-            for k in range(4):
-                cubics[first + j, k, 0], cubics[first + j, k, 1] = own[j, k, 0], own[j, k, 1]
+        cubics[contours.offsets[c] : contours.offsets[c + 1]] = contour_cubics(contours, c)
     return cubics
 
 

@@ -17,21 +17,18 @@ Request: TypeAlias = int | str | Iterable[int | str]
 class Numbers(NamedTuple):
     """How numbers and ranges of one kind are written."""
 
-    pattern: re.Pattern[str]
+    pattern: str
     base: int
     last: int
+    form: str
     hint: str
 
 
 UNICODES = Numbers(
-    re.compile(r"(?:U\+|0x)?([0-9A-F]{1,6})(?:-(?:U\+|0x)?([0-9A-F]{1,6}))?", re.IGNORECASE),
-    16,
-    0x10FFFF,
-    "code point or range of them, as in U+4E00-4E10",
+    r"(?:U\+|0x)?([0-9A-F]{1,6})", 16, 0x10FFFF, "U+{:04X}", "code point or range of them, as in U+4E00-4E10"
 )
-GIDS = Numbers(
-    re.compile(r"([0-9]{1,7})(?:-([0-9]{1,7}))?"), 10, 0xFFFFFF, "glyph index or range of them, as in 10-20"
-)  # the largest glyph index of any table format
+GIDS = Numbers("([0-9]{1,7})", 10, 0xFFFFFF, "{}", "glyph index or range of them, as in 10-20")
+"""The last glyph index is the largest of any table format."""
 
 
 class Selection(tuple[str, ...]):
@@ -82,7 +79,7 @@ def select(
     """
     if not all_glyphs and all(argument is None for argument in (text, unicodes, glyphs, gids)):
         raise GlyphsplineError("no glyphs asked for: give text, unicodes, glyphs, gids or all_glyphs")
-    unicodes, gids = _kept(unicodes, "U+{:04X}"), _kept(gids, "{}")
+    code_points, indices = _written(unicodes, UNICODES), _written(gids, GIDS)
     index = {name: gid for gid, name in enumerate(glyph_names)}
     found: set[str] = set(glyph_names) if all_glyphs else set()
     missing: list[str] = []
@@ -94,24 +91,18 @@ def select(
             missing.append(phrase)
 
     codes = [ord(character) for character in dict.fromkeys(text or "") if unicodedata.category(character) != "Cc"]
-    for first, last in chain(zip(codes, codes, strict=True), _ranges(unicodes, UNICODES)):
+    for first, last in chain(zip(codes, codes, strict=True), _ranges(code_points, UNICODES)):
         take(_within(cmap, first, last), f"U+{first:04X}" if first == last else f"U+{first:04X}-{last:04X}")
     names = glyphs.replace(",", " ").split() if isinstance(glyphs, str) else None if glyphs is None else list(glyphs)
     for name in names or ():
         take(glyph_names if name == "*" else [name], f"glyph {name}")
-    for first, last in _ranges(gids, GIDS):
+    for first, last in _ranges(indices, GIDS):
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
-    given = {"text": text, "unicodes": unicodes, "glyphs": names, "gids": gids}
+    given = {"text": text, "unicodes": code_points, "glyphs": names, "gids": indices}
     asked = {name: value for name, value in given.items() if value is not None} | ({"all": True} if all_glyphs else {})
     ahead = dict.fromkeys(cmap[code] for code in codes if cmap.get(code) in index)
     rest = sorted(found.difference(ahead), key=index.__getitem__)
     return Selection([*ahead, *rest], dict.fromkeys(missing), asked)
-
-
-def _kept(request: Request | None, form: str) -> list[int | str] | None:
-    """A request as a list, which can be read twice; numbers that are in range are written as they are in strings."""
-    parts = [request] if isinstance(request, int | str) else request
-    return None if parts is None else [form.format(p) if isinstance(p, int) and p >= 0 else p for p in parts]
 
 
 def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:
@@ -121,23 +112,19 @@ def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:
     return [name for code, name in cmap.items() if first <= code <= last]
 
 
-def _ranges(request: Request | None, kind: Numbers) -> Iterator[tuple[int, int]]:
+def _written(request: Request | None, kind: Numbers) -> list[str] | None:
+    """A request as a list of strings, as which numbers are kept and can be asked for again."""
+    parts = [request] if isinstance(request, int | str) else request
+    return None if parts is None else [kind.form.format(part) if isinstance(part, int) else part for part in parts]
+
+
+def _ranges(parts: Iterable[str] | None, kind: Numbers) -> Iterator[tuple[int, int]]:
     """First and last of each number or range."""
-    if request is None:
-        return
-    for part in [request] if isinstance(request, int | str) else request:
-        if isinstance(part, str):
-            for item in part.replace(",", " ").split():
-                yield (0, kind.last) if item == "*" else _range(item, kind)
-        elif 0 <= part <= kind.last:
-            yield part, part
-        else:
-            raise GlyphsplineError(f"{part} is not between 0 and {kind.last}")
-
-
-def _range(item: str, kind: Numbers) -> tuple[int, int]:
-    match = kind.pattern.fullmatch(item)
-    first, last = (int(match[1], kind.base), int(match[2] or match[1], kind.base)) if match else (1, 0)
-    if not first <= last <= kind.last:
-        raise GlyphsplineError(f"{item!r} is no {kind.hint}")
-    return first, last
+    for item in " ".join(parts or ()).replace(",", " ").split():
+        match = re.fullmatch(f"{kind.pattern}(?:-{kind.pattern})?", item, re.IGNORECASE)
+        first, last = (int(match[1], kind.base), int(match[2] or match[1], kind.base)) if match else (1, 0)
+        if item == "*":
+            first, last = 0, kind.last
+        if not first <= last <= kind.last:
+            raise GlyphsplineError(f"{item!r} is no {kind.hint}")
+        yield first, last

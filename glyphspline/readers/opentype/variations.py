@@ -17,7 +17,6 @@ from fontTools.misc.psCharStrings import SimpleT2Decompiler
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import SCALED_COMPONENT_OFFSET, USE_MY_METRICS, flagCubic, flagOnCurve
 from fontTools.varLib.iup import iup_delta
-from fontTools.varLib.varStore import VarStoreInstancer
 
 from ...errors import GlyphsplineError
 from ...outlines.masters import DesignAxis, Masters, Region, quadratics, region_scalars, told_apart
@@ -169,15 +168,17 @@ class Variations:
         store = getattr(top.CharStrings, "varStore", None)
         reader = SimpleT2Decompiler(getattr(string.private, "Subrs", []), string.globalSubrs, string.private)
         reader.execute(string)
+        regions, changes = self._advance_changes(head)
         if store is None or reader.numRegions is None:  # it blends nothing
-            stored = self._regions_of_advance(head)
+            stored = [region for region, change in zip(regions, changes.tolist(), strict=True) if change]
         else:
             stored = self._regions_of(store.otVarStore, reader.vsIndex)
         masters, scalars = self._empty(head, stored)
         pen = ContourPen(masters=len(masters))
         string.draw(pen, lambda _, deltas: scalars[:, 1:] @ np.array(deltas, dtype=np.float64))
         pen.finish()
-        advances = np.array([self._advance(head, peak) for peak in masters.peaks])
+        changed = region_scalars(self._stacked(regions), masters.peaks)[:, 1:] @ changes
+        advances = float(self._tables["hmtx"].metrics[head.name][0]) + changed
         return replace(masters, contours=tuple(pen.stacks), advances=advances, notes=pen.notes)
 
     def _regions_of(self, store: Any, index: int) -> list[Region]:
@@ -186,33 +187,15 @@ class Variations:
         regions = store.VarRegionList.Region
         return [self._region(regions[k].get_support(fvar)) for k in store.VarData[index].VarRegionIndex]
 
-    def _advance(self, head: Head, peak: FloatArray) -> float:
-        """The advance of a glyph at a normalised location, from ``HVAR``, whose regions may be others."""
-        advance = float(self._tables["hmtx"].metrics[head.name][0])
-        if "HVAR" not in self._tables:
-            return advance
-        table = self._tables["HVAR"].table
-        location = dict(zip(self._tags, peak.tolist(), strict=True))
-        if self._instancer is None or self._instancer.location != location:
-            self._instancer = VarStoreInstancer(table.VarStore, self._tables["fvar"].axes, location)
-        return advance + float(self._instancer[self._advance_index(head)])
-
-    _instancer: Any = None
-
-    def _advance_index(self, head: Head) -> int:
-        table = self._tables["HVAR"].table
-        return head.gid if table.AdvWidthMap is None else int(table.AdvWidthMap.mapping[head.name])
-
-    def _regions_of_advance(self, head: Head) -> list[Region]:
-        """The regions in which the advance of a glyph varies."""
-        if "HVAR" not in self._tables:
-            return []
-        store, index = self._tables["HVAR"].table.VarStore, self._advance_index(head)
-        outer, inner = index >> 16, index & 0xFFFF
-        if outer >= len(store.VarData) or inner >= len(store.VarData[outer].Item):
-            return []
-        regions = zip(self._regions_of(store, outer), store.VarData[outer].Item[inner], strict=False)
-        return [region for region, delta in regions if delta]
+    def _advance_changes(self, head: Head) -> tuple[list[Region], FloatArray]:
+        """How the advance of a glyph varies by ``HVAR``, whose regions may be others: R regions, and (R,) deltas."""
+        if "HVAR" in self._tables:
+            table = self._tables["HVAR"].table
+            index = head.gid if table.AdvWidthMap is None else int(table.AdvWidthMap.mapping[head.name])
+            outer, inner, data = index >> 16, index & 0xFFFF, table.VarStore.VarData
+            if outer < len(data) and inner < len(data[outer].Item):
+                return self._regions_of(table.VarStore, outer), np.array(data[outer].Item[inner], dtype=np.float64)
+        return [], np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
