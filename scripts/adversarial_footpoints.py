@@ -32,6 +32,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from glyphspline.compiled import compiled
 from glyphspline.interpolation.kernels.blocks import (
+    BAD,
     BLOCK,
     HIGH,
     LANES,
@@ -46,7 +47,7 @@ from glyphspline.interpolation.kernels.blocks import (
 )  # fmt: skip
 from glyphspline.interpolation.kernels.certificate import GIVEN_UP, flagged
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
-from glyphspline.interpolation.kernels.newton_simd import BAD, seek
+from glyphspline.interpolation.kernels.newton_simd import seek
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
 from scripts.survey import parser, surveyed
@@ -151,7 +152,7 @@ def answer_lanes(
             block[X + lane] = reach[first + k, 2]
         _weights(block, steps, np.uint64(0), np.uint64(LANES))
         if seek(block, controls, vertices, following, S, LANES)[0] > 0:
-            flagged(block, controls, following, S, LANES)
+            flagged(block, controls, vertices, following, S, 2, LANES)
         for k in range(count):
             lane, j = np.uint64(SPACING * k + 4), first + k
             x = block[X + lane]

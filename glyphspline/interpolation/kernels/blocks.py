@@ -37,13 +37,20 @@ SECOND = np.uint64(STRIDE)
 PAIR = 2 * STRIDE
 """Lanes of two coordinates, the second ``SECOND`` after the first."""
 
-SCRATCH = 40
+# The first fields of the scratch block, of both passes: the interval on the main side and the footpoint there, the sign
+# of that side, whether Newton's method has converged, the length of the other side, and what has to be searched: 1 the
+# main side, 2 the other, 3 both.
+SLO, SHI, SY, SIDE, DONE, OTHER, BAD = (np.uint64(k * STRIDE) for k in range(7))
+OWN = 7
+"""Index of the first field that a pass uses in its own way."""
+
+SCRATCH = OWN + 27
 """Number of fields of the scratch block, determined by ``gram_simd``."""
 
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
 
-POLYGON, COUNT, LANE, INTERVALS, DONE, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
+POLYGON, COUNT, LANE, INTERVALS, FINISHED, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
 """Columns of ``Group.table``: index of the polygon, vertices, first lane, where in ``Group.h`` its intervals begin,
 whether it is done, passes, full searches, those not certified, fallbacks, its first row; and the passes in all of the
 polygon that had this row at first.
@@ -296,7 +303,7 @@ def close_ranks(group: Group, P: FloatArray, Q: FloatArray, slots: int) -> int:
     left, to = 0, 0
     end = table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO
     for q in range(slots):
-        if table[q, DONE]:
+        if table[q, FINISHED]:
             continue
         lane, size = table[q, LANE], table[q, COUNT] + 2 * HALO
         _move_lanes(group.blocks[:BLOCK], lane, to, size)

@@ -1,4 +1,4 @@
-"""Vertices that ``newton_simd`` flags: the certificate in parts, then a full search.
+"""Vertices that the SIMD passes flag: a second look by coordinates, then a full search, in the plane as in space.
 
 On the main side the certificate may hold in smaller parts. All of the other side may be farther away than y*, by the
 Bernstein coefficients of the squared distance. One vertex in a hundred is flagged, so this is done one by one.
@@ -8,57 +8,33 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, inlined
-from ...intrinsics import select
+from ...compiled import compiled
+from ...intrinsics import fma
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
-from .blocks import DD, SECOND, TWO, X
-from .footpoint import ROUNDING, WORK, search_piece
-from .newton_simd import (
-    BAD, DONE, OTHER, OZX, OZY, SEX, SEY, SHI, SIDE, SLO, SVX, SVY, SWX, SWY, SY, SZX, SZY, bernstein,
-    cubic, expanded, quartic, squares,
+from .blocks import (
+    BAD, DD, DONE, HALF, LAMBDA, MOVE_A, MOVE_B, ONE, OTHER, RATE, SHI, SIDE, SLO, STRIDE, SY, THIRD, TWO, X,
 )  # fmt: skip
+from .footpoint import WORK, lower_bound, reduce, search_piece
+from .newton_simd import GUARD, bernstein, expanded
 
-BEYOND = 1 + 1e-9
-CUT = 0.125
 SEARCHED = 9.0
 """Mark of a vertex that took a full search, in the field ``BAD``."""
 
 GIVEN_UP = 10.0
 """Mark of one whose search ended without a certificate."""
 
+BEYOND = 1 + 1e-9
+"""The other side is not searched if all of it is farther than the footpoint by this factor, in squared distances."""
 
-@inlined
-def _less_rounding(x: float, y: float) -> float:
-    """x + y less what it may be too large by."""
-    return x + y - ROUNDING * (abs(x) + abs(y))
+LOST = 5e-13
+"""Share of the size of a piece by which another point may be nearer, as inner products have rounding errors."""
 
-
-@compiled
-def _least_distance(
-    ex: float, ey: float, vx: float, vy: float, wx: float, wy: float, zx: float, zy: float, L: float
-) -> float:
-    """Smallest Bernstein coefficient of |q|², q = e + v x + w x² + z x³, between 0 and L, less its rounding error."""
-    ax, ay = ex + vx * L / 3.0, ey + vy * L / 3.0
-    bx, by = ex + (2.0 * vx + wx * L) * L / 3.0, ey + (2.0 * vy + wy * L) * L / 3.0
-    cx, cy = ex + ((zx * L + wx) * L + vx) * L, ey + ((zy * L + wy) * L + vy) * L
-    least = ex * ex + ey * ey
-    d = _less_rounding(ex * ax, ey * ay)
-    least = select(d < least, d, least)
-    d = (2.0 * _less_rounding(ex * bx, ey * by) + 3.0 * (ax * ax + ay * ay)) * 0.2
-    least = select(d < least, d, least)
-    d = (_less_rounding(ex * cx, ey * cy) + 9.0 * _less_rounding(ax * bx, ay * by)) * 0.1
-    least = select(d < least, d, least)
-    d = (2.0 * _less_rounding(ax * cx, ay * cy) + 3.0 * (bx * bx + by * by)) * 0.2
-    least = select(d < least, d, least)
-    d = _less_rounding(bx * cx, by * cy)
-    least = select(d < least, d, least)
-    d = cx * cx + cy * cy
-    return select(d < least, d, least)
+CUT = 0.125
 
 
 @compiled
-def proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
+def _proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
     """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
 
     Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
@@ -78,73 +54,92 @@ def proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: fl
 
 
 @compiled
-def _second_look(S: FloatArray, j: int) -> bool:
-    """Whether the certificate holds on the main side after all, in parts."""
-    y, zx, zy = S[SY + j], S[SZX + j], S[SZY + j]
-    qx, px, ax = expanded(S[SEX + j], S[SVX + j], S[SWX + j], zx, y)
-    qy, py, ay = expanded(S[SEY + j], S[SVY + j], S[SWY + j], zy, y)
-    c0, c1, c2, c3, c4, speed = quartic(qx, qy, px, py, ax, ay, zx, zy)
-    guard = squares(speed, ax, ay, c4, S[SHI + j] - S[SLO + j])
-    return proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard) and proven_in_parts(
-        c0, c1, c2, c3, c4, S[SLO + j] - y, guard
+def _second_look(b: FloatArray, y: float, low: float, high: float) -> bool:
+    """Whether the certificate holds between ``low`` and ``high`` after all, in parts, for rows E, V, W and Z (4, d).
+
+    The derivative of D at y may cost ``LOST`` of the size of the piece, as y may come from inner products.
+    """
+    qq, qp, qa, qz, pp, pa, pz, aa, az, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for axis in range(b.shape[1]):
+        z = b[3, axis]
+        q, p, a = expanded(b[0, axis], b[1, axis], b[2, axis], z, y)
+        qq, qp, qa, qz = qq + q * q, qp + q * p, qa + q * a, qz + q * z
+        pp, pa, pz, aa, az, zz = pp + p * p, pa + p * a, pz + p * z, aa + a * a, az + a * z, zz + z * z
+    c0, c1, c2, c3, L = 2.0 * qa + pp, 2.0 * (qz + pa), 2.0 * pz + aa, 2.0 * az, high - low
+    share = LOST * (np.sqrt(qq) + L * (np.sqrt(pp) + L * (np.sqrt(aa) + L * np.sqrt(zz))))
+    guard = max(GUARD * (pp + L * L * (aa + L * L * zz)), qp * qp / (share * (share + 2.0 * np.sqrt(qq))))
+    return _proven_in_parts(c0, c1, c2, c3, zz, high - y, guard) and _proven_in_parts(
+        c0, c1, c2, c3, zz, low - y, guard
     )
 
 
 @compiled
-def _search(
-    B: FloatArray, P: FloatArray, N: FloatArray, S: FloatArray, j: int, main_side: bool, other_side: bool, D: float,
-    c: FloatArray, work: FloatArray,
-) -> bool:  # fmt: skip
-    """Search the main side, the other one, or both in full; whether the answer is certified there.
-
-    D: the best so far, inf if that does not count. c, work: scratch arrays.
-    """
-    side, x, certified = S[SIDE + j], S[SIDE + j] * S[SY + j], True
-    ex = -cubic(S[SEX + j], S[SVX + j], S[SWX + j], S[SZX + j], S[SY + j])
-    ey = -cubic(S[SEY + j], S[SVY + j], S[SWY + j], S[SZY + j], S[SY + j])
-    for turn in range(2):
-        main = turn == 0
-        if not (main_side if main else other_side):
-            continue
-        sign = side if main else -side
-        low = S[SLO + j] if main else 0.0
-        high = S[SHI + j] if main else S[OTHER + j]
-        c[0, 0], c[1, 0] = S[SEX + j], S[SEY + j]
-        c[0, 1], c[1, 1] = side * sign * S[SVX + j], side * sign * S[SVY + j]
-        c[0, 2], c[1, 2] = S[SWX + j], S[SWY + j]
-        c[0, 3], c[1, 3] = (S[SZX + j], S[SZY + j]) if main else (S[OZX + j], S[OZY + j])
-        y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
-        certified &= whole
-        if D_new < D or y != sign * x:
-            x, D = sign * y, D_new
-            ex = -(((c[0, 3] * y + c[0, 2]) * y + c[0, 1]) * y + c[0, 0])
-            ey = -(((c[1, 3] * y + c[1, 2]) * y + c[1, 1]) * y + c[1, 0])
-    B[X + j], B[DD + j] = x, ex * ex + ey * ey
-    N[j], N[SECOND + j] = P[j] + ex, P[SECOND + j] + ey
-    return certified
+def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, j: int, right: bool, b: FloatArray) -> None:
+    """Rows E, V outwards, W and Z (4, d) of the curve to the right or to the left of the knot of a lane."""
+    r0, r1, lam, s0 = B[RATE + j], B[RATE + j + ONE], B[LAMBDA + j], B[HALF + j]
+    for axis in range(b.shape[1]):
+        c = P[axis * STRIDE : (axis + 1) * STRIDE]
+        d0, d1 = r0 * (c[j] - c[j - ONE]), r1 * (c[j + ONE] - c[j])
+        w = s0 * (d1 - d0)
+        if right:
+            beyond = B[HALF + j + ONE] * (B[RATE + j + TWO] * (c[j + TWO] - c[j + ONE]) - d1)
+            b[3, axis] = (beyond - w) * B[THIRD + j]
+        else:
+            beyond = B[HALF + j - ONE] * (d0 - B[RATE + j - ONE] * (c[j - ONE] - c[j - TWO]))
+            b[3, axis] = (beyond - w) * B[THIRD + j - ONE]
+        v = fma(lam, d1 - d0, d0)
+        b[0, axis] = fma(B[MOVE_A + j], d1, fma(-B[MOVE_B + j], d0, c[j] - Q[np.uint64(axis * STRIDE) + j]))
+        b[1, axis], b[2, axis] = (v if right else -v), w
 
 
 @compiled
-def flagged(B: FloatArray, P: FloatArray, N: FloatArray, S: FloatArray, m: int) -> int:
-    """A second look at the vertices that were flagged, then a search in full; the number of those searched.
+def flagged(B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int) -> int:
+    """A second look at the flagged vertices of m lanes, then a search in full; the number of those searched.
 
     These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
     """
-    searched, c, work = 0, np.empty((2, 4)), np.empty(WORK)
+    searched, b, c, work = 0, np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(WORK)
     for j in range(TWO, np.uint64(m) + TWO):
         flag = S[BAD + j]
         if flag == 0.0:
             continue
-        D = B[DD + j]
-        main_side = flag != 2.0 and (S[DONE + j] == 0.0 or not _second_look(S, j))
-        other_side = flag >= 2.0 and _least_distance(
-            S[SEX + j], S[SEY + j], -S[SVX + j], -S[SVY + j], S[SWX + j], S[SWY + j], S[OZX + j], S[OZY + j],
-            S[OTHER + j],
-        ) <= BEYOND * D  # fmt: skip
+        main_side, other_side = flag != 2.0, flag >= 2.0
+        if main_side and S[DONE + j] > 0.0:
+            _vectors(B, P, Q, j, S[SIDE + j] > 0.0, b)
+            main_side = not _second_look(b, S[SY + j], S[SLO + j], S[SHI + j])
         other_side = other_side or (main_side and S[OTHER + j] > 0.0)
-        if not (main_side or other_side):
-            continue
-        searched += 1
-        certified = _search(B, P, N, S, j, main_side, other_side, np.inf if main_side else D, c, work)
-        S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
+        x, D, certified, anything = S[SIDE + j] * S[SY + j], (np.inf if main_side else B[DD + j]), True, main_side
+        for turn in range(2):
+            main = turn == 0
+            if not (main_side if main else other_side):
+                continue
+            right = (S[SIDE + j] > 0.0) == main
+            sign = 1.0 if right else -1.0
+            low, high = (S[SLO + j], S[SHI + j]) if main else (0.0, S[OTHER + j])
+            _vectors(B, P, Q, j, right, b)
+            if d > 4:
+                reduce(b, c)
+                _vectors(B, P, Q, j, right, b)
+            else:
+                for k in range(4):
+                    for axis in range(d):
+                        c[axis, k] = b[k, axis]
+            if not main_side and lower_bound(c, 3, low, high, work)[0] > BEYOND * D:
+                continue
+            anything = True
+            y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
+            certified &= whole
+            if D_new < D or y != sign * x:
+                x, D = sign * y, D_new
+                squared = 0.0
+                for axis in range(d):
+                    error = -(((b[3, axis] * y + b[2, axis]) * y + b[1, axis]) * y + b[0, axis])
+                    lane = np.uint64(axis * STRIDE) + j
+                    N[lane] = P[lane] + error
+                    squared += error * error
+                B[DD + j] = squared
+        if anything:
+            searched += 1
+            B[X + j] = x
+            S[BAD + j] = SEARCHED if certified else GIVEN_UP
     return searched

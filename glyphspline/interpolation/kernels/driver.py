@@ -14,17 +14,16 @@ from ...compiled import compiled
 from ...intrinsics import select
 from ...types import FloatArray, IntArray
 from .blocks import (
-    BLOCK, COUNT, DD, DONE, FALLBACKS, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT, LOW,
-    NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO, UNCERTIFIED, UNIT,
-    WIDTH, Coordinates, Found, Given, Group, X, close_ranks, count_of_blocks, fill_halos, follow_ends, lanes_used,
-    pairs_size, place, whole_vectors,
+    BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST,
+    LIMIT, LOW, NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO,
+    UNCERTIFIED, UNIT, WIDTH, Coordinates, Found, Given, Group, X, close_ranks, count_of_blocks, fill_halos,
+    follow_ends, lanes_used, pairs_size, place, whole_vectors,
 )  # fmt: skip
 from .certificate import GIVEN_UP, flagged
 from .certificate import SEARCHED as MARK
-from .gram_simd import BAD as SPACE_BAD
-from .gram_simd import flagged_space, seek_space
+from .gram_simd import seek_space
 from .lemma2 import fill_intervals
-from .newton_simd import BAD, seek
+from .newton_simd import seek
 from .vertices import FALLEN_BACK, ITERATIONS, OK, STATUS, knots_of, pad_intervals, prepare
 from .vertices import SEARCHED as SEARCHES
 from .vertices import UNCERTIFIED as GIVEN_UP_ON
@@ -90,7 +89,7 @@ def _enter(
     """Make polygon k, with n vertices, number q of a group, at ``lane`` of the blocks and ``interval`` of h."""
     row, u = group.table[q], knots_of(given, found, k, n)
     pad_intervals(u, given.closed, knot_unit, group.h[interval:])
-    row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[DONE] = k, n, lane, interval, q, 0
+    row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, q, 0
     row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
     settled = given.settled * u[n - 1] / (n - 1) if given.settled > 0.0 else 0.0
     numbers = group.numbers[q]
@@ -119,7 +118,7 @@ def _iterate(
         _one_pass(given, group, at, slots)
         lanes = 0
         for q in range(slots):
-            if table[q, DONE]:
+            if table[q, FINISHED]:
                 continue
             history = _grown(history, (table[q, PASSES] + 1) * every)
             if _arrived(given, group, q, history, every):
@@ -142,7 +141,7 @@ def _iterate(
 def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
     """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
     S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
-    count, size, marks = count_of_blocks(group), pairs_size(d), BAD if d == 2 else SPACE_BAD
+    count, size = count_of_blocks(group), pairs_size(d)
     for q in range(slots):
         numbers[q, LARGEST] = 0.0
     if not given.closed:
@@ -154,22 +153,16 @@ def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
         m = whole_vectors(lanes_used(group, slots, b))
         bad, wild = seek(block, P, Q, N, S, m) if d == 2 else seek_space(block, P, Q, N, S, d, m)
         if wild > 0:
-            _pass_over(group, block, S, marks, slots, b)
-        searched = 0
-        if bad > 0:
-            searched = flagged(block, P, N, S, m) if d == 2 else flagged_space(block, P, Q, N, S, d, m)
-        _take_in(given, group, block, S, marks, slots, b, searched)
+            _pass_over(group, block, S, slots, b)
+        searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
+        _take_in(given, group, block, S, slots, b, searched)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
 
 
 @compiled
-def _pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int) -> None:
-    """Note which polygons have an error in block b that is not finite: they are not searched.
-
-    Args:
-        marks: where in S the flags of the vertices begin.
-    """
+def _pass_over(group: Group, block: FloatArray, S: FloatArray, slots: int, b: int) -> None:
+    """Note which polygons have an error in block b that is not finite: they are not searched."""
     table, numbers = group.table, group.numbers
     for q in range(slots):
         first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
@@ -178,20 +171,18 @@ def _pass_over(group: Group, block: FloatArray, S: FloatArray, marks: np.uint64,
                 numbers[q, LARGEST] = np.inf
         if numbers[q, LARGEST] == np.inf:
             for i in range(n):
-                S[marks + np.uint64(first + i)] = 0.0
+                S[BAD + np.uint64(first + i)] = 0.0
             table[q, UNCERTIFIED] += n
 
 
 @compiled
-def _take_in(
-    given: Given, group: Group, block: FloatArray, S: FloatArray, marks: np.uint64, slots: int, b: int, searched: int
-) -> None:
+def _take_in(given: Given, group: Group, block: FloatArray, S: FloatArray, slots: int, b: int, searched: int) -> None:
     """Each polygon's largest squared error so far, with those of block b, and its searches if any were ``searched``."""
     table, numbers, count = group.table, group.numbers, count_of_blocks(group)
     for q in range(slots):
         first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
         for i in range(n if searched > 0 else 0):
-            mark = S[marks + np.uint64(first + i)]
+            mark = S[BAD + np.uint64(first + i)]
             table[q, SEARCHED] += mark >= MARK
             table[q, UNCERTIFIED] += mark == GIVEN_UP
         open_end = 0 if given.closed else 1
@@ -224,7 +215,7 @@ def _arrived(given: Given, group: Group, q: int, history: FloatArray, every: int
     row[PASSES] += 1
     if np.inf > error and not error < group.numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
         return False
-    row[DONE], group.table[row[ORDER], TOTAL] = 1, row[PASSES]
+    row[FINISHED], group.table[row[ORDER], TOTAL] = 1, row[PASSES]
     return True
 
 

@@ -15,7 +15,7 @@ taken as positive, and M(x) = e + v x + w x² + z x³, M² = Σ m_k x^k.
 - D' is off by at most s = 2 ρ M M' at L, so that D may be too large by s²/4Q. Of the distance that is less than
   ``LOST`` M if s²/4Q ≤ a (a + 2 √D), a = ``LOST`` M.
 
-A vertex where one of these fails is flagged, and searched by coordinates if a second look does not help.
+A vertex where one of these fails is flagged, and looked at by coordinates.
 """
 
 from __future__ import annotations
@@ -25,28 +25,23 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
-from ..method import TIE_DISTANCE
 from .blocks import (
-    DD, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, PAIR, RATE, SECOND, STRIDE, THIRD, THREE, TWO, X,
+    BAD, DD, DONE, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, OTHER, OWN, PAIR, RATE, SECOND, SHI, SIDE, SLO,
+    STRIDE, SY, THIRD, THREE, TWO, X,
 )  # fmt: skip
-from .certificate import BEYOND, GIVEN_UP, SEARCHED, proven_in_parts
-from .footpoint import BERNSTEIN, WORK, reduce, search_piece
+from .certificate import LOST
 from .newton_simd import GUARD, NEWTON_PASSES, least_quartic, least_rise, stepped
 
-# Fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and with D_{i-1} to
-# D_{i+2}; coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; the side as in
-# newton_simd; what D_{i-1} to D_{i+2} have to be multiplied by for C(t) - P_i; the last coefficients of D on the other
-# side, |E|², and the rounding error of Bernstein coefficients there; M; the least Bernstein coefficient of Q.
+# Own fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and with D_{i-1}
+# to D_{i+2}; coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; what D_{i-1} to
+# D_{i+2} have to be multiplied by for C(t) - P_i; M; the least Bernstein coefficient of Q.
 (
-    G0, G1, G2, FF, FM, F0, F1, F2, H0, H1, H2, H3, H4, H5, VV, VW, WW, VZ, WZ, ROUGH, LOSS, SLO, SHI, SY, SIDE, DONE,
-    OTHER, BAD, KM, K0, K1, K2, O1, O2, O3, O4, EE, ODOUBT, REACH, LEAST,
-) = (np.uint64(k * STRIDE) for k in range(40))  # fmt: skip
+    G0, G1, G2, FF, FM, F0, F1, F2, H0, H1, H2, H3, H4, H5, VV, VW, WW, VZ, WZ, ROUGH, LOSS, KM, K0, K1, K2, REACH,
+    LEAST,
+) = (np.uint64((OWN + k) * STRIDE) for k in range(27))  # fmt: skip
 
 ROUNDINGS = 40
 """More than the number of roundings in a coefficient beside those of the sums over coordinates."""
-
-LOST = 5e-13
-"""Share of M by which another point may be nearer for rounding errors of D'."""
 
 
 @inlined
@@ -62,7 +57,7 @@ def _products(P: FloatArray, Q: FloatArray, S: FloatArray, pairs: int, m: int) -
     """The sums over the coordinates."""
     wide_vectors()
     for field in range(8):
-        for j in range(np.uint64(field * STRIDE), np.uint64(field * STRIDE + m + 6)):
+        for j in range(np.uint64((OWN + field) * STRIDE), np.uint64((OWN + field) * STRIDE + m + 6)):
             S[j] = 0.0
     for pair in range(pairs):
         p, q = P[pair * PAIR : (pair + 1) * PAIR], Q[pair * PAIR : (pair + 1) * PAIR]
@@ -146,11 +141,6 @@ def _expand(B: FloatArray, S: FloatArray, m: int, rho: float) -> None:
         error = 2.0 * rho * reach * fma(fma(3.0 * lz, far, 2.0 * lw), far, lv)
         S[LOSS + j], S[REACH + j] = error * error, reach
         o1, o2, o3 = 2.0 * (oez - vw), ww - 2.0 * ovz, 2.0 * owz
-        S[O1 + j], S[O2 + j], S[O3 + j], S[O4 + j] = o1, o2, o3, ozz
-        # |E|² = |F + (a - b) d_0 + a k|²
-        S[EE + j] = S[FF + j] + shift * (2.0 * (f0 + a * dk) + shift * g00) + a * (2.0 * (f1 - f0) + a * kk)
-        span = fma(fma(fma(oz, L, lw), L, lv), L, le)
-        S[ODOUBT + j] = rho * (span * span)
         rise = least_rise(-2.0 * ev, fma(2.0, ew, vv), o1, o2, o3, ozz, L)
         squared = L * L
         guard = GUARD * fma(squared, fma(squared, ozz, ww), vv) + rho * _rough(le, lv, lw, oz, L)
@@ -279,92 +269,3 @@ def seek_space(
             break
     _certify(B, S, m)
     return _errors(B, P, Q, N, S, pairs, m)
-
-
-@compiled
-def _vectors(B: FloatArray, P: FloatArray, Q: FloatArray, d: int, j: int, right: bool, b: FloatArray) -> None:
-    """Rows E, V outwards, W and Z (4, d) of the curve to the right or to the left of the knot of a lane."""
-    r0, r1, lam, s0 = B[RATE + j], B[RATE + j + ONE], B[LAMBDA + j], B[HALF + j]
-    for axis in range(d):
-        c = P[axis * STRIDE : (axis + 1) * STRIDE]
-        d0, d1 = r0 * (c[j] - c[j - ONE]), r1 * (c[j + ONE] - c[j])
-        w = s0 * (d1 - d0)
-        if right:
-            beyond = B[HALF + j + ONE] * (B[RATE + j + TWO] * (c[j + TWO] - c[j + ONE]) - d1)
-            b[3, axis] = (beyond - w) * B[THIRD + j]
-        else:
-            beyond = B[HALF + j - ONE] * (d0 - B[RATE + j - ONE] * (c[j - ONE] - c[j - TWO]))
-            b[3, axis] = (beyond - w) * B[THIRD + j - ONE]
-        v = fma(lam, d1 - d0, d0)
-        b[0, axis] = fma(B[MOVE_A + j], d1, fma(-B[MOVE_B + j], d0, c[j] - Q[np.uint64(axis * STRIDE) + j]))
-        b[1, axis], b[2, axis] = (v if right else -v), w
-
-
-@compiled
-def _proven_farther(S: FloatArray, j: int, D: float) -> bool:
-    """Whether all of the other side is farther than √D, by the Bernstein coefficients of the squared distance."""
-    L, least = S[OTHER + j], np.inf
-    for k in range(7):
-        power, value = 1.0, 0.0
-        for i in range(k + 1):
-            field = (EE, H0, H1, O1, O2, O3, O4)[i]
-            value += BERNSTEIN[6, k, i] * power * ((-2.0 if i == 1 else 1.0) * S[field + j])
-            power *= L
-        least = min(least, value)
-    return least - S[ODOUBT + j] > BEYOND * D
-
-
-@compiled
-def flagged_space(B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: FloatArray, d: int, m: int) -> int:
-    """A second look at the vertices that were flagged, then a search in full; the number of those searched.
-
-    These are marked ``SEARCHED`` in the field BAD, or ``GIVEN_UP``.
-    """
-    searched, b, c, work = 0, np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(WORK)
-    for j in range(TWO, np.uint64(m) + TWO):
-        flag, y = S[BAD + j], S[SY + j]
-        if flag == 0.0:
-            continue
-        main_side, other_side = flag != 2.0, flag >= 2.0 and not _proven_farther(S, j, B[DD + j])
-        if main_side and S[DONE + j] > 0.0:
-            c0, c1, c2, c3, c4 = _quartic(S, j, y)
-            share = LOST * S[REACH + j]
-            guard = max(_guard(S, j, y), S[LOSS + j] / (4.0 * share * (share + 2.0 * np.sqrt(B[DD + j]))))
-            main_side = not (
-                proven_in_parts(c0, c1, c2, c3, c4, S[SHI + j] - y, guard)
-                and proven_in_parts(c0, c1, c2, c3, c4, S[SLO + j] - y, guard)
-            )
-        other_side = other_side or (main_side and S[OTHER + j] > 0.0)
-        if not (main_side or other_side):
-            continue
-        searched += 1
-        x, D, certified = S[SIDE + j] * y, (np.inf if main_side else B[DD + j]), True
-        for turn in range(2):
-            main = turn == 0
-            if not (main_side if main else other_side):
-                continue
-            right = (S[SIDE + j] > 0.0) == main
-            sign = 1.0 if right else -1.0
-            low, high = (S[SLO + j], S[SHI + j]) if main else (0.0, S[OTHER + j])
-            _vectors(B, P, Q, d, j, right, b)
-            if d > 4:
-                reduce(b, c)
-                _vectors(B, P, Q, d, j, right, b)
-            else:
-                for k in range(4):
-                    for axis in range(d):
-                        c[axis, k] = b[k, axis]
-            y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)
-            certified &= whole
-            if D_new < D or y != sign * x:
-                x, D = sign * y, D_new
-                squared = 0.0
-                for axis in range(d):
-                    error = -(((b[3, axis] * y + b[2, axis]) * y + b[1, axis]) * y + b[0, axis])
-                    lane = np.uint64(axis * STRIDE) + j
-                    N[lane] = P[lane] + error
-                    squared += error * error
-                B[DD + j] = squared
-        B[X + j] = x
-        S[BAD + j] = select(certified, SEARCHED, GIVEN_UP)
-    return searched

@@ -32,14 +32,13 @@ from ...compiled import compiled, inlined
 from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from .blocks import (
-    DD, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, RATE, SECOND, STRIDE, THIRD, THREE, TWO, X,
+    BAD, DD, DONE, FOUR, HALF, HIGH, LAMBDA, LOW, MOVE_A, MOVE_B, ONE, OTHER, OWN, RATE, SECOND, SHI, SIDE, SLO, STRIDE,
+    SY, THIRD, THREE, TWO, X,
 )  # fmt: skip
 
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
-# Fields of the scratch block: d and W, which is the same on both sides; E, V, Z and y on the main side; the other side.
-DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, SLO, SHI, SY, SIDE, DONE, OTHER, OZX, OZY, BAD = (
-    np.uint64(k * STRIDE) for k in range(19)
-)
+# Own fields of the scratch block: d and W, the same on both sides; E, V and Z on the main side; Z on the other.
+DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, OZX, OZY = (np.uint64((OWN + k) * STRIDE) for k in range(12))
 SIXTH = 1 / 6
 
 GUARD = 1e-13
