@@ -64,47 +64,10 @@ def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatAr
     """Coefficients of the piece about p: b[k] of (t - start)^k."""
     order, size = b.shape
     for k in range(order):
-        x, y = 0.0, 0.0
-        for axis in range(2, size):
-            b[k, axis] = 0.0
-        for j in range(order):
-            weight, i = v.matrices[span, k, j], v.indices[span, j]
-            x += weight * (P[i, 0] - p[0])
-            y += weight * (P[i, 1] - p[1])
-            for axis in range(2, size):
-                b[k, axis] += weight * (P[i, axis] - p[axis])
-        b[k, 0], b[k, 1] = x, y
-
-
-@compiled
-def _for_search(b: FloatArray, c: FloatArray) -> None:
-    """The coefficients as :func:`search_piece` takes them, c[axis, k]; of many coordinates as few as have to be.
-
-    Overwrites b.
-    """
-    order, size = b.shape
-    if size > order:
-        reduce(b, c)
-        return
-    for k in range(order):
         for axis in range(size):
-            c[axis, k] = b[k, axis]
-
-
-@compiled
-def _error(b: FloatArray, y: float, e: FloatArray) -> float:
-    """Write minus the piece's value at y to e; returns its length."""
-    d, size = b.shape[0] - 1, b.shape[1]
-    squares = 0.0
-    for axis in range(size):
-        q = b[d, axis]
-        for k in range(d - 1, -1, -1):
-            q = q * y + b[k, axis]
-        e[axis] = -q
-        if axis > 1:
-            squares += q * q
-    distance = np.hypot(e[0], e[1])
-    return np.hypot(distance, np.sqrt(squares)) if size > 2 else distance
+            b[k, axis] = 0.0
+            for j in range(order):
+                b[k, axis] += v.matrices[span, k, j] * (P[v.indices[span, j], axis] - p[axis])
 
 
 @compiled
@@ -148,7 +111,12 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
             if right < left:
                 continue
             _coefficients(span, P, p, v, b)
-            _for_search(b, c)
+            if size > d + 1:
+                reduce(b, c)
+            else:
+                for axis in range(size):
+                    for power in range(d + 1):
+                        c[axis, power] = b[power, axis]
             x, D, whole = search_piece(c, d, origin, left, right, v.centres[i], x, D, TIED, work)
             certified &= whole
         uncertified += not certified
@@ -156,7 +124,12 @@ def one_pass(P: FloatArray, t: FloatArray, v: Layout, at_once: bool) -> tuple[fl
             if v.starts[k % n] + (k // n) * v.period <= x or k == first:
                 here = k
         _coefficients(here % n, P, p, v, b)
-        t[i], distance = x, _error(b, x - (v.starts[here % n] + (here // n) * v.period), e[i])
+        t[i], y, distance = x, x - (v.starts[here % n] + (here // n) * v.period), 0.0
+        for axis in range(size):
+            q = b[d, axis]
+            for power in range(d - 1, -1, -1):
+                q = q * y + b[power, axis]
+            e[i, axis], distance = -q, np.hypot(distance, q)
         if not np.isfinite(distance):
             return np.inf, count
         largest = max(largest, distance)

@@ -171,41 +171,26 @@ def count_of_blocks(group: Group) -> int:
 @compiled
 def place(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
     """Vertices, first control points, rates and weights of a group's polygons into their blocks; controls into N."""
-    d, size = given.points.shape[1], pairs_size(given.points.shape[1])
-    clear(group)
-    for j in range(count_of_blocks(group) * size):
+    d, size, count = given.points.shape[1], pairs_size(given.points.shape[1]), count_of_blocks(group)
+    for b in range(0, count, max(count - 1, 1)):  # the first and the last have lanes that no vertex uses
+        for j in range(b * BLOCK, (b + 1) * BLOCK):
+            group.blocks[j] = 0.0
+    for j in range(count * size):
         at.P[j] = at.Q[j] = at.N[j] = 0.0
     for q in range(slots):
         k, n, unit = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q, UNIT]
-        kept, first = found.kept[given.offsets[k] :], group.table[q, LANE] + HALO
+        kept, first = found.kept[given.offsets[k] :], group.table[q, LANE]
         points = given.points[given.offsets[k] :]
         for i in range(n):
-            lane, p = np.uint64(i // LANES * size + first + i % LANES), points[kept[i]]
+            lane, p = np.uint64(i // LANES * size + first + HALO + i % LANES), points[kept[i]]
             for axis in range(d):
                 at.N[lane] = at.Q[lane] = (p[axis] - points[kept[0], axis]) * unit
                 lane += SECOND
-        place_weights(group, q)
+        for b in range((n + LANES - 1) // LANES):
+            block, h = group.blocks[b * BLOCK : (b + 1) * BLOCK], group.h[group.table[q, INTERVALS] + b * LANES :]
+            _weights(block, h, np.uint64(first), np.uint64(min(LANES, n - b * LANES)))
         if not given.closed:
             _place_ends(given, found, group, q)
-
-
-@compiled
-def clear(group: Group) -> None:
-    """Zeros in the first and the last block, which have lanes that no vertex uses."""
-    count = count_of_blocks(group)
-    for b in range(0, count, max(count - 1, 1)):
-        for j in range(b * BLOCK, (b + 1) * BLOCK):
-            group.blocks[j] = 0.0
-
-
-@compiled
-def place_weights(group: Group, q: int) -> None:
-    """Rates and weights of polygon q."""
-    n, first = group.table[q, COUNT], group.table[q, LANE]
-    for b in range((n + LANES - 1) // LANES):
-        block, inside = group.blocks[b * BLOCK : (b + 1) * BLOCK], min(LANES, n - b * LANES)
-        h = group.h[group.table[q, INTERVALS] + b * LANES :]
-        _weights(block, h, np.uint64(first), np.uint64(inside))
 
 
 @compiled
@@ -268,27 +253,21 @@ def follow_ends(given: Given, group: Group, P: FloatArray, slots: int) -> None:
 
 
 @compiled
-def repeated(i: int, n: int, closed: bool) -> int:
-    """The vertex that a halo repeats in the place of vertex i; negative if there is none.
+def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) -> None:
+    """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed.
 
     An open arc has one control point more, n, kept beyond the last vertex in its block.
     """
-    if closed:
-        return i + n if i < 0 else (i - n if i >= n else i)
-    return i if i <= n else -1
-
-
-@compiled
-def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) -> None:
-    """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed."""
     d, size = given.points.shape[1], pairs_size(given.points.shape[1])
     for q in range(slots):
         n, first = group.table[q, COUNT], group.table[q, LANE]
         inside = min(LANES, n - b * LANES)
         for k in range(4):
             to = first + (k if k < 2 else inside + k)
-            i = repeated(b * LANES + to - first - HALO, n, given.closed)
-            if i < 0:
+            i = b * LANES + to - first - HALO
+            if given.closed:
+                i += n * ((i < 0) - (i >= n))
+            elif not 0 <= i <= n:
                 continue
             owner = min(i, n - 1)
             at = owner // LANES * size + first + owner % LANES + HALO + i - owner

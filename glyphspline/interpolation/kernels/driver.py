@@ -50,7 +50,15 @@ def run(
         max_iterations, settled,
     )  # fmt: skip
     found = Found(knots, controls, parameters, bounds, kept, whole, rates)
-    group, at = _allocated(memory, given.points.shape[1])
+    d = points.shape[1]
+    size = pairs_size(d)
+    count = memory.shape[0] // (BLOCK + 3 * size)
+    group = Group(
+        memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
+        np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
+    )  # fmt: skip
+    first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
+    at = Coordinates(memory[first:second], memory[second:third], memory[third : third + count * size])
     history, residuals, used = np.empty(64), np.empty(64), 0
     slots, lane, interval = 0, 0, 0
     for k in range(k0, k1):
@@ -60,40 +68,16 @@ def run(
         if slots > 0 and lane + n > LANES:
             history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
             slots, lane, interval = 0, 0, 0
-        _enter(given, found, group, slots, k, n, lane, interval, unit, knot_unit)
+        row, own, u = group.table[slots], group.numbers[slots], knots_of(given, found, k, n)
+        pad_intervals(u, closed, knot_unit, group.h[interval:])
+        row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, slots, 0
+        row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
+        limit = max(tolerances[k], settled * u[n - 1] / (n - 1))
+        own[UNIT], own[KNOT_UNIT], own[LIMIT] = unit, knot_unit, limit * unit
         slots, lane, interval = slots + 1, lane + n + 2 * HALO, interval + n + 2 * PAD
     if slots > 0:
         history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
     return residuals[:used]
-
-
-@compiled
-def _allocated(memory: FloatArray, d: int) -> tuple[Group, Coordinates]:
-    """Arrays for groups with up to as many vertices in R^d as the blocks in ``memory`` have lanes."""
-    size = pairs_size(d)
-    count = memory.shape[0] // (BLOCK + 3 * size)
-    group = Group(
-        memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
-        np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
-    )  # fmt: skip
-    first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
-    stop = third + count * size
-    return group, Coordinates(memory[first:second], memory[second:third], memory[third:stop])
-
-
-@compiled
-def _enter(
-    given: Given, found: Found, group: Group, q: int, k: int, n: int, lane: int, interval: int, unit: float,
-    knot_unit: float,
-) -> None:  # fmt: skip
-    """Make polygon k, with n vertices, number q of a group, at ``lane`` of the blocks and ``interval`` of h."""
-    row, u = group.table[q], knots_of(given, found, k, n)
-    pad_intervals(u, given.closed, knot_unit, group.h[interval:])
-    row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, q, 0
-    row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
-    settled = given.settled * u[n - 1] / (n - 1) if given.settled > 0.0 else 0.0
-    numbers = group.numbers[q]
-    numbers[UNIT], numbers[KNOT_UNIT], numbers[LIMIT] = unit, knot_unit, max(given.tolerances[k], settled) * unit
 
 
 @compiled
@@ -112,7 +96,7 @@ def _iterate(
     """
     place(given, found, group, at, slots)
     fill_intervals(given, group, slots)
-    table, every, left = group.table, slots, slots
+    table, numbers, every, left = group.table, group.numbers, slots, slots
     while left > 0:
         at = Coordinates(at.N, at.Q, at.P)
         _one_pass(given, group, at, slots)
@@ -120,12 +104,16 @@ def _iterate(
         for q in range(slots):
             if table[q, FINISHED]:
                 continue
-            history = _grown(history, (table[q, PASSES] + 1) * every)
-            if _arrived(given, group, q, history, every):
-                _store(given, found, group, at.P, q)
-                left -= 1
-            else:
-                lanes += table[q, COUNT] + 2 * HALO
+            row, error = table[q], np.sqrt(numbers[q, LARGEST])
+            history = _grown(history, (row[PASSES] + 1) * every)
+            history[row[PASSES] * every + row[ORDER]] = error / numbers[q, UNIT]
+            row[PASSES] += 1
+            if np.inf > error and not error < numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
+                lanes += row[COUNT] + 2 * HALO
+                continue
+            row[FINISHED], table[row[ORDER], TOTAL] = 1, row[PASSES]
+            _store(given, found, group, at.P, q)
+            left -= 1
         if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
             slots = close_ranks(group, at.N, at.Q, slots)
     for q in range(every):
@@ -208,32 +196,16 @@ def _largest(block: FloatArray, low: int, high: int) -> float:
 
 
 @compiled
-def _arrived(given: Given, group: Group, q: int, history: FloatArray, every: int) -> bool:
-    """Record the error of polygon q; whether it is done."""
-    row, error = group.table[q], np.sqrt(group.numbers[q, LARGEST])
-    history[row[PASSES] * every + row[ORDER]] = error / group.numbers[q, UNIT]
-    row[PASSES] += 1
-    if np.inf > error and not error < group.numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
-        return False
-    row[FINISHED], group.table[row[ORDER], TOTAL] = 1, row[PASSES]
-    return True
-
-
-@compiled
 def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> None:
     """Results of polygon q in the caller's units; its parameters are held from here on.
 
     Units are powers of two: multiplying rounds no more than dividing.
     """
-    k, n, numbers, d = group.table[q, POLYGON], group.table[q, COUNT], group.numbers[q], given.points.shape[1]
+    row, numbers, d = group.table[q], group.numbers[q], given.points.shape[1]
+    k, n = row[POLYGON], row[COUNT]
     start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
     kept, points, u = found.kept[start:], given.points[start:], knots_of(given, found, k, n)
-    size, lane0, unit, length = (
-        pairs_size(d),
-        group.table[q, LANE] + HALO,
-        1.0 / numbers[UNIT],
-        1.0 / numbers[KNOT_UNIT],
-    )
+    size, lane0, unit, length = pairs_size(d), row[LANE] + HALO, 1.0 / numbers[UNIT], 1.0 / numbers[KNOT_UNIT]
     for i in range(n):
         block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(lane0 + i % LANES)
         for axis in range(d):
@@ -247,7 +219,7 @@ def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> N
         for axis in range(d):
             found.controls[first - 1, axis] = points[kept[0], axis]
             found.controls[first + n, axis] = points[kept[n - 1], axis]
-    row, out = group.table[q], found.whole[k]
+    out = found.whole[k]
     out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, row[PASSES] - 1, row[FALLBACKS]
     out[SEARCHES], out[GIVEN_UP_ON] = row[SEARCHED], row[UNCERTIFIED]
     found.rates[k] = 2.0 * (1.0 - numbers[LEAST])

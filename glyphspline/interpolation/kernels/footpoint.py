@@ -86,24 +86,12 @@ of parts; the shifted coordinates of q, from ``SHIFTED`` on; those of its Bézie
 
 
 @inlined
-def _square(rows: FloatArray, j: int, m: int) -> float:
-    """The squared length of column j of m ≥ 2 rows."""
-    total = rows[0, j] * rows[0, j] + rows[1, j] * rows[1, j]
+def _product(rows: FloatArray, i: int, j: int, m: int) -> float:
+    """The inner product of columns i and j of m ≥ 2 rows."""
+    total = rows[0, i] * rows[0, j] + rows[1, i] * rows[1, j]
     for axis in range(2, m):
-        total += rows[axis, j] * rows[axis, j]
+        total += rows[axis, i] * rows[axis, j]
     return total
-
-
-@compiled
-def _other_products(points: FloatArray, d: int, m: int, out: FloatArray) -> None:
-    """What coordinates beyond the first two, of Bézier points (m, d + 1), add to the Bernstein coefficients of D."""
-    for k in range(2 * d + 1):
-        out[k] = 0.0
-        for i in range(max(0, k - d), k // 2 + 1):
-            total = 0.0
-            for axis in range(2, m):
-                total += points[axis, i] * points[axis, k - i]
-            out[k] += PRODUCTS[d, i, k - i] * total
 
 
 @compiled
@@ -139,14 +127,7 @@ def reduce(b: FloatArray, c: FloatArray) -> None:
 @compiled
 def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y into the rows of ``work`` from ``SHIFTED`` on."""
-    u, v = work[SHIFTED], work[SHIFTED + 1]
-    for k in range(d + 1):
-        u[k], v[k] = c[0, k], c[1, k]
-    for k in range(d):
-        for i in range(d - 1, k - 1, -1):
-            u[i] += y * u[i + 1]
-            v[i] += y * v[i + 1]
-    for axis in range(2, c.shape[0]):
+    for axis in range(c.shape[0]):
         u = work[SHIFTED + axis]
         for k in range(d + 1):
             u[k] = c[axis, k]
@@ -159,20 +140,11 @@ def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
 def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y, and those of |q|², into their rows of ``work``."""
     shift(c, d, y, work)
-    u, v, out = work[SHIFTED], work[SHIFTED + 1], work[SQUARED]
+    out = work[SQUARED]
     for k in range(2 * d + 1):
-        total = 0.0
-        for i in range(max(0, k - d), (k + 1) // 2):
-            total += u[i] * u[k - i] + v[i] * v[k - i]
-        total *= 2.0
-        if k % 2 == 0:
-            total += u[k // 2] * u[k // 2] + v[k // 2] * v[k // 2]
-        out[k] = total
-    for axis in range(2, c.shape[0]):  # apart, which costs less in the plane
-        u = work[SHIFTED + axis]
-        for i in range(d + 1):
-            for j in range(d + 1):
-                out[i + j] += u[i] * u[j]
+        out[k] = 0.0
+        for i in range(max(0, k - d), k // 2 + 1):
+            out[k] += (2.0 if 2 * i < k else 1.0) * _product(work[SHIFTED:], i, k - i, c.shape[0])
 
 
 @compiled
@@ -183,36 +155,24 @@ def lower_bound(c: FloatArray, d: int, a: float, b: float, work: FloatArray) -> 
     the rounding errors of the largest power.
     """
     shift(c, d, a, work)
-    rows, points, m, power = work[SHIFTED:], work[BEZIER:], c.shape[0], 1.0
-    u, v, x, y = rows[0], rows[1], points[0], points[1]
-    for k in range(1, d + 1):
-        power *= b - a
-        u[k] *= power
-        v[k] *= power
-        for axis in range(2, m):
-            rows[axis, k] *= power
-    largest = 0.0
-    for j in range(d + 1):
-        x[j], y[j] = u[0], v[0]
-        for k in range(1, j + 1):
-            x[j] += BERNSTEIN[d, j, k] * u[k]
-            y[j] += BERNSTEIN[d, j, k] * v[k]
-        for axis in range(2, m):
-            points[axis, j] = rows[axis, 0]
+    points, m, largest, least = work[BEZIER:], c.shape[0], 0.0, np.inf
+    for axis in range(m):
+        u, x, power = work[SHIFTED + axis], points[axis], 1.0
+        for k in range(1, d + 1):
+            power *= b - a
+            u[k] *= power
+        for j in range(d + 1):
+            x[j] = u[0]
             for k in range(1, j + 1):
-                points[axis, j] += BERNSTEIN[d, j, k] * rows[axis, k]
-        largest = max(largest, _square(points, j, m))
-    least, rest = np.inf, work[SCALED]
-    if m > 2:
-        _other_products(points, d, m, rest)
+                x[j] += BERNSTEIN[d, j, k] * u[k]
+    for j in range(d + 1):
+        largest = max(largest, _product(points, j, j, m))
     for k in range(2 * d + 1):
         value = 0.0
         for i in range(max(0, k - d), k // 2 + 1):
-            value += PRODUCTS[d, i, k - i] * (x[i] * x[k - i] + y[i] * y[k - i])
-        if m > 2:
-            value += rest[k]
+            value += PRODUCTS[d, i, k - i] * _product(points, i, k - i, m)
         least = min(least, value)
-    return least - ROUNDING * largest, _square(points, 0, m), _square(points, d, m)
+    return least - ROUNDING * largest, _product(points, 0, 0, m), _product(points, d, d, m)
 
 
 @compiled
@@ -232,7 +192,7 @@ def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float)
         power *= L
     squares, power = 0.0, ROUNDING
     for k in range(1, d + 1):
-        squares += _square(rows, k, coordinates) * power
+        squares += _product(rows, k, k, coordinates) * power
         power *= L * L
     least, rises = np.inf, slope * L > 0.0
     for j in range(m):
@@ -249,14 +209,8 @@ def proven(work: FloatArray, d: int, coordinates: int, L: float, allowed: float)
 def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> float:
     """Newton's method for q·q' = 0, kept inside [low, high]; Gauss and Newton's step where D is not convex."""
     for _ in range(NEWTON_STEPS):
-        x0, x1, x2, y0, y1, y2 = c[0, d], 0.0, 0.0, c[1, d], 0.0, 0.0
-        for k in range(d - 1, -1, -1):
-            x2, x1, x0 = x2 * y + x1, x1 * y + x0, x0 * y + c[0, k]
-            y2, y1, y0 = y2 * y + y1, y1 * y + y0, y0 * y + c[1, k]
-        slope = x0 * x1 + y0 * y1
-        speed = x1 * x1 + y1 * y1
-        lever = x0 * x2 + y0 * y2
-        for axis in range(2, c.shape[0]):
+        slope = speed = lever = 0.0
+        for axis in range(c.shape[0]):
             x0, x1, x2 = c[axis, d], 0.0, 0.0
             for k in range(d - 1, -1, -1):
                 x2, x1, x0 = x2 * y + x1, x1 * y + x0, x0 * y + c[axis, k]
@@ -312,7 +266,7 @@ def search_piece(
     shift(c, d, start, work)
     probe, D_probe = (
         start,
-        _square(work[SHIFTED:], 0, m),
+        _product(work[SHIFTED:], 0, 0, m),
     )  # not a local minimum: loses ties
     left, right, bounds = work[LEFT], work[RIGHT], work[BOUNDS]
     left[0], right[0], bounds[0] = low, high, -np.inf

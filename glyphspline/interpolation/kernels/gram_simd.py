@@ -170,37 +170,25 @@ def _newton(S: FloatArray, m: int) -> int:
     return pending
 
 
-@inlined
-def _quartic(S: FloatArray, j: int, y: float) -> tuple[float, float, float, float, float]:
-    """c0 to c4 of Q about y on the main side: D''/2, D'''/6, …"""
-    h2, h3, h4, h5 = S[H2 + j], S[H3 + j], S[H4 + j], S[H5 + j]
-    c0 = fma(fma(fma(fma(5.0 * h5, y, 4.0 * h4), y, 3.0 * h3), y, 2.0 * h2), y, S[H1 + j])
-    c1 = fma(fma(fma(10.0 * h5, y, 6.0 * h4), y, 3.0 * h3), y, h2) * (2.0 / 3.0)
-    c2 = fma(fma(10.0 * h5, y, 4.0 * h4), y, h3) * 0.5
-    return c0, c1, c2, fma(5.0 * h5, y, h4) * 0.4, h5 * (1.0 / 3.0)
-
-
-@inlined
-def _guard(S: FloatArray, j: int, y: float) -> float:
-    """What the Bernstein coefficients of Q on the main side have to exceed."""
-    L, wz, h5 = S[SHI + j] - S[SLO + j], S[WZ + j], S[H5 + j]
-    speed = fma(fma(fma(3.0 * h5, y, 12.0 * wz), y, fma(6.0, S[VZ + j], 4.0 * S[WW + j])), y, 4.0 * S[VW + j])
-    speed = fma(speed, y, S[VV + j])
-    squared, bent = L * L, fma(fma(3.0 * h5, y, 6.0 * wz), y, S[WW + j])
-    return fma(GUARD, fma(squared, fma(squared, h5 * (1.0 / 3.0), bent), speed), S[ROUGH + j])
-
-
 @compiled
 def _certify(B: FloatArray, S: FloatArray, m: int) -> None:
     """Write footpoints to the block, the factors of the D_i at them, and flags."""
     wide_vectors()
     for j in range(TWO, np.uint64(m) + TWO):
         y, low, high = S[SY + j], S[SLO + j], S[SHI + j]
-        c0, c1, c2, c3, c4 = _quartic(S, j, y)
+        h2, h3, h4, h5, wz, L = S[H2 + j], S[H3 + j], S[H4 + j], S[H5 + j], S[WZ + j], high - low
+        # Q about y, from D''/2, D'''/6, …
+        c0 = fma(fma(fma(fma(5.0 * h5, y, 4.0 * h4), y, 3.0 * h3), y, 2.0 * h2), y, S[H1 + j])
+        c1 = fma(fma(fma(10.0 * h5, y, 6.0 * h4), y, 3.0 * h3), y, h2) * (2.0 / 3.0)
+        c2 = fma(fma(10.0 * h5, y, 4.0 * h4), y, h3) * 0.5
+        c3, c4 = fma(5.0 * h5, y, h4) * 0.4, h5 * (1.0 / 3.0)
+        speed = fma(fma(fma(3.0 * h5, y, 12.0 * wz), y, fma(6.0, S[VZ + j], 4.0 * S[WW + j])), y, 4.0 * S[VW + j])
+        squared, bent = L * L, fma(fma(3.0 * h5, y, 6.0 * wz), y, S[WW + j])
+        guard = fma(GUARD, fma(squared, fma(squared, c4, bent), fma(speed, y, S[VV + j])), S[ROUGH + j])
         ahead = least_quartic(c0, c1, c2, c3, c4, high - y)
         behind = least_quartic(c0, c1, c2, c3, c4, low - y)
         least = select(ahead < behind, ahead, behind)
-        main = (S[DONE + j] == 0.0) | ((least <= _guard(S, j, y)) & (high > low))
+        main = (S[DONE + j] == 0.0) | ((least <= guard) & (high > low))
         S[BAD + j] += select(main, 1.0, 0.0)
         S[LEAST + j] = select(main | (high <= low), np.inf, least)
     for j in range(TWO, np.uint64(m) + TWO):

@@ -18,7 +18,7 @@ from .blocks import (
     TWO, WIDTH, Given, Group, X, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
-from .one_interval import end_interval, near_end, value_at_knot
+from .one_interval import add_fixed, margin_at, near_end, one_interval
 
 # Fields of the scratch block: top, right, left side; the two problems: coefficients, bracket and estimate of each.
 TOP, R1, R2, R3, L1, L2, L3, PEAK, HIGHEST, LEVEL, RISING = (np.uint64(k * STRIDE) for k in range(11))
@@ -147,23 +147,28 @@ def _interval(
 
 @compiled
 def _end_interval(
-    given: Given, group: Group, q: int, h: FloatArray, k: int, i: int, low: float, high: float, value: float,
-    missing: bool,
-) -> tuple[float, float, float, bool]:  # fmt: skip
+    given: Given, group: Group, q: int, h: FloatArray, i: int, low: float, high: float, value: float, missing: bool
+) -> tuple[float, float, float, bool]:
     """What :func:`_interval` has, for vertex i of an arc near its end; low, …, missing are what B_i alone gives.
 
-    h[k] is the knot interval two before u_i.
+    h[0] is the knot interval two before u_i. Where W_i has no interval, or only one below 1/2, B_i alone decides.
     """
     n, row, share = group.table[q, COUNT], group.numbers[q], given.peak_shares[group.table[q, POLYGON]]
-    first, last = row[NATURAL], row[NATURAL + 1]
+    a, b, c, d = h[0], h[1], h[2], h[3]
+    left, right, k = 1.0 / (a + b + c), 1.0 / (b + c + d), b / (b + c)
+    before, after = np.empty(4), np.empty(4)  # Bernstein coefficients on the spans around the knot
+    before[1], before[2], after[1], after[2] = a * left, (a + b) * left, (c + d) * right, d * right
+    before[0], after[3] = before[1] * a / (a + b), after[2] * d / (c + d)
+    before[3] = after[0] = (1.0 - k) * before[2] + k * after[1]
+    add_fixed(h, 1, i, n, row[NATURAL], row[NATURAL + 1], before, after)
     if given.variant == 3:
-        return low, high, value_at_knot(h, k + 1, i, n, first, last), missing
-    left, right, least, found = end_interval(h, k + 1, i, n, first, last, given.margin, share if share > 0.0 else 1.0)
+        return low, high, before[3], missing
+    first, last, least, found = one_interval(
+        before, after, margin_at(i, n, given.margin), share if share > 0.0 else 1.0
+    )
     if not found:
         return low, high, value, missing
-    left *= h[k + 1] if left < 0.0 else h[k + 2]
-    right *= h[k + 1] if right < 0.0 else h[k + 2]
-    return left, right, least, False
+    return first * (b if first < 0.0 else c), last * (b if last < 0.0 else c), least, False
 
 
 @compiled
@@ -200,7 +205,7 @@ def fill_intervals(given: Given, group: Group, slots: int) -> None:
                     )
                     if not given.closed and given.variant > 1 and near_end(at + i, n):
                         low, high, value, missing = _end_interval(
-                            given, group, q, h, i, at + i, low, high, value, missing
+                            given, group, q, h[i:], at + i, low, high, value, missing
                         )
                     group.table[q, FALLBACKS] += missing
                     group.numbers[q, LEAST] = min(group.numbers[q, LEAST], value)

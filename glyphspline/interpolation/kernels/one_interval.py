@@ -20,16 +20,6 @@ def near_end(i: int, n: int) -> bool:
 
 
 @compiled
-def basis_pieces(h: FloatArray, at: int, before: FloatArray, after: FloatArray) -> None:
-    """Bernstein coefficients (4,) of B_i on the spans before and after u_i; h[at] is the interval before u_i."""
-    a, b, c, d = h[at - 1], h[at], h[at + 1], h[at + 2]
-    left, right, share = 1.0 / (a + b + c), 1.0 / (b + c + d), b / (b + c)
-    before[1], before[2], after[1], after[2] = a * left, (a + b) * left, (c + d) * right, d * right
-    before[0], after[3] = before[1] * a / (a + b), after[2] * d / (c + d)
-    before[3] = after[0] = (1.0 - share) * before[2] + share * after[1]
-
-
-@compiled
 def add_fixed(
     h: FloatArray, at: int, i: int, n: int, first: float, last: float, before: FloatArray, after: FloatArray
 ) -> None:
@@ -72,38 +62,9 @@ def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, flo
 
 
 @compiled
-def row_pieces(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> tuple[FloatArray, FloatArray]:
-    """(4,) Bernstein coefficients of W_i on the spans before and after u_i; arguments as for :func:`add_fixed`."""
-    before, after = np.empty(4), np.empty(4)
-    basis_pieces(h, at, before, after)
-    add_fixed(h, at, i, n, first, last, before, after)
-    return before, after
-
-
-@compiled
-def end_interval(
-    h: FloatArray, at: int, i: int, n: int, first: float, last: float, margin: float, share: float
-) -> tuple[float, float, float, bool]:
-    """The interval of a vertex near an end of an arc; arguments as for :func:`add_fixed` and :func:`one_interval`.
-
-    Returns:
-        As :func:`one_interval`; False where B_i alone decides, as W_i has no interval or only one below 1/2.
-    """
-    before, after = row_pieces(h, at, i, n, first, last)
-    return one_interval(before, after, margin_at(i, n, margin), share)
-
-
-@compiled
 def margin_at(i: int, n: int, margin: float) -> float:
     """The margin of vertex i of an arc: ``END_MARGIN`` at least for the first and the last of the inner ones."""
     return max(margin, END_MARGIN) if i in (1, n - 2) else margin
-
-
-@compiled
-def value_at_knot(h: FloatArray, at: int, i: int, n: int, first: float, last: float) -> float:
-    """W_i(u_i), with arguments as for :func:`add_fixed`."""
-    before, _ = row_pieces(h, at, i, n, first, last)
-    return before[3]
 
 
 @compiled

@@ -31,15 +31,6 @@ def distance(p: FloatArray, i: int, j: int) -> float:
     return np.sqrt(squared)
 
 
-@inlined
-def _same(p: FloatArray, i: int, j: int) -> bool:
-    """Whether two vertices have the same coordinates."""
-    same = p[i, 0] == p[j, 0] and p[i, 1] == p[j, 1]
-    for axis in range(2, p.shape[1]):
-        same = same and p[i, axis] == p[j, axis]
-    return same
-
-
 @compiled
 def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
     """Write the indices of the vertices that are kept; returns their number, -1 for a bad polygon, and the extent."""
@@ -80,43 +71,29 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
     a, b = kept[0], kept[1]
     for i in range(2, count):
         c = kept[i]
-        if not _same(points, c, a) and not _same(points, c, b):
+        if distance(points, c, a) > 0.0 and distance(points, c, b) > 0.0:
             return count, extent
     return -1, extent
 
 
 @compiled
-def _chord_knots(p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, u: FloatArray) -> bool:
-    """Write knots, sums of powers of chord lengths, to u. False if two of them coincide."""
-    total = 0.0
+def _fill_knots(
+    p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, own: FloatArray, u: FloatArray
+) -> bool:
+    """Write knots, sums of powers of chord lengths or the vertices' ``own`` parameters, to u.
+
+    Returns False if they are not finite and increasing.
+    """
     u[0] = 0.0
-    for i in range(n if closed else n - 1):
-        chord = distance(p, kept[i], kept[i + 1 if i + 1 < n else 0])
-        if exponent == 0.0:
-            chord = 1.0
-        elif exponent == 0.5:
-            chord = np.sqrt(chord)
-        before = total
-        total += chord
-        if not total > before:
+    for i in range(1, n + 1 if closed else n):
+        if exponent < 0.0:
+            value = own[kept[i] if i < n else own.shape[0] - 1] - own[kept[0]]
+        else:
+            chord = 1.0 if exponent == 0.0 else distance(p, kept[i - 1], kept[i if i < n else 0])
+            value = u[i - 1] + (np.sqrt(chord) if exponent == 0.5 else chord)
+        if not np.inf > value or not value > u[i - 1]:
             return False
-        u[i + 1] = total
-    return True
-
-
-@compiled
-def _given_knots(given: FloatArray, kept: IntArray, count: int, closed: bool, u: FloatArray) -> bool:
-    """Write the given parameters of the vertices kept to u. False if they are not finite and increasing."""
-    for i in range(count):
-        u[i] = given[kept[i]]
-    if closed:
-        u[count] = given[given.shape[0] - 1]
-    last = count if closed else count - 1
-    first = u[0]
-    for i in range(last + 1):
-        u[i] -= first
-        if not np.isfinite(u[i]) or (i > 0 and not u[i] > u[i - 1]):
-            return False
+        u[i] = value
     return True
 
 
@@ -150,12 +127,8 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
     if np.isnan(given.tolerances[k]):
         given.tolerances[k] = RELATIVE_TOLERANCE * extent
     u = knots_of(given, found, k, n)
-    if given.exponent < 0.0:
-        own = given.knots[start + (k if closed else 0) : stop + (k + 1 if closed else 0)]
-        good = _given_knots(own, kept, n, closed, u)
-    else:
-        good = _chord_knots(points, kept, n, closed, given.exponent, u)
-    if not good:
+    own = given.knots[start + (k if closed else 0) : stop + (k + 1 if closed else 0)]  # nothing, if there is a rule
+    if not _fill_knots(points, kept, n, closed, given.exponent, own, u):
         row[STATUS] = BAD_KNOTS
         return 0, 1.0, 1.0
     return n, _power_of_two(extent), _power_of_two(u[-1] / n)
