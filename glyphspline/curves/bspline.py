@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -210,17 +211,11 @@ class Spline:
         if not self.closed:
             return self
         d, n = self.degree, len(self.control_points)
-        target, own = full_knots(self.knots, d, False), self.full_knots
+        target = full_knots(self.knots, d, False)
         index = np.arange(n + d)
         span = np.minimum(index, n - 1)  # one of those that control point i has a share in
-        blossom = self.control_points[self.span_controls[span]]
-        for r in range(1, d + 1):
-            x = target[index + r]
-            for i in range(d, r - 1, -1):
-                left, right = own[span + i], own[span + i + d + 1 - r]
-                weight = ((x - left) / (right - left))[:, None]
-                blossom[:, i] = (1 - weight) * blossom[:, i - 1] + weight * blossom[:, i]
-        controls = blossom[:, d]
+        arguments = [target[index + r] for r in range(1, d + 1)]
+        controls = _blossom(self.full_knots, self.control_points[self.span_controls[span]], span, arguments)
         controls[-1] = controls[0]
         return Spline(controls, self.knots, d, closed=False)
 
@@ -264,14 +259,16 @@ def bezier_pieces(full: FloatArray, controls: FloatArray) -> FloatArray:
     spans, d = controls.shape[0], controls.shape[1] - 1
     span = np.arange(spans)
     a, b = full[span + d], full[span + d + 1]
-    result = np.empty_like(controls, dtype=np.float64)
-    for j in range(d + 1):
-        D = np.array(controls, dtype=np.float64)
-        for r in range(1, d + 1):
-            x = a if r <= d - j else b
-            for i in range(d, r - 1, -1):
-                left, right = full[span + i], full[span + i + d + 1 - r]
-                weight = ((x - left) / (right - left))[:, None]
-                D[:, i] = (1 - weight) * D[:, i - 1] + weight * D[:, i]
-        result[:, j] = D[:, d]
-    return result
+    return np.stack([_blossom(full, controls, span, [a] * (d - j) + [b] * j) for j in range(d + 1)], axis=1)
+
+
+def _blossom(full: FloatArray, controls: FloatArray, span: IntArray, arguments: Sequence[FloatArray]) -> FloatArray:
+    """(m, k) the blossom of some spans at ``degree`` arguments (m,); ``controls`` (m, degree + 1, k) are theirs."""
+    d = controls.shape[1] - 1
+    D = np.array(controls, dtype=np.float64)
+    for r, x in enumerate(arguments, 1):
+        for i in range(d, r - 1, -1):
+            left, right = full[span + i], full[span + i + d + 1 - r]
+            weight = ((x - left) / (right - left))[:, None]
+            D[:, i] = (1 - weight) * D[:, i - 1] + weight * D[:, i]
+    return D[:, d]

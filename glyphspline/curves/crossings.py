@@ -19,7 +19,6 @@ from ..compiled import compiled
 from ..types import BoolArray, FloatArray, IntArray
 from .contacts import crossing_contacts
 from .cubics import extent, split
-from .sorting import ascending
 
 FLAT = 1e-9
 """Share of a glyph's extent by which the chords that are compared may differ from the curves."""
@@ -116,7 +115,7 @@ def glyph_meetings(
             error /= 4
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
-    order, steps = ascending(left), 0
+    order, steps = np.argsort(left, kind="mergesort"), 0
     for oi in range(n):
         i = order[oi]
         for oj in range(oi, n):

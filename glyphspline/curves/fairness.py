@@ -1,4 +1,4 @@
-"""How fair a closed chain of cubics is: the significant extrema of its curvature, and how much curvature varies."""
+"""How fair a closed chain of cubics is: the significant extrema of its curvature."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .comb import frame, size_of
 from .cubics import directions
-from .integrals import NODES, WEIGHTS
 
 SHARE = 0.1
 """Share of the larger of two curvatures by which they differ significantly. Coordinates in whole font units move the
@@ -38,9 +37,6 @@ ROUNDS = 60
 
 MOST = 64
 """Maximum number of places of a piece: its ends, five extrema, and where intervals with several of them are halved."""
-
-PARTS = 4
-"""Parts of a piece for the integral of the variation, so that its nodes meet sharp turns."""
 
 Coefficients = tuple[float, ...]
 """Of a polynomial of the parameter, that of the constant first."""
@@ -244,24 +240,3 @@ def _places(q: Coefficients, places: FloatArray) -> int:
                 width *= 2
     places[n] = 1.0
     return n + 1
-
-
-@compiled
-def curvature_variation(cubics: FloatArray) -> float:
-    """∫(dκ/ds)² ds in 1/unit³ along cubics (m, 4, 2), without the jumps of curvature between them; large at a cusp."""
-    total = 0.0
-    for j in range(len(cubics)):
-        size = size_of(cubics, j)
-        if size > 0.0:
-            bent, _, (s0, s1, s2, s3, s4), (q0, q1, q2, q3, q4, q5) = _polynomials(cubics, j, size)
-            if not bent:
-                continue
-            own = 0.0
-            for part in range(PARTS):
-                for k in range(len(NODES)):
-                    t = (part + (NODES[k] + 1) / 2) / PARTS
-                    speed = np.sqrt(max(s0 + t * (s1 + t * (s2 + t * (s3 + t * s4))), 0.0))
-                    slope = (q0 + t * (q1 + t * (q2 + t * (q3 + t * (q4 + t * q5))))) / speed**5
-                    own += WEIGHTS[k] * slope * slope / speed if speed > 0 else np.inf
-            total += own / (2 * PARTS) / size**3
-    return total

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..compiled import compiled
@@ -19,31 +17,12 @@ PLACES = np.concatenate([(NODES + 1) / 2, np.arange(CURVATURE_STEPS + 1) / CURVA
 """Parameters at which speed and curvature are looked at: for integrals, then for the largest curvature."""
 
 
-class Shape(NamedTuple):
-    """Measures of a curve; lengths in font units.
-
-    Attributes:
-        length: arc length. area: signed, positive if it runs counter-clockwise.
-        bending_energy: integral of the squared curvature over arc length, in 1/unit; infinite at a cusp.
-        max_curvature: largest absolute curvature, in 1/unit; infinite at a cusp.
-    """
-
-    length: float
-    area: float
-    bending_energy: float
-    max_curvature: float
-
-
-def shape(pieces: FloatArray) -> Shape:
-    """Measure a closed chain of cubics (m, 4, 2)."""
-    pieces = np.ascontiguousarray(pieces)
-    length, energy, curvature = integrals(pieces)
-    return Shape(length, area(pieces), energy, curvature)
-
-
 @compiled
 def integrals(pieces: FloatArray) -> tuple[float, float, float]:
-    """Length, energy and curvature of a :class:`Shape`, of some cubics (m, 4, 2), closed or not.
+    """Arc length, bending energy, and largest absolute curvature of some cubics (m, 4, 2), closed or not.
+
+    The energy is the integral of the squared curvature over arc length, in 1/unit. It and the curvature are infinite at
+    a cusp.
 
     The loops over places become SIMD.
     """

@@ -7,7 +7,6 @@ import numpy as np
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet
-from .sorting import ascending
 
 STEPS = 12
 """Chords a cubic; a straight one takes a single chord."""
@@ -17,10 +16,20 @@ STEPS = 12
 def overshoot(cubics: FloatArray, polygon: FloatArray) -> float:
     """Largest distance of a closed chain of cubics (m, 4, 2), at the ends of its :func:`chords`, outside a polygon's
     convex hull; 0 for no polygon."""
+    worst = 0.0
     if len(polygon) == 0:
-        return 0.0
+        return worst
     points, first = chords(cubics)
-    return farthest_outside(cubics, points, first, polygon)
+    hull = convex_hull(polygon)
+    for s in range(len(cubics)):
+        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
+        reach = 0.0
+        for k in range(4):
+            reach = max(reach, outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
+        if reach > worst:
+            for k in range(first[s], first[s + 1]):
+                worst = max(worst, outside(hull, points[k, 0], points[k, 1]))
+    return worst
 
 
 @compiled
@@ -43,22 +52,6 @@ def chords(cubics: FloatArray) -> tuple[FloatArray, IntArray]:
                 count += 1
         first[j + 1] = count
     return points[:count], first
-
-
-@compiled
-def farthest_outside(cubics: FloatArray, points: FloatArray, first: IntArray, polygon: FloatArray) -> float:
-    """Largest distance of ends of the chain's :func:`chords` outside a polygon's convex hull."""
-    hull = convex_hull(polygon)
-    worst = 0.0
-    for s in range(len(cubics)):
-        # The distance from a convex set is convex: no point of a segment is farther away than its Bézier points are.
-        reach = 0.0
-        for k in range(4):
-            reach = max(reach, outside(hull, cubics[s, k, 0], cubics[s, k, 1]))
-        if reach > worst:
-            for k in range(first[s], first[s + 1]):
-                worst = max(worst, outside(hull, points[k, 0], points[k, 1]))
-    return worst
 
 
 @compiled
@@ -86,18 +79,14 @@ def outside(hull: FloatArray, x: float, y: float) -> float:
 def convex_hull(points: FloatArray) -> FloatArray:
     """The convex hull, counter-clockwise, by Andrew's monotone chain."""
     n = len(points)
-    x, y, hull = np.empty(n), np.empty(n), np.empty((2 * n + 1, 2))
-    for i in range(n):
-        y[i] = points[i, 1]
-    by_y = ascending(y)
-    for i in range(n):
-        x[i] = points[by_y[i], 0]
-    by_x = ascending(x)
+    hull = np.empty((2 * n + 1, 2))
+    order = np.argsort(points[:, 1], kind="mergesort")
+    order = order[np.argsort(points[:, 0][order], kind="mergesort")]
     count = 0
     for step in range(2):
         base = count
         for k in range(n):
-            q = by_y[by_x[k if step == 0 else n - 1 - k]]
+            q = order[k if step == 0 else n - 1 - k]
             px, py = points[q, 0], points[q, 1]
             while count >= base + 2:
                 a, b = count - 2, count - 1

@@ -195,8 +195,7 @@ def points() -> None:
 
 
 def rest() -> None:
-    """What single options or measures need: united contours, joins, the variation of curvature, unlike masters."""
-    from ..curves.fairness import curvature_variation
+    """What single options or measures need: united contours, joins, unlike masters."""
     from ..matching.cuts import common_cuts
     from ..matching.landmarks import Landmarks
     from ..outlines.joins import joins
@@ -204,7 +203,6 @@ def rest() -> None:
 
     inked_area([DISC, LEAF])
     joins(LEAF)
-    curvature_variation(DISC.cubics())
     common_cuts(Landmarks(LEAF, 1000.0), Landmarks(LEAF, 1000.0))
 
 

@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.curves.fairness import curvature_variation
 from glyphspline.types import FloatArray
 
+from ..paper.measures import curvature_variation
 from ..survey import distances, faces, sampled
 from .kurbo_fit import kurbo_results
 from .measure import Row

@@ -16,8 +16,6 @@ from scipy.spatial import ConvexHull
 
 import glyphspline as gs
 from glyphspline.curves.bezier import cross, evaluate
-from glyphspline.curves.fairness import curvature_variation
-from glyphspline.curves.integrals import shape
 from glyphspline.interpolation.method import Parametrisation
 from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.readers.opentype.font import open_font
@@ -25,6 +23,7 @@ from glyphspline.types import FloatArray
 
 from .clicking import DATA, FONTS
 from .common import COLOURS, GREY, INK, Run
+from .measures import curvature_variation, shape
 
 METHODS = ("variant 1", "variant 2", "variant 3", "SciPy chord", "SciPy centripetal", "SciPy uniform")
 MEASURES = ("∫κ² ds", "∫(dκ/ds)² ds", "max |κ|", "bulge", "overshoot", "self-crossings")

@@ -15,13 +15,12 @@ from matplotlib.figure import Figure
 
 import glyphspline as gs
 from glyphspline.curves.bspline import Spline
-from glyphspline.curves.fairness import curvature_variation
-from glyphspline.curves.integrals import shape
 from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run, random_polygons
 from .fairness import result_quality
+from .measures import curvature_variation, shape
 from .smooth_curves import Waves, distance, polar
 from .study import MAX_ITERATIONS, TOLERANCE
 

@@ -12,7 +12,6 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.checks.along_axis import along_axis, places_along
 from glyphspline.cli import app
-from glyphspline.curves.integrals import shape
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.writers.figures.axis_pages import (
     axis_page,
@@ -22,6 +21,7 @@ from glyphspline.writers.figures.axis_pages import (
     turn_words,
     worst_inside,
 )
+from scripts.paper.measures import shape
 from tests.variable_fonts import quadratic, variable_font
 
 POINTS = [(0, 0), (150, 0), (500, 300), (-300, 300), (-60, 0)]

@@ -11,8 +11,7 @@ from glyphspline.curves.bezier import evaluate, split
 from glyphspline.curves.cubics import bernstein, length_table, section, spline_beziers, turns
 from glyphspline.curves.cubics import split as cut
 from glyphspline.curves.nearest import search_place
-from glyphspline.curves.sorting import ascending
-from glyphspline.types import FloatArray, IntArray
+from glyphspline.types import FloatArray
 from tests.polygons import circle_contour, random_polygon, square_contour
 
 CUBICS = np.random.default_rng(4).uniform(-100, 100, (5, 4, 2))
@@ -34,11 +33,6 @@ def parts(cubic: FloatArray, x: float, y: float) -> FloatArray:
     cut(found[1], x, found[0])
     section(cubic, x, y, found[2])
     return found
-
-
-@compiled
-def order_of(keys: FloatArray) -> IntArray:
-    return ascending(keys)
 
 
 @pytest.mark.parametrize("closed", [True, False])
@@ -90,9 +84,3 @@ def test_lengths_add_up_to_the_circumference() -> None:
     assert len(table) == 4 * 64 + 1
     assert table[-1] == pytest.approx(200 * np.pi, rel=1e-3)
     assert (np.diff(table) > 0).all()
-
-
-@pytest.mark.parametrize("n", [0, 1, 2, 50, 1000])
-def test_sorting_is_stable(n: int) -> None:
-    keys = np.random.default_rng(n).integers(0, 1 + n // 3, n).astype(float)
-    np.testing.assert_array_equal(order_of(keys), np.argsort(keys, kind="stable"))

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvature, split
-from glyphspline.curves.fairness import SHARE, TURN, curvature_extrema, curvature_variation
-from glyphspline.curves.integrals import shape
+from glyphspline.curves.fairness import SHARE, TURN, curvature_extrema
 from glyphspline.fitting.measures import CORNER
 from glyphspline.types import FloatArray
+from scripts.paper.measures import curvature_variation, shape
 from tests.drawings import circle, polygon_contour
 from tests.places import FONTS
 from tests.polygons import circle_contour, square_contour

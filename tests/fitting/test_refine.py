@@ -10,7 +10,6 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.curves.curvature import comb
-from glyphspline.curves.integrals import shape
 from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.faithful import faithful
 from glyphspline.fitting.measures import geometry
@@ -20,6 +19,7 @@ from glyphspline.fitting.smooth.smooth_fit import smooth_fits
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
+from scripts.paper.measures import shape
 from tests.fitting.test_distance import true_distance
 from tests.polygons import circle_contour, overshoot, random_polygon, square_contour
 

@@ -11,7 +11,6 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
-from glyphspline.curves.integrals import shape
 from glyphspline.fitting.ladders import SEARCHES
 from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import Corners, Effort
@@ -27,6 +26,7 @@ from glyphspline.outlines.overlaps import remove_overlaps
 from glyphspline.outlines.segments import all_cubics
 from glyphspline.runs.warm import converted
 from glyphspline.types import FloatArray
+from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT
 from tests.polygons import circle_contour, square_contour
 

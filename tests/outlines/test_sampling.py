@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.curves.integrals import shape
+from scripts.paper.measures import shape
 from tests.polygons import circle_contour, square_contour
 
 

@@ -16,10 +16,11 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli import app
-from glyphspline.curves.integrals import area, shape
+from glyphspline.curves.integrals import area
 from glyphspline.readers.pens import ContourPen
 from glyphspline.readers.source import Head
 from glyphspline.types import rounded_up
+from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT
 
 

@@ -23,7 +23,6 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet
-from ...curves.sorting import in_order
 from ...types import BoolArray, FloatArray, IntArray
 from ..closed_curves import chords_of
 from .canonical_contours import TABLE, length_at, place_at, points_at
@@ -263,7 +262,7 @@ def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: In
             for j in range(parts[k]):
                 new[at + j] = places[(corners[k] + j) % n]
         at += parts[k]
-    return in_order(new)
+    return np.sort(new)
 
 
 @compiled
@@ -354,4 +353,4 @@ def divided(
             share = shares[i] if parts[i] == 2 else part / parts[i]
             new[count] = place_at(lengths, at[i] + share * h[i]) % m
             count += 1
-    return in_order(new[:count])
+    return np.sort(new[:count])

@@ -14,7 +14,6 @@ from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
-from ...curves.sorting import ascending
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, CanonicalContours, points_at
 from .spacing import MOST, at_corners, failed, first_field, graded, growth_of, laid, lowered, spans_after, with_more
@@ -293,7 +292,7 @@ def sparse(
             square = ax * ax + ay * ay
             along = min(max((ax * bx + ay * by) / square, 0.0), 1.0) if square > 0 else 0.0
             expected[i] = max(expected[i], np.sqrt((bx - along * ax) ** 2 + (by - along * ay) ** 2))
-    order, left = ascending(expected), n
+    order, left = np.argsort(expected, kind="mergesort"), n
     for k in range(n):
         i = order[k]
         if not expected[i] <= near or left <= 4:

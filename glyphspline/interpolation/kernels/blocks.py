@@ -98,7 +98,7 @@ class Given(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Results, as :class:`..compiled_batch.BatchedInterpolation` has them.
+    """Results, as :class:`..result.BatchedInterpolation` has them.
 
     A polygon's knots begin at its offset, plus k if closed; its control points at its offset, plus 2 k if open.
     """
