@@ -21,16 +21,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..errors import GlyphsplineError
 from ..extras import need
 from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
 from .spec import Limits
-
-Files = dict[str, bytes]
-"""What a call has written: content by path in the output folder."""
 
 PATIENCE = "10s"
 """Time limit for a scheduler to answer."""
@@ -42,15 +39,8 @@ OUT = "out"
 """Stands for the output folder in a call, as a number does for a font."""
 
 
-class Processes(NamedTuple):
-    """The processes that make calls in a worker of the cluster.
-
-    Attributes:
-        seconds: time limit between signs of life. preload: modules to import before the first call.
-    """
-
-    seconds: float
-    preload: tuple[str, ...]
+Processes = tuple[float, tuple[str, ...]]
+"""Processes that make calls in a worker of the cluster: time limit between signs of life, and what they load first."""
 
 
 class ClusterExecutor(Executor):
@@ -75,7 +65,7 @@ class ClusterExecutor(Executor):
             self._client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
-        self._processes = Processes(seconds, tuple(preload))
+        self._processes: Processes = seconds, tuple(preload)
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()
         self._max_workers = max(1, sum(self._client.nthreads().values()))
@@ -88,7 +78,15 @@ class ClusterExecutor(Executor):
         """
         out = getattr(args[0], "out", None) if args else None
         paths: dict[Path, int | str] = {}
-        call = packed((fn, args), paths, out)
+
+        def named(path: Path) -> int | str:
+            if path not in paths:
+                if path != out and not path.is_file():
+                    raise GlyphsplineError("only font files can go to a cluster", font=str(path))
+                paths[path] = OUT if path == out else sum(name != OUT for name in paths.values())
+            return paths[path]
+
+        call = pickled((fn, args), named)
         fonts = [self._sent(path) for path in paths if path != out]
         folders = [] if out is None else [item.name for item in out.iterdir() if item.is_dir()]
         future: Future[Any] = Future()
@@ -96,7 +94,7 @@ class ClusterExecutor(Executor):
         inner = self._inner.submit(
             call_there, self._processes, call, folders, [name for name, _ in fonts], *[content for _, content in fonts]
         )
-        inner.add_done_callback(lambda done: take_back(done, paths, out, future))
+        inner.add_done_callback(lambda done: take_back(done, {name: path for path, name in paths.items()}, future))
         return future
 
     def _sent(self, path: Path) -> tuple[str, Any]:
@@ -121,50 +119,32 @@ class ClusterExecutor(Executor):
         self._client.close()
 
 
-class _Packer(pickle.Pickler):
-    """Writes names instead of paths."""
+def pickled(value: Any, name: Callable[[Path], int | str | None]) -> bytes:
+    """A value in bytes, with names instead of the paths that have one."""
 
-    def __init__(self, file: io.BytesIO, named: Callable[[Path], int | str | None]) -> None:
-        super().__init__(file, pickle.HIGHEST_PROTOCOL)
-        self.named = named
-
-    def persistent_id(self, obj: Any) -> int | str | None:
-        return self.named(obj) if isinstance(obj, Path) else None
-
-
-class _Unpacker(pickle.Unpickler):
-    """Reads what :class:`_Packer` has written, with other paths."""
-
-    def __init__(self, file: io.BytesIO, paths: Mapping[int | str, Path]) -> None:
-        super().__init__(file)
-        self.paths = paths
-
-    def persistent_load(self, pid: Any) -> Path:
-        return self.paths[pid]
-
-
-def packed(value: Any, paths: dict[Path, int | str], out: Path | None) -> bytes:
-    """A value in bytes, with names for the output folder and for font files; fills in what is called how."""
-
-    def named(path: Path) -> int | str:
-        if path not in paths:
-            if path != out and not path.is_file():
-                raise GlyphsplineError("only font files can go to a cluster", font=str(path))
-            paths[path] = OUT if path == out else sum(name != OUT for name in paths.values())
-        return paths[path]
+    class Packer(pickle.Pickler):
+        def persistent_id(self, obj: Any) -> int | str | None:
+            return name(obj) if isinstance(obj, Path) else None
 
     file = io.BytesIO()
-    _Packer(file, named).dump(value)
+    Packer(file, pickle.HIGHEST_PROTOCOL).dump(value)
     return file.getvalue()
+
+
+def unpickled(data: bytes, paths: Mapping[int | str, Path]) -> Any:
+    """What :func:`pickled` has written, with paths for the names."""
+
+    class Unpacker(pickle.Unpickler):
+        def persistent_load(self, pid: Any) -> Path:
+            return paths[pid]
+
+    return Unpacker(io.BytesIO(data)).load()
 
 
 def make_call(call: bytes, paths: Mapping[int | str, Path]) -> bytes:
     """Make a call with the paths of this machine; its result has names for them again."""
-    function, arguments = _Unpacker(io.BytesIO(call), paths).load()
-    names = {path: name for name, path in paths.items()}
-    file = io.BytesIO()
-    _Packer(file, names.get).dump(function(*arguments))
-    return file.getvalue()
+    function, arguments = unpickled(call, paths)
+    return pickled(function(*arguments), {path: name for name, path in paths.items()}.get)
 
 
 @dataclass
@@ -172,19 +152,14 @@ class Workshop:
     """The processes and fonts of a worker of the cluster, kept between calls.
 
     Attributes:
-        pool: what makes the calls. folder: of font files.
-        calls: number of them in flight. fonts: names of files, last used last, and how many calls in flight use each.
+        pool: what makes the calls. folder: of font files. calls: number of them in flight.
+        fonts: names of files, last used last, and how many calls in flight use each.
     """
 
     pool: WorkerPool
     folder: Path
     calls: int = 0
     fonts: OrderedDict[str, int] = field(default_factory=OrderedDict)
-
-    def close(self) -> None:
-        """End the processes and remove the fonts."""
-        self.pool.shutdown()
-        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 _workshops: dict[Processes, Workshop] = {}
@@ -193,8 +168,8 @@ _lock = threading.Lock()
 
 def call_there(
     processes: Processes, call: bytes, folders: Sequence[str], names: Sequence[str], *fonts: bytes
-) -> tuple[bytes, Files]:
-    """Make a call in a process of this worker of the cluster; returns its result and the files it has written."""
+) -> tuple[bytes, dict[str, bytes]]:
+    """Make a call in a process of this worker of the cluster; returns its result, and what it has written by path."""
     worker = need("cluster").get_worker()
     scratch = worker.local_directory  # dask empties it, after a kill too
     with (
@@ -216,12 +191,14 @@ def workshop(processes: Processes, size: int, scratch: str) -> Iterator[Workshop
     with _lock:
         for other, shop in list(_workshops.items()):
             if not shop.calls and (other != processes or shop.pool.is_closed):
-                _workshops.pop(other).close()
+                del _workshops[other]
+                shop.pool.shutdown()
+                shutil.rmtree(shop.folder, ignore_errors=True)
         if processes not in _workshops:
             # dask starts its workers as daemonic, which may have no children: these would outlive it. Ours end with it,
             # since their pipes close.
             multiprocessing.current_process().daemon = False
-            pool = WorkerPool(size, processes.seconds, processes.preload)
+            pool = WorkerPool(size, *processes)
             _workshops[processes] = Workshop(pool, Path(tempfile.mkdtemp(prefix="glyphspline-fonts-", dir=scratch)))
         shop = _workshops[processes]
         shop.calls += 1
@@ -234,7 +211,7 @@ def workshop(processes: Processes, size: int, scratch: str) -> Iterator[Workshop
 
 @contextmanager
 def kept(shop: Workshop, fonts: Mapping[str, bytes]) -> Iterator[list[Path]]:
-    """Files of fonts, in the order given; of those that no call uses some are kept."""
+    """Files of fonts, in the order given; of those that no call uses, the last used ``KEPT`` stay."""
     with _lock:
         for name, content in fonts.items():
             if name not in shop.fonts:
@@ -254,17 +231,16 @@ def kept(shop: Workshop, fonts: Mapping[str, bytes]) -> Iterator[list[Path]]:
                 (shop.folder / name).unlink(missing_ok=True)
 
 
-def take_back(done: Any, paths: Mapping[Path, int | str], out: Path | None, future: Future[Any]) -> None:
+def take_back(done: Any, paths: Mapping[int | str, Path], future: Future[Any]) -> None:
     """Write the files of a finished call, then finish its future."""
     try:
-        packed, files = done.result()
-        result = _Unpacker(io.BytesIO(packed), {name: path for path, name in paths.items()}).load()
+        data, files = done.result()
+        result = unpickled(data, paths)
         for name, content in files.items():
-            write_whole(f"{out}/{name}", content)
-    except CancelledError:  # of the cluster's, whose workers with the font are gone
-        future.set_exception(WorkerLostError("its workers died"))
+            write_whole(f"{paths[OUT]}/{name}", content)
     except Exception as error:
-        lost = type(error).__name__ == "KilledWorker"
+        # CancelledError is of the cluster's, whose workers with the font are gone.
+        lost = isinstance(error, CancelledError) or type(error).__name__ == "KilledWorker"
         future.set_exception(WorkerLostError("its workers died") if lost else error)
     else:
         future.set_result(result)

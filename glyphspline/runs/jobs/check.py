@@ -221,30 +221,22 @@ def check_font(
     job = CheckJob(side_of(source), thresholds, looked, source.outer)
     if chosen:
         job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps, kinks is not None)
-    return _found(job, tasks, tags if chosen else (), executor, observer, once, kinks)
 
+    def glyphs() -> Iterator[GlyphFindings]:
+        reported = _Reported()
+        with workers(0, executor=executor) as pool:
+            for part in run(job, tasks, pool, ordered=True, observer=observer):
+                rows, numbers, shapes, along, error = part.result
+                if kinks is not None and along:
+                    kinks.append(along)
+                if once:
+                    fresh = reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)
+                    rows = rows.chosen(np.flatnonzero(fresh))
+                found = findings([(task.name, task.gid) for task in part.tasks], rows, tags if chosen else ())
+                for task, own, of_axes in zip(part.tasks, found, numbers, strict=True):
+                    yield GlyphFindings(task.name, task.gid, own, error, of_axes)
 
-def _found(
-    job: CheckJob,
-    tasks: list[Task],
-    tags: Sequence[str],
-    executor: Executor | None,
-    observer: Observer | None,
-    once: bool,
-    kinks: list[Sequence[AxisKinks]] | None,
-) -> Iterator[GlyphFindings]:
-    """Findings glyph by glyph, without those of a shape that was reported for an earlier glyph."""
-    reported = _Reported() if once else None
-    with workers(0, executor=executor) as pool:
-        for part in run(job, tasks, pool, ordered=True, observer=observer):
-            rows, axes, shapes, along, error = part.result
-            if kinks is not None and along:
-                kinks.append(along)
-            if reported is not None:
-                rows = rows.chosen(np.flatnonzero(reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)))
-            found = findings([(task.name, task.gid) for task in part.tasks], rows, tags)
-            for task, own, numbers in zip(part.tasks, found, axes, strict=True):
-                yield GlyphFindings(task.name, task.gid, own, error, numbers)
+    return glyphs()
 
 
 class _Reported:
