@@ -54,8 +54,9 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
     from ..errors import GlyphsplineError, OutputError
+    from ..runs.file_names import folders_for
     from ..runs.folder import locked
-    from ..runs.font_search import faces_of, folders_for
+    from ..runs.font_search import faces_of
 
     face_index, folders = call.instance.face_index, [call.out]
     if alone:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from itertools import chain
 from typing import Any
@@ -169,97 +169,80 @@ def command(spec: DatasetSpec) -> str:
 
 def card(plan: Plan, summary: Summary, schema: Any) -> str:
     """README.md."""
-    return "\n".join([*_header(plan, summary), "", *_body(plan, summary, schema)]) + "\n"
-
-
-def _header(plan: Plan, summary: Summary) -> Iterator[str]:
-    yield "---"
-    yield "pretty_name: Glyphs of fonts as curves"
-    hub = list(dict.fromkeys(HUB.get(name, "other") for name in sorted(summary.licences)))
-    if len(hub) == 1:
-        yield f"license: {hub[0]}"
-    elif hub:
-        yield "license:"
-        yield from (f"- {name}" for name in hub)
-    yield "tags:"
-    yield from (f"- {tag}" for tag in ("fonts", "glyphs", "curves", "splines"))
-    yield "size_categories:"
-    yield f"- {next((name for most, name in SIZES.items() if summary.rows < most), 'n>100M')}"
-    yield "configs:"
-    if summary.splits:
-        yield "- config_name: default"
-        yield "  default: true"
-        yield "  data_files:"
-        for split in SPLITS:
-            if split in summary.splits:
-                yield f"  - split: {split}"
-                yield f"    path: data/{split}-*.parquet"
-    yield "- config_name: fonts"
-    yield "  data_files:"
-    yield "  - split: fonts"
-    yield "    path: fonts.parquet"
-    yield "---"
-
-
-def _body(plan: Plan, summary: Summary, schema: Any) -> Iterator[str]:
-    spec = plan.spec
-    yield "# Glyphs of fonts as curves"
-    yield ""
-    what = "contour" if spec.rows == "contour" else "glyph"
-    yield f"One row a {what}. Splits are by family: no family is in two of them."
-    yield ""
-    yield "| split | families | fonts | glyphs | rows | rows whose shape is in an earlier row | MB |"
-    yield "|---|---:|---:|---:|---:|---:|---:|"
-    for name in SPLITS:
-        if (s := summary.splits.get(name)) is not None:
-            yield (
-                f"| {name} | {s.families} | {s.fonts} | {s.glyphs} | {s.rows} | {s.duplicates} | {s.bytes / 1e6:.1f} |"
-            )
-    yield ""
-    yield "An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape"
-    yield "that was trained on, or that stands twice in the split itself. Leave them out to test on new shapes."
-    yield ""
-    yield "## Licences"
-    yield ""
-    yield "The licence is guessed from the name table of each font (licence, its address, else the copyright notice),"
-    yield "and written as an SPDX identifier. `fonts.parquet` has the texts. Read them before you pass the data on."
-    yield ""
-    yield "| licence | fonts | rows |"
-    yield "|---|---:|---:|"
-    for licence, (fonts, rows) in sorted(summary.licences.items(), key=lambda item: (-item[1][0], item[0])):
-        yield f"| {licence} | {fonts} | {rows} |"
-    yield ""
-    yield "## Fonts"
-    yield ""
+    spec, record = plan.spec, plan.record
+    splits = {name: summary.splits[name] for name in SPLITS if name in summary.splits}
+    by_split = [
+        f"| {name} | {s.families} | {s.fonts} | {s.glyphs} | {s.rows} | {s.duplicates} | {s.bytes / 1e6:.1f} |"
+        for name, s in splits.items()
+    ]
+    licences = sorted(summary.licences.items(), key=lambda item: (-item[1][0], item[0]))
+    by_licence = [f"| {licence} | {fonts} | {rows} |" for licence, (fonts, rows) in licences]
+    columns = [
+        f"| {column.name} | {_kind(str(column.type))} | {(column.metadata or {}).get(b'unit', b'').decode()} "
+        f"| {ABOUT[column.name]} |"
+        for column in schema
+    ]
     counts = ", ".join([f"{count} {status}" for status, count in summary.fonts.items() if count])
-    failed = f"{counted(summary.failed, 'glyph')} failed"
-    yield f"`fonts.parquet` (the configuration `fonts`) has a row for each face at each location: {counts}; {failed}."
-    yield "Fonts that share name, style and version with an earlier one name it in `same_as`."
-    yield ""
-    yield "## How it was made"
-    yield ""
-    yield "```"
-    yield command(spec)
-    yield "```"
-    yield ""
-    libraries = ", ".join([f"{name} {number}" for name, number in plan.record["versions"].items()])
-    yield f"glyphspline {plan.record['glyphspline']}; {libraries}."
-    yield "The same fonts, options and versions give the same bytes. `dataset.json` has all options."
-    yield ""
-    yield "## Columns"
-    yield ""
-    metadata = schema.metadata or {}
-    if (version := metadata.get(b"glyphspline.datasets.schema")) is not None:
-        yield f"Schema version {version.decode()}."
-        yield ""
-    if spec.rows == "glyph":
-        yield "Of what a contour has, a row has a list with an item for each contour."
-        yield ""
-    yield "| column | type | unit | what it holds |"
-    yield "|---|---|---|---|"
-    for column in schema:
-        unit = (column.metadata or {}).get(b"unit", b"").decode()
-        yield f"| {column.name} | {_kind(str(column.type))} | {unit} | {ABOUT[column.name]} |"
+    libraries = ", ".join([f"{name} {number}" for name, number in record["versions"].items()])
+    of_contours = "Of what a contour has, a row has a list with an item for each contour.\n\n"
+    return f"""\
+{_header(summary, splits)}
+# Glyphs of fonts as curves
+
+One row a {spec.rows}. Splits are by family: no family is in two of them.
+
+| split | families | fonts | glyphs | rows | rows whose shape is in an earlier row | MB |
+{_lines("|---|---:|---:|---:|---:|---:|---:|", *by_split)}
+An earlier row may be in an earlier split: rows of `validation` and `test` with `duplicate` have a shape
+that was trained on, or that stands twice in the split itself. Leave them out to test on new shapes.
+
+## Licences
+
+The licence is guessed from the name table of each font (licence, its address, else the copyright notice),
+and written as an SPDX identifier. `fonts.parquet` has the texts. Read them before you pass the data on.
+
+| licence | fonts | rows |
+{_lines("|---|---:|---:|", *by_licence)}
+## Fonts
+
+`fonts.parquet` (the configuration `fonts`) has a row for each face at each location: {counts}; \
+{counted(summary.failed, "glyph")} failed.
+Fonts that share name, style and version with an earlier one name it in `same_as`.
+
+## How it was made
+
+```
+{command(spec)}
+```
+
+glyphspline {record["glyphspline"]}; {libraries}.
+The same fonts, options and versions give the same bytes. `dataset.json` has all options.
+
+## Columns
+
+Schema version {schema.metadata[b"glyphspline.datasets.schema"].decode()}.
+
+{of_contours if spec.rows == "glyph" else ""}| column | type | unit | what it holds |
+{_lines("|---|---|---|---|", *columns)}"""
+
+
+def _lines(*lines: str) -> str:
+    return "".join([f"{line}\n" for line in lines])
+
+
+def _header(summary: Summary, splits: Iterable[str]) -> str:
+    """Facts about the data set for Hugging Face's ``datasets``, as YAML."""
+    hub = list(dict.fromkeys(HUB.get(name, "other") for name in sorted(summary.licences)))
+    licence = [f"license: {hub[0]}"] if len(hub) == 1 else ["license:", *(f"- {name}" for name in hub)] if hub else []
+    default = ["- config_name: default", "  default: true", "  data_files:"] if splits else []
+    for split in splits:
+        default += [f"  - split: {split}", f"    path: data/{split}-*.parquet"]
+    size = next((name for most, name in SIZES.items() if summary.rows < most), "n>100M")
+    return _lines(
+        "---", "pretty_name: Glyphs of fonts as curves", *licence,
+        "tags:", "- fonts", "- glyphs", "- curves", "- splines", "size_categories:", f"- {size}", "configs:", *default,
+        "- config_name: fonts", "  data_files:", "  - split: fonts", "    path: fonts.parquet", "---",
+    )  # fmt: skip
 
 
 def _kind(text: str) -> str:

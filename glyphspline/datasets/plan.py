@@ -13,6 +13,7 @@ from importlib.metadata import version
 from typing import Any, NamedTuple
 
 from .._version import __version__
+from ..runs.engine import slices
 from .scan import SPLITS, FontFacts
 from .spec import DatasetSpec
 
@@ -27,9 +28,8 @@ LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
 
 
 class Task(NamedTuple):
-    """A glyph: its number in the run, its font, and its place among the glyphs of the font that are asked for."""
+    """A glyph: its font, and its place among the glyphs of the font that are asked for."""
 
-    number: int
     font: FontFacts
     at: int
 
@@ -43,11 +43,10 @@ class Piece(NamedTuple):
 
 
 class Shard(NamedTuple):
-    """A file of the data set: its name, and its glyphs, of which the first has the number ``start`` in the run."""
+    """A file of the data set: its name, its split and its glyphs."""
 
     name: str
     split: str
-    start: int
     pieces: tuple[Piece, ...]
 
     @property
@@ -72,13 +71,12 @@ class Plan:
     def shards(self) -> tuple[Shard, ...]:
         """The files, in order."""
         found: list[Shard] = []
-        start = 0
         for split in SPLITS:
             packs = list(_packs([(k, font) for k, font in enumerate(self.fonts) if font.split == split]))
-            for k, pieces in enumerate(packs):
-                shard = Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, start, pieces)
-                found.append(shard)
-                start += shard.glyphs
+            found += [
+                Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, pieces)
+                for k, pieces in enumerate(packs)
+            ]
         return tuple(found)
 
     @property
@@ -86,14 +84,11 @@ class Plan:
         """Number of glyphs of all shards."""
         return sum(shard.glyphs for shard in self.shards)
 
-    def chunks(self, shard: Shard) -> Iterator[list[Task]]:
+    def chunks(self, shard: Shard) -> Iterator[Sequence[Task]]:
         """The tasks of a shard in order, in chunks of one font each."""
-        number, size = shard.start, chunk_size(self.spec)
-        for piece in shard.pieces:
-            for first in range(piece.first, piece.last, size):
-                last = min(first + size, piece.last)
-                yield [Task(number + k - first, self.fonts[piece.font], k) for k in range(first, last)]
-                number += last - first
+        size = max(1, min(CHUNK, CHUNK_BYTES // self.spec.glyph_bytes))
+        for font, first, last in shard.pieces:
+            yield from slices([Task(self.fonts[font], k) for k in range(first, last)], size)
 
     @cached_property
     def record(self) -> dict[str, Any]:
@@ -102,7 +97,11 @@ class Plan:
         fonts = [[*f.key, f.file, f.status] for f in self.fonts]
         return {
             "glyphspline": __version__,
-            "versions": versions(),
+            "versions": {
+                "python": platform.python_version(),
+                **{name: version(name) for name in LIBRARIES},
+                "unicode": unicodedata.unidata_version,
+            },
             "spec": asdict(self.spec) | {"options": options},
             "fonts": {"count": len(fonts), "sha256": _digest(fonts)},
             "shards": len(self.shards),
@@ -114,11 +113,6 @@ class Plan:
         return _digest(self.record)
 
 
-def chunk_size(spec: DatasetSpec) -> int:
-    """Glyphs that a worker makes rows of at a time."""
-    return max(1, min(CHUNK, CHUNK_BYTES // spec.glyph_bytes))
-
-
 def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]]:
     """The glyphs of a split's fonts in packs of ``SHARD``."""
     pack: list[Piece] = []
@@ -128,8 +122,7 @@ def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]
         while first < font.taken:
             last = min(font.taken, first + room)
             pack.append(Piece(number, first, last))
-            room -= last - first
-            first = last
+            room, first = room - (last - first), last
             if not room:
                 yield tuple(pack)
                 pack, room = [], SHARD
@@ -155,16 +148,8 @@ def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
             same = by_name.setdefault(name, font)
             font = font if same is font else replace(font, same_as=same.sha256)
         fonts.append(font)
-    order = {split: k for k, split in enumerate(SPLITS)}
-    fonts.sort(key=lambda f: (order.get(f.split or "", len(order)), *f.key, f.file))
+    fonts.sort(key=lambda f: (SPLITS.index(f.split) if f.split else len(SPLITS), *f.key, f.file))
     return Plan(spec, tuple(fonts))
-
-
-def versions() -> dict[str, str]:
-    """Versions of what decides the bytes of a data set, besides the processor."""
-    found = {"python": platform.python_version()}
-    found |= {name: version(name) for name in LIBRARIES}
-    return found | {"unicode": unicodedata.unidata_version}
 
 
 def _digest(value: Any) -> str:

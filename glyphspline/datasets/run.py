@@ -208,18 +208,19 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     )  # fmt: skip
 
     def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
-        following = 0
-        while following < shard.glyphs:
+        done = 0
+        while done < shard.glyphs:
             part = next(parts)
-            following += len(part.tasks)
+            done += len(part.tasks)
             yield numbers[part.tasks[0].font.key], part.result
 
-    shapes = Shapes()
+    shapes, following = Shapes(), len(left)
     layout = schema(plan.spec, of_fonts=True)
     for shard, fonts in held.items():
         if fonts is None:
             fonts = write_shard(paths[shard], of_shard(shard), shapes, mark_of(shard, plan), layout)
-        elif left and shard.start < left[-1].start:
+            following -= 1
+        elif following:
             add_shapes(paths[shard], shapes)
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)

@@ -21,15 +21,6 @@ if TYPE_CHECKING:
 SPLITS = ("train", "validation", "test")
 """In the order in which rows are written."""
 
-NO_SCRIPT = frozenset({"Zyyy", "Zinh", "Zzzz"})
-"""Common, inherited and unknown."""
-
-LONGEST_TEXT = 500
-"""Characters kept of a licence's text: the whole of some has 40,000."""
-
-EMBEDDING = {0: "installable", 2: "restricted", 4: "preview and print", 8: "editable"}
-"""What the lowest four bits of fsType in the table OS/2 say."""
-
 
 @dataclass(frozen=True)
 class FontFacts:
@@ -108,11 +99,10 @@ class ScanJob(Job[Path, list[FontFacts]]):
 
     def failed(self, task: Path, error: Exception) -> list[FontFacts]:
         """A file that cost a worker."""
-        return [unread(task, reason(error))]
+        return [_unread(task, reason(error))]
 
 
-def unread(path: Path, reason: str, face: int = 0) -> FontFacts:
-    """A font that cannot be read."""
+def _unread(path: Path, reason: str, face: int = 0) -> FontFacts:
     return FontFacts(path, path.name, face, status="failed", reason=reason)
 
 
@@ -126,9 +116,9 @@ def _faces(path: Path, spec: DatasetSpec) -> Iterator[FontFacts]:
             faces = source.num_faces
             yield from facts_of(source, spec)
         except GlyphsplineError as error:
-            yield unread(path, error.message, face)
+            yield _unread(path, error.message, face)
         except Exception as error:  # broken tables raise any of a dozen types
-            yield unread(path, f"a broken font: {type(error).__name__}: {error}", face)
+            yield _unread(path, f"a broken font: {type(error).__name__}: {error}", face)
         face += 1
 
 
@@ -137,12 +127,14 @@ def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
     from ..readers import Font
 
     tables = source.tables() if isinstance(source, Font) else None
+    shared = {"Zyyy", "Zinh", "Zzzz"}  # common, inherited and unknown
     facts = FontFacts(
         source.path.absolute(), source.path.name, source.face_index, sha256=source.sha256, family=source.family,
         style=source.style, axes=tuple(f"{a.tag}={a.minimum:g}:{a.default:g}:{a.maximum:g}" for a in source.axes),
         units_per_em=source.metrics.units_per_em, ascender=source.metrics.ascender,
         descender=source.metrics.descender, glyphs=len(source.glyph_names), characters=len(source.cmap),
-        scripts=scripts_of_font(source), **{"licence": UNKNOWN} | _of_names(tables),
+        scripts=tuple(sorted({script_of(code) for code in source.cmap} - shared)),
+        **{"licence": UNKNOWN} | _of_names(tables),
     )  # fmt: skip
     facts = chosen(facts, source, spec)
     default = {axis.tag: axis.default for axis in source.axes}
@@ -179,12 +171,9 @@ def _of_names(tables: Any) -> dict[str, Any]:
         _printable(names.getDebugName(number)) for number in (0, 5, 6, 13, 14)
     )
     return {
-        "version": version,
-        "postscript_name": postscript_name,
-        "licence": licence_of(text, url, copyright),
-        "licence_text": text and text[:LONGEST_TEXT],
-        "licence_url": url and url[:LONGEST_TEXT],
-    }
+        "version": version, "postscript_name": postscript_name, "licence": licence_of(text, url, copyright),
+        "licence_text": text and text[:500], "licence_url": url and url[:500],  # some have 40,000 characters
+    }  # fmt: skip
 
 
 def _classes(tables: Any, location: Mapping[str, float]) -> dict[str, Any]:
@@ -200,7 +189,7 @@ def _classes(tables: Any, location: Mapping[str, float]) -> dict[str, Any]:
         "weight_class": os2.usWeightClass,
         "width_class": os2.usWidthClass,
         "italic": bool(os2.fsSelection & 1) or location.get("ital", 0.0) > 0.0,
-        "embedding": EMBEDDING.get(os2.fsType & 15),
+        "embedding": {0: "installable", 2: "restricted", 4: "preview and print", 8: "editable"}.get(os2.fsType & 15),
     }
 
 
@@ -221,21 +210,13 @@ def category_of(code: int) -> str:
     return unicodedata.category(chr(code))
 
 
-def scripts_of_font(source: Source) -> tuple[str, ...]:
-    """The scripts of a font's characters, sorted, without those that all scripts share."""
-    return tuple(sorted({script_of(code) for code in source.cmap} - NO_SCRIPT))
-
-
 def selected(source: Source, spec: DatasetSpec) -> list[int]:
     """Indices of the glyphs that are asked for, ascending; without a filter all, those without a character too."""
     if not (spec.characters or spec.scripts):
         return list(range(len(source.glyph_names)))
     asked = set(map(ord, spec.characters))
-    names = {
-        name
-        for code, name in source.cmap.items()
-        if (not asked or code in asked) and (not spec.scripts or script_of(code) in spec.scripts)
-    }
+    codes = [code for code in source.cmap if not asked or code in asked]
+    names = {source.cmap[code] for code in codes if not spec.scripts or script_of(code) in spec.scripts}
     return [gid for gid, name in enumerate(source.glyph_names) if name in names]
 
 

@@ -56,13 +56,8 @@ class OfFont(NamedTuple):
 
     def plus(self, other: OfFont) -> OfFont:
         """The sum of two."""
-        return OfFont(
-            self.glyphs + other.glyphs,
-            self.rows + other.rows,
-            self.duplicates + other.duplicates,
-            self.failed + other.failed,
-            (*self.reasons, *other.reasons)[:NAMED],
-        )
+        sums = [a + b for a, b in zip(self[:4], other[:4], strict=True)]
+        return OfFont._make([*sums, (*self.reasons, *other.reasons)[:NAMED]])
 
 
 class Shapes:
@@ -183,7 +178,7 @@ def finished(path: str, mark: str) -> Held | None:
         if metadata.get(MARK) != mark.encode():
             return None
         facts = json.loads(metadata[FACTS])
-        return {int(k): OfFont(a, b, c, d, tuple((n, why) for n, why in e)) for k, (a, b, c, d, e) in facts.items()}
+        return {int(k): OfFont._make([*counts, tuple(map(tuple, reasons))]) for k, (*counts, reasons) in facts.items()}
     except (pa.ArrowException, KeyError, ValueError, TypeError):
         return None
 

@@ -1,11 +1,14 @@
-"""Names of the files of glyphs: safe on every system, different in more than case, the same whatever is selected."""
+"""Names of glyphs' files, the same whatever is selected, and of folders: safe everywhere, unlike in any case."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
+from itertools import count as count_from
+from pathlib import Path
 
 from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
 
@@ -35,22 +38,16 @@ def file_names(glyph_names: Sequence[str], names: Names = "glyph", cmap: Mapping
     if names == "gid":
         return [f"{gid:05}" for gid in range(len(glyph_names))]
     wanted = list(glyph_names)
-    if names != "glyph":
-        first: dict[str, int] = {}
-        for code in sorted(cmap or {}):
-            first.setdefault((cmap or {})[code], code)
+    if names != "glyph" and cmap is not None:
+        first = {cmap[code]: code for code in sorted(cmap, reverse=True)}
         named = _uni if names == "unicode" else _char
         wanted = [named(first[name]) if name in first else name for name in wanted]
-    return _safe(wanted)
-
-
-def _safe(names: Sequence[str]) -> list[str]:
-    """Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names."""
-    keys = list(map(_key, names))
+    # Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names.
+    keys = list(map(_key, wanted))
     counts = Counter(keys)
-    stays = [counts[key] == 1 and _is_plain(name, key) for name, key in zip(names, keys, strict=True)]
+    stays = [counts[key] == 1 and _is_plain(name, key) for name, key in zip(wanted, keys, strict=True)]
     taken = {key for key, stay in zip(keys, stays, strict=True) if stay}
-    return [name if stay else _by_rule(name, taken) for name, stay in zip(names, stays, strict=True)]
+    return [name if stay else _by_rule(name, taken) for name, stay in zip(wanted, stays, strict=True)]
 
 
 def _key(name: str) -> str:
@@ -70,19 +67,18 @@ def _is_seen(character: str) -> bool:
 
 def _by_rule(name: str, taken: set[str]) -> str:
     """The file name by the UFO rule, an underscore after each capital, which is added to ``taken``."""
-    stem = base = userNameToFileName(_tame(name), taken)
-    count = 1
-    while _key(stem) in taken:
-        count += 1
-        stem = f"{base}_{count}"
-    taken.add(_key(stem))
-    return stem
-
-
-def _tame(name: str) -> str:
-    """Make a valid name where the UFO rules do not: the name is too long in bytes, empty, or has lone surrogates."""
+    # The UFO rule makes no valid name of one that is too long in bytes, empty, or has lone surrogates.
     clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
-    return clipped.decode(errors="ignore").rstrip(". ") or "_"
+    tame = clipped.decode(errors="ignore").rstrip(". ") or "_"
+    return _free(userNameToFileName(tame, taken), "_", taken)
+
+
+def _free(stem: str, hyphen: str, taken: set[str]) -> str:
+    """The name, or if there is one like it already, with the least number that there is none with; it is taken then."""
+    numbered = (f"{stem}{hyphen}{count}" for count in count_from(2))
+    name = next(name for name in chain([stem], numbered) if _key(name) not in taken)
+    taken.add(_key(name))
+    return name
 
 
 def _uni(code: int) -> str:
@@ -94,3 +90,12 @@ def _char(code: int) -> str:
     """The character, or the name of its code point if no file can be called so or nobody can see it."""
     character = chr(code)
     return character if _is_seen(character) and character not in '."*/:<>?[\\]|' else _uni(code)
+
+
+def folders_for(fonts: Iterable[Path]) -> list[str]:
+    """A folder name for each font from its file name; the names differ in more than case."""
+    taken, found = set(_RESERVED), []
+    for font in fonts:
+        clipped = re.sub(r"[^\w-]", "-", font.name).encode()[:LONGEST_NAME].decode(errors="ignore")
+        found.append(_free(clipped.strip("-") or "font", "-", taken))
+    return found

@@ -1,18 +1,14 @@
-"""Many fonts: where they are, their faces, and a folder for each."""
+"""Many fonts: where they are, and their faces."""
 
 from __future__ import annotations
 
 import glob
-import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-
-from fontTools.ufoLib.filenames import reservedFileNames
 
 from ..errors import GlyphsplineError
 from ..readers.open import STDIN, AnySource, open_source
 from ..readers.source import Location
-from .file_names import LONGEST_NAME
 from .remote import fetch_fonts, local_path
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
@@ -72,22 +68,6 @@ def _listed(path: Path) -> list[str]:
     if nested:
         raise GlyphsplineError(f"a list in a list: {nested[0]}", font=str(path))
     return named
-
-
-def folders_for(fonts: Iterable[Path]) -> list[str]:
-    """A folder name for each font from its file name; the names differ in more than case."""
-    taken: set[str] = set()
-    found = []
-    for font in fonts:
-        clipped = re.sub(r"[^\w-]", "-", font.name).encode()[:LONGEST_NAME].decode(errors="ignore")
-        name = stem = clipped.strip("-") or "font"
-        count = 1
-        while name.lower() in taken or name.lower() in reservedFileNames:
-            count += 1
-            name = f"{stem}-{count}"
-        taken.add(name.lower())
-        found.append(name)
-    return found
 
 
 def faces_of(font: Path, location: Location = None, face_index: int | None = None) -> Iterator[AnySource]:
