@@ -278,10 +278,12 @@ def demo(
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
     from ..readers import open_source
     from ..runs.schedule import kinds_for
+    from ..runs.warm import is_kept
     from ..runs.warm import warm as warm_up
 
     failed, shown, spec = 0, [], RunSpec()
-    warm_up(run.jobs, kinds=kinds_for(spec.options, spec.formats))  # on all cores; a run's workers wait for one process
+    if not is_kept():  # on all cores; a run's workers wait for one process
+        warm_up(run.jobs, kinds=kinds_for(spec.options, spec.formats))
     with workplace(run.jobs, None, spec) as executor:
         for path, characters in [(font, "龍好")] if font else demo_fonts():
             source = open_source(path)

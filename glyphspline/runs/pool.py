@@ -101,15 +101,14 @@ def start_forkserver(preload: Sequence[str]) -> None:
     """
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    kept = os.environ.pop("PYTHONSAFEPATH", None)
-    os.environ["PYTHONSAFEPATH"], os.environ[ASKED] = "1", " ".join(preload)
+    environment = dict(os.environ)
+    os.environ |= {"PYTHONSAFEPATH": "1", ASKED: " ".join(preload)}
     try:
         forkserver.set_forkserver_preload([__name__])
         forkserver.ensure_running()
     finally:
         del os.environ["PYTHONSAFEPATH"], os.environ[ASKED]
-        if kept is not None:
-            os.environ["PYTHONSAFEPATH"] = kept
+        os.environ |= environment
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 

@@ -85,17 +85,20 @@ def file_system(url: str) -> tuple[Any, str]:
     return system, str(path)
 
 
-def asked(url: str, action: Callable[[], Value], kind: type[GlyphsplineError] = OutputError) -> Value:
-    """What an action on a store returns; while the store does not answer, it is tried again for a minute.
+def asked(url: str, action: Callable[[Any, str], Value], kind: type[GlyphsplineError] = OutputError) -> Value:
+    """What an action returns, on a URL's file system and the path in it.
+
+    While the store does not answer, it is tried again for a minute.
 
     Raises:
         FileNotFoundError: there is no such file.
-        GlyphsplineError: of that kind; the store refuses, or does not answer.
+        GlyphsplineError: as in :func:`file_system`; or of that kind, as the store refuses or does not answer.
     """
+    system, path = file_system(url)
     until, pause = time.monotonic() + PATIENCE, 0.5
     while True:
         try:
-            return action()
+            return action(system, path)
         except (FileNotFoundError, GlyphsplineError):
             raise
         except Exception as error:  # each provider's library has its own
@@ -118,16 +121,20 @@ def place_of(out: str | Path) -> str:
     local = local_path(str(out))
     if local is not None:
         return str(Path(local).absolute())
-    _store(str(out))
+    check_whole(str(out))
+    file_system(str(out))
     return str(out).rstrip("/")
 
 
-def _store(url: str) -> tuple[Any, str]:
-    """As :func:`file_system`, and refuse to write where others could see half a file."""
+def check_whole(url: str) -> None:
+    """Refuse to write where others could see half a file.
+
+    Raises:
+        OutputError: the URL is not that of an object store.
+    """
     if (scheme := urlsplit(url).scheme.lower()) not in WHOLE:
         stores = ", ".join(sorted(WHOLE))
         raise OutputError(f"{scheme}:// is not written to, only folders and object stores: {stores}", font=shown(url))
-    return file_system(url)
 
 
 def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
@@ -147,16 +154,16 @@ def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
             else:
                 content(file)
         return
-    system, there = _store(path)
+    check_whole(path)
     try:
         if isinstance(content, bytes):
-            asked(path, lambda: system.pipe_file(there, content))
+            asked(path, lambda system, there: system.pipe_file(there, content))
             return
         with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
             whole = Path(folder) / "whole"
             with writing(whole), open(whole, "xb") as file:
                 content(file)
-            asked(path, lambda: system.put_file(str(whole), there))
+            asked(path, lambda system, there: system.put_file(str(whole), there))
     except FileNotFoundError as error:
         raise OutputError(f"cannot be written: {error}", font=shown(path)) from error
 
@@ -165,9 +172,8 @@ def exists(path: str) -> bool:
     """Whether there is a file of that name."""
     if not is_url(path):
         return os.path.isfile(path)
-    system, there = file_system(path)
     with suppress(FileNotFoundError):
-        return bool(asked(path, lambda: system.info(there))["type"] == "file")
+        return bool(asked(path, lambda system, there: system.info(there))["type"] == "file")
     return False
 
 
@@ -176,9 +182,8 @@ def listing(folder: str) -> list[str]:
     if not is_url(folder):
         remove_partials(Path(folder))
         return sorted(sizes(Path(folder)))
-    system, there = file_system(folder)
     with suppress(FileNotFoundError):
-        found = asked(folder, lambda: system.ls(there, detail=True))
+        found = asked(folder, lambda system, there: system.ls(there, detail=True))
         return sorted(PurePosixPath(item["name"]).name for item in found if item["type"] == "file")
     return []
 
@@ -191,9 +196,8 @@ def read(path: str) -> BinaryIO:
     """
     if not is_url(path):
         return open(path, "rb")
-    system, there = file_system(path)
     with missing(path, OutputError):
-        return cast(BinaryIO, asked(path, lambda: system.open(there, "rb", block_size=BLOCK)))
+        return cast(BinaryIO, asked(path, lambda system, there: system.open(there, "rb", block_size=BLOCK)))
 
 
 def size(path: str) -> int:
@@ -215,9 +219,8 @@ def remove(path: str) -> None:
     if not is_url(path):
         os.unlink(path)
         return
-    system, there = file_system(path)
     with missing(path, OutputError):
-        asked(path, lambda: system.rm_file(there))
+        asked(path, lambda system, there: system.rm_file(there))
 
 
 @contextmanager
@@ -239,13 +242,13 @@ def fetch_fonts(url: str, suffixes: frozenset[str]) -> list[Path]:
         FontError: there are none, or the store refuses or does not answer.
         OutputError: the cache cannot be written to.
     """
-    system, path = file_system(url)
+    path = file_system(url)[1]
     is_web = urlsplit(url).scheme.lower() in ("http", "https")
     with missing(url, FontError):
         if not is_web and re.search(r"[*?[]", path):
-            found = sorted(asked(url, lambda: system.glob(path), FontError))
-        elif not is_web and asked(url, lambda: system.info(path), FontError)["type"] == "directory":
-            every = asked(url, lambda: system.find(path), FontError)
+            found = sorted(asked(url, lambda system, path: system.glob(path), FontError))
+        elif not is_web and asked(url, lambda system, path: system.info(path), FontError)["type"] == "directory":
+            every = asked(url, lambda system, path: system.find(path), FontError)
             found = sorted(item for item in every if PurePosixPath(item).suffix.lower() in suffixes)
         else:
             found = [path]
@@ -253,15 +256,15 @@ def fetch_fonts(url: str, suffixes: frozenset[str]) -> list[Path]:
             raise FontError("there are no fonts", font=shown(url))
         folder = cache_folder()
         with ThreadPoolExecutor(8) as threads:
-            return list(threads.map(lambda item: _fetched(url, system, item, folder), found))
+            return list(threads.map(lambda item: _fetched(url, item, folder), found))
 
 
-def _fetched(url: str, system: Any, path: str, folder: Path) -> Path:
+def _fetched(url: str, path: str, folder: Path) -> Path:
     """A copy of a file in a folder named by its content."""
     handle, partial = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
     os.close(handle)
     try:
-        asked(url, lambda: system.get_file(path, partial), FontError)
+        asked(url, lambda system, _: system.get_file(path, partial), FontError)
         with open(partial, "rb") as file:
             digest = file_digest(file, "sha256").hexdigest()
         place = folder / digest / file_name(path)

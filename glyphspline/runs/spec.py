@@ -122,16 +122,15 @@ class RunSpec:
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
         if not self.formats:
             raise OptionError(f"no format given: there are {', '.join(available())}")
-        for name in self.formats:
-            if name not in (GALLERY, *WHOLE) and not (isinstance(name, str) and is_format(name)):
+        own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]
+        for name in own:
+            if not (isinstance(name, str) and is_format(name)):
                 raise OptionError(f"no format {name}: there are {', '.join(available())}")
+            format_named(name)  # raises where a plug-in is broken
         check(self)
         for name, kind in (("options", Options), ("settings", Settings), ("limits", Limits), ("maps", Maps)):
             if not isinstance(getattr(self, name), kind):
                 raise GlyphsplineError(f"{name} are {kind.__name__}")
-        own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]
-        for name in own:
-            format_named(name)  # raises where a plug-in is broken
         order = OURS if set(own) <= OURS.keys() else format_names()
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))
@@ -166,9 +165,6 @@ class RunSpec:
 REQUEST = ("command", "selection", "selected", "missing")
 """Keys of ``run.json`` of the last call for the folder; calls for other glyphs go on with the same run."""
 
-FIRST_MISSING = 20
-"""Missing characters that ``run.json`` lists; it counts all."""
-
 
 def describe(
     source: Source,
@@ -185,7 +181,11 @@ def describe(
     """
     em = source.metrics.units_per_em
     effective = {"tolerance": spec.options.tolerance_for(em), "residual_tolerance": spec.options.solver_tolerance}
-    asked = asked_for(source, glyphs)
+    asked = dict(getattr(glyphs, "asked", {}))  # the arguments of :meth:`Source.select`
+    if not asked:
+        asked = {"all": True} if len(glyphs) == len(source.glyph_names) else {"glyphs": list(glyphs)}
+    if "text" in asked:  # an argument of the command line may hold bytes that are no text
+        asked["text"] = asked["text"].encode(errors="replace").decode()
     missing = getattr(glyphs, "missing", ())
     return {
         "glyphspline": __version__,
@@ -193,7 +193,7 @@ def describe(
         "font": font_facts(source),
         "selection": asked,
         "selected": len(glyphs),
-        "missing": {"count": len(missing), "first": list(missing[:FIRST_MISSING])},
+        "missing": {"count": len(missing), "first": list(missing[:20])},
         "options": asdict(spec.options) | effective,
         "formats": list(spec.formats),
         **asdict(spec.settings.look),
@@ -218,16 +218,6 @@ def font_facts(source: Source) -> dict[str, Any]:
         "style": source.style,
         "metrics": asdict(source.metrics),
     }
-
-
-def asked_for(source: Source, glyphs: Sequence[str]) -> dict[str, Any]:
-    """The arguments of :meth:`Source.select` that choose these glyphs."""
-    asked = dict(getattr(glyphs, "asked", {}))
-    if not asked:
-        asked = {"all": True} if len(glyphs) == len(source.glyph_names) else {"glyphs": list(glyphs)}
-    if "text" in asked:  # an argument of the command line may hold bytes that are no text
-        asked["text"] = asked["text"].encode(errors="replace").decode()
-    return asked
 
 
 def command(

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
 from functools import cache
 from math import inf
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,26 +24,23 @@ SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, 
 TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
 """Touches the square, and itself."""
 
-LEAF = Contour(
-    np.array([[0.0, 0.0], [60.0, 0.0], [100.0, 40.0], [100.0, 100.0], [40.0, 100.0], [0.0, 60.0]]), np.array([3, 3])
-)
+LEAF = Contour(np.array([[0.0, 0], [60, 0], [100, 40], [100, 100], [40, 100], [0, 60]]), np.array([3, 3]))
 
 DISC = Contour(
-    np.array(
-        [[9.0, 0], [9, 5], [5, 9], [0, 9], [-5, 9], [-9, 5], [-9, 0], [-9, -5], [-5, -9], [0, -9], [5, -9], [9, -5]]
-    )
-    * 10,
+    np.array([
+        [90.0, 0], [90, 50], [50, 90], [0, 90], [-50, 90], [-90, 50], [-90, 0], [-90, -50], [-50, -90], [0, -90],
+        [50, -90], [90, -50],
+    ]),
     np.full(4, 3),
-)
+)  # fmt: skip
 """Needs a spline of several spans in the sharp mode, whose fit takes longest to compile."""
 
 KNOT = Contour(
-    np.array(
-        [[262, 298], [814, 92], [600, 729], [188, 55], [275, 657], [562, 150], [433, 669], [423, 633], [967, 683]],
-        dtype=np.float64,
-    ),
+    np.array([
+        [262.0, 298], [814, 92], [600, 729], [188, 55], [275, 657], [562, 150], [433, 669], [423, 633], [967, 683],
+    ]),
     np.full(3, 3),
-)
+)  # fmt: skip
 """Crosses itself, and is fitted again more than once."""
 
 SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
@@ -55,6 +53,19 @@ REGIONS = np.array([[[0.0, 1.0, 1.0]]])
 def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process."""
     WORK[kind]()
+
+
+def is_kept() -> bool:
+    """Whether compiled code seems to be there: the wheel's, or some that is newer than all source files.
+
+    A guess, which takes a hundredth of the time that importing the compiler does.
+    """
+    package = Path(__file__).parents[1]
+    if (package / "_compiled" / "made_for.json").exists():
+        return True
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or package / "__pycache__" / "compiled")
+    kept = max((file.stat().st_mtime for file in folder.glob("*.nbc")), default=0.0)
+    return all(file.stat().st_mtime < kept for file in package.rglob("*.py"))
 
 
 def warm(

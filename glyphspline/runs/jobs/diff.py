@@ -120,17 +120,15 @@ class FontDifference:
     @property
     def is_beyond(self) -> bool:
         """Whether anything is: a glyph that only one font has, or that could not be compared, always is."""
-        glyphs = self.glyphs
-        return bool(glyphs.only_old or glyphs.only_new or self.unread) or bool(self.beyond)
+        return bool(self.glyphs.only_old or self.glyphs.only_new or self.unread or self.beyond)
 
     def worst_first(self) -> list[Difference]:
         """The differences: those beyond the tolerance first, then by distance, change of the advance, and index."""
-        return sorted(
-            self.differences,
-            key=lambda own: (
-                not own.is_beyond(self.tolerance), -own.bound, -abs(own.new_advance - own.advance), own.gid,
-            ),
-        )  # fmt: skip
+
+        def badness(own: Difference) -> tuple[float, ...]:
+            return not own.is_beyond(self.tolerance), -own.bound, -abs(own.new_advance - own.advance), own.gid
+
+        return sorted(self.differences, key=badness)
 
     def facts(self) -> dict[str, Any]:
         """As JSON data: counts first; differences by glyph index. It does not depend on the number of workers."""
