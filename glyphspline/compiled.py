@@ -55,9 +55,6 @@ PLACE = "NUMBA_CACHE_DIR"
 QUIET = "GLYPHSPLINE_QUIET"
 """Environment variable: set where nobody wants to read that code is being compiled."""
 
-MONTH = 30 * 86400.0
-"""Seconds for which code of earlier sources is kept: going back to a branch does not compile again."""
-
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 CONSTANTS = (bool, int, float, str, bytes, tuple, np.generic, np.ndarray)
@@ -201,7 +198,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
                 os.unlink(new.name)
         for old in folder.glob(f"{self._name}-*.nbc"):
             with suppress(OSError):
-                if old.stat().st_mtime < time.time() - MONTH:
+                if old.stat().st_mtime < time.time() - 30 * 86400:  # within a month one may go back to a branch
                     old.unlink()
 
     def _reduced(self, code: Any) -> tuple[Any, ...]:

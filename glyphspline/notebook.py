@@ -28,9 +28,6 @@ SHOWN = (
 )  # fmt: skip
 """Measures shown in a table."""
 
-HEIGHT = 320
-"""Height of a drawing in pixels."""
-
 
 def install() -> None:
     """Add the methods that notebooks call to the classes."""
@@ -104,7 +101,7 @@ def _cubic_data(spline: Spline, digits: int) -> str:
 
 
 def _sized(svg: str) -> str:
-    return svg.replace("<svg ", f'<svg height="{HEIGHT}" style="max-width:100%" ', 1)
+    return svg.replace("<svg ", '<svg height="320" style="max-width:100%" ', 1)
 
 
 def plot(

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[1]
 VERSIONS = tuple(f"3.{minor}" for minor in (11, 12, 13, 14))
 EXTRAS = ("overlaps", "parquet", "cad", "sources", "cluster", "remote", "fontspector", "view", "notebook")
 INSTALL = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile")
-UNSET = ("PYTHONPATH", "NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
+UNSET = ("PYTHONPATH", "NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE", "GLYPHSPLINE_COMPILED")
 
 
 LOOK = """
@@ -146,9 +146,9 @@ def interpreter(environment: Path) -> Path:
     return environment / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
-def run(*words: str | Path, cwd: Path | None = None) -> None:
-    """Run a command, and show what it has said if it fails."""
-    environment = {name: value for name, value in os.environ.items() if name not in UNSET}
+def run(*words: str | Path, cwd: Path | None = None, **variables: str) -> None:
+    """Run a command with more environment variables, and show what it has said if it fails."""
+    environment = {name: value for name, value in os.environ.items() if name not in UNSET} | variables
     done = subprocess.run(list(map(str, words)), cwd=cwd, env=environment, capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, words))}\n{done.stdout}{done.stderr}")

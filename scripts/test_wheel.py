@@ -23,7 +23,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from scripts.test_package import INSTALL, ROOT, copy_tree, interpreter
+from scripts.test_package import INSTALL, ROOT, copy_tree, interpreter, run
 
 FONTS = ROOT / "fonts_test"
 NOBODY = 65534
@@ -87,7 +87,7 @@ class Environment:
     def __init__(self, place: Path, python: str) -> None:
         self.place, self.python = place / "environment", interpreter(place / "environment")
         self.out, self.log = place / "out", place / "out" / "compilations"
-        own(python, "-m", "venv", self.place)
+        run(python, "-m", "venv", self.place)
         self.out.mkdir()
         self.out.chmod(0o777)
         self.as_nobody: dict[str, Any] = {}
@@ -183,7 +183,7 @@ def main() -> None:
         place.chmod(0o755)
         environment = Environment(place, python_for_all())
         wheel = options.wheel or build(place, environment)
-        own(environment.python, *INSTALL, f"{wheel.resolve()}[{EXTRAS}]")
+        run(environment.python, *INSTALL, f"{wheel.resolve()}[{EXTRAS}]")
         print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB", flush=True)
         environment.listen()
         environment.lock()
@@ -259,7 +259,7 @@ def without_its_code(environment: Environment) -> None:
     assert abs(area("sources are not those") / shipped - 2) < 1e-12
     with environment.changed():
         kernel.write_text(text, encoding="utf-8")
-        own(environment.python, *INSTALL, "--no-deps", "numba==0.67.*", "llvmlite==0.49.*")
+        run(environment.python, *INSTALL, "--no-deps", "numba==0.67.*", "llvmlite==0.49.*")
     assert abs(area("this is numba 0.67") / shipped - 1) < 1e-12
 
 
@@ -293,10 +293,10 @@ def report(name: str, compiled: list[str], words: str) -> None:
 def build(place: Path, environment: Environment) -> Path:
     """A wheel for this processor, built where it will be tried, so that its libraries are installed once."""
     copy_tree(place / "tree")
-    own(environment.python, *INSTALL, f"{place / 'tree'}[{EXTRAS}]", "setuptools>=77")
-    own(environment.python, "-m", "pip", "uninstall", "--quiet", "--yes", "glyphspline")
+    run(environment.python, *INSTALL, f"{place / 'tree'}[{EXTRAS}]", "setuptools>=77")
+    run(environment.python, "-m", "pip", "uninstall", "--quiet", "--yes", "glyphspline")
     words = ("-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", place / "dist")
-    own(environment.python, *words, place / "tree", GLYPHSPLINE_COMPILED="host", NUMBA_CACHE_DIR=str(kept_code()))
+    run(environment.python, *words, place / "tree", GLYPHSPLINE_COMPILED="host", NUMBA_CACHE_DIR=str(kept_code()))
     (wheel,) = (place / "dist").glob("*.whl")
     return wheel
 
@@ -318,15 +318,6 @@ def python_for_all() -> str:
             continue
         return os.path.realpath(python)
     sys.exit("run this as another user than root: no Python here is for all users")
-
-
-def own(*words: str | Path, **variables: str) -> None:
-    """Run a command of whoever installs, and show what it has said if it fails."""
-    unset = ("PYTHONPATH", "NUMBA_CACHE_DIR", "GLYPHSPLINE_COMPILED")
-    environment = {name: value for name, value in os.environ.items() if name not in unset} | variables
-    done = subprocess.run(list(map(str, words)), env=environment, capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, words))}\n{done.stdout}{done.stderr}")
 
 
 if __name__ == "__main__":

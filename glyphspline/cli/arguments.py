@@ -47,6 +47,11 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
     return path
 
 
+def items_of(text: str | None) -> list[str]:
+    """The items of a list between commas."""
+    return [item for item in (text or "").replace(" ", "").split(",") if item]
+
+
 def print_version(wanted: bool) -> None:
     """Print the version and exit, if that is wanted."""
     if wanted:
@@ -124,7 +129,7 @@ class Instance:
         if self.location and "=" not in self.location:
             return self.location
         found: dict[str, float] = {}
-        for item in filter(None, (self.location or "").replace(" ", "").split(",")):
+        for item in items_of(self.location):
             tag, _, value = item.partition("=")
             try:
                 found[tag] = float(value)

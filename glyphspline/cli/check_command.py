@@ -113,7 +113,7 @@ def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool
     from ..runs.jobs.check import STEPS, Asked
 
     every = [kind.name for kind in KINDS]
-    kinds = _listed(options.kinds)
+    kinds = opt.items_of(options.kinds)
     for name in kinds:
         if name not in every:
             raise OptionError(f"--kinds has no {name!r}: there are {', '.join(every)}")
@@ -151,7 +151,7 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
     """
     names = [each.name for each in fields(Thresholds)]
     found: dict[str, float] = {}
-    for item in _listed(text):
+    for item in opt.items_of(text):
         name, _, value = item.partition("=")
         if name.replace("-", "_") not in names:
             raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
@@ -162,11 +162,6 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
     if corner_angle is not None:
         found["corner_angle"] = corner_angle
     return Thresholds(**found)
-
-
-def _listed(text: str | None) -> list[str]:
-    """The items of a list between commas."""
-    return [item for item in (text or "").replace(" ", "").split(",") if item]
 
 
 def put(path: Path, content: str | bytes) -> None:

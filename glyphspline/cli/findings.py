@@ -115,13 +115,15 @@ def as_csv(found: Sequence[tuple[Face, Finding]]) -> str:
     writer = csv.writer(text)  # lines end with \r\n, as RFC 4180 has them
     writer.writerow(COLUMNS)
     for face, item in found:
-        location = " ".join([f"{tag}={value!r}" for tag, value in item.location.items()])
-        between = "" if item.between is None else "{!r} {!r}".format(*item.between)
-        row = [
-            face.font, item.glyph, item.gid, item.level, item.kind, item.contour, item.segment, item.parameter,
-            *item.point, item.value, item.unit, item.detail, item.other, location, between, item.sentence,
-        ]  # fmt: skip
-        writer.writerow([_inert(cell) if isinstance(cell, str) else cell for cell in row])
+        own = {
+            "font": face.font,
+            "x": item.point[0],
+            "y": item.point[1],
+            "location": " ".join([f"{tag}={value!r}" for tag, value in item.location.items()]),
+            "between": "" if item.between is None else "{!r} {!r}".format(*item.between),
+        }
+        cells = [own[name] if name in own else getattr(item, name) for name in COLUMNS]
+        writer.writerow([_inert(cell) if isinstance(cell, str) else cell for cell in cells])
     return text.getvalue()
 
 

@@ -18,9 +18,6 @@ STATUS = 130
 
 WORDS = "interrupted; the same command goes on from here"
 
-GRACE = 0.6
-"""Seconds in which a command may end in its own way, with what it has done so far written down."""
-
 
 def watch() -> None:
     """End this process soon after SIGINT, from a thread that nothing holds up. For the main thread to call."""
@@ -33,7 +30,7 @@ def watch() -> None:
 def _wait(ours: socket.socket, theirs: socket.socket) -> None:
     while ours.recv(1) != bytes([signal.SIGINT]):
         pass
-    time.sleep(GRACE)
+    time.sleep(0.6)  # in which a command may end in its own way, with what it has done so far written down
     end()
 
 

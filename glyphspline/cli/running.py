@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from ..runs.spec import RunSpec
     from ..runs.summary import Summary
 
-LOOKED_AT = 64
-"""Outlines that are looked at to tell type from brush."""
-
 
 @dataclass(frozen=True)
 class Conversion:
@@ -172,7 +169,7 @@ def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec, executo
 
     if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
         return False
-    chosen = names[:: max(len(names) // LOOKED_AT, 1)][:LOOKED_AT]
+    chosen = names[:: max(len(names) // 64, 1)][:64]  # enough to tell type from brush
     tasks = [Task(source.glyph_names.index(name), name, "", ()) for name in chosen]
     with suppress(GlyphsplineError):  # its worker is lost or killed: nothing is known of these glyphs
         return executor.submit(corners_of, side_of(source), tasks).result() > 0.5

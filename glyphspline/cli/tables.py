@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from ..runs.jobs.diff import FontDifference
     from ..runs.summary import Summary
 
-WIDE = 1000
-"""Columns of text within which no line of a table is broken; terminals break lines themselves."""
-
 
 def plain(
     headings: Sequence[str], rows: Iterable[Sequence[str]], numbers: Sequence[str] = (), footer: Sequence[str] = ()
@@ -42,7 +39,7 @@ def plain(
     for cells in rows:
         lines.add_row(*[Text(printable(cell)) for cell in cells])
     text = StringIO()
-    Console(file=text, width=WIDE, color_system=None).print(lines)
+    Console(file=text, width=1000, color_system=None).print(lines)  # terminals break lines themselves
     return "\n".join([line.rstrip() for line in text.getvalue().splitlines()])
 
 
