@@ -18,7 +18,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Sequence
 from importlib.util import find_spec
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvat
 from glyphspline.types import FloatArray
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import faces, parser
+from scripts.survey import faces, parser, table
 
 FACES = (
     "kouzan-gyosho.otf", "DejaVuSans.ttf", "Cantarell-Regular.otf", "NotoSansCJK-Regular.ttc", "LXGWWenKai-Regular.ttf"
@@ -117,6 +117,11 @@ def chord(segment: FloatArray) -> float:
     return size(segment[-1] - segment[0])
 
 
+def with_handle(s: Segments, j: int, handle: FloatArray) -> Segments:
+    """The segments with another first handle of segment j, in whole units."""
+    return rounded([*s[:j], np.concatenate([s[j][:1], [s[j][0] + handle], s[j][2:]]), *s[j + 1 :]])
+
+
 def kink(s: Segments, j: int, unit: float) -> Planted | None:
     """A handle turned at a smooth joint, to at least one and a half times the limit."""
     if len(s[j]) < 3 or abs(joint(s, j)) > 0.2:
@@ -124,10 +129,7 @@ def kink(s: Segments, j: int, unit: float) -> Planted | None:
     a, b = tangents(s[j - 1])[1], tangents(s[j])[0]
     if min(size(a), size(b)) < 25 * unit:
         return None
-    new = s.copy()
-    new[j] = s[j].copy()
-    new[j][1] = s[j][0] + rotated(b, 2 * max(may_turn(a, b), 1.5))
-    new = rounded(new)
+    new = with_handle(s, j, rotated(b, 2 * max(may_turn(a, b), 1.5)))
     turn = abs(joint(new, j))
     limit = may_turn(tangents(new[j - 1])[1], tangents(new[j])[0])
     return Planted(new, new[j][0], 0.0) if 1.5 * limit <= turn <= 11 else None
@@ -137,10 +139,7 @@ def jump(s: Segments, j: int, unit: float) -> Planted | None:
     """A handle made shorter at a smooth joint of cubics, until curvature jumps by twice the limit."""
     if len(s[j]) != 4 or len(s[j - 1]) != 4 or abs(joint(s, j)) > 0.2:
         return None
-    new = s.copy()
-    new[j] = s[j].copy()
-    new[j][1] = s[j][0] + 0.6 * tangents(s[j])[0]
-    new = rounded(new)
+    new = with_handle(s, j, 0.6 * tangents(s[j])[0])
     a, b = tangents(new[j - 1])[1], tangents(new[j])[0]
     if min(size(a), size(b)) < 5 * unit or abs(joint(new, j)) > 0.9 * may_turn(a, b):
         return None
@@ -292,10 +291,8 @@ def handles(s: Segments, j: int, unit: float) -> Planted | None:
     reach, other = (x[0] * v[1] - x[1] * v[0]) / cross, (x[0] * u[1] - x[1] * u[0]) / cross
     if reach <= 0 or other <= 0 or 0.25 * reach * size(u) < max(4, 4 * unit):
         return None
-    new = s.copy()
-    new[j] = s[j].copy()
-    new[j][1] = s[j][0] + 1.25 * reach * u
-    return Planted(rounded(new), (s[j][0] + s[j][3]) / 2, chord(s[j]) / 2)
+    new = with_handle(s, j, 1.25 * reach * u)
+    return Planted(new, (s[j][0] + s[j][3]) / 2, chord(s[j]) / 2)
 
 
 def doubled(s: Segments, j: int, unit: float) -> Planted | None:
@@ -434,23 +431,15 @@ def main() -> int:
     given = options.parse_args()
     rng = np.random.default_rng(given.seed)
     kinds = [kind for kind in PLANTERS if kind not in ENCLOSED or find_spec("glyphspline.checks.enclosed")]
-    count: Counter[str] = Counter()
-    found: Counter[str] = Counter()
-    false: Counter[str] = Counter()
-    again: Counter[str] = Counter()
+    count, found, false, again = (Counter[str]() for _ in range(4))
     untouched = spoiled = spoiled_again = total = 0
     for number, file in enumerate(FACES):
         if not (paths := faces(file)):
             raise SystemExit(f"{file} is not there: see the head of this file")
         font = gs.open_font(paths[0])
-        outlines: list[gs.Outline] = []
+        every = (font.outline(font.glyph_names[k]) for k in rng.permutation(len(font.glyph_names)))
         wanted = (given.glyphs - total) // (len(FACES) - number)
-        for k in rng.permutation(len(font.glyph_names)):
-            outline = font.outline(font.glyph_names[k])
-            if outline.contours and len(outlines) < wanted:
-                outlines.append(outline)
-            if len(outlines) == wanted:
-                break
+        outlines = list(islice((outline for outline in every if outline.contours), wanted))
         total += len(outlines)
         before = check_many(outlines, outer=font.outer)
         em = outlines[0].metrics.units_per_em
@@ -488,12 +477,10 @@ def main() -> int:
             if given.list:
                 for each in extra:
                     print("false:", file, outline.name, each)
-    print("| kind | planted | found | false | false in another em |\n| --- | ---: | ---: | ---: | ---: |")
-    for kind in kinds:
-        print(f"| {kind} | {count[kind]} | {found[kind]} | {false[kind]} | {again[kind]} |")
-    faulty = sum(count.values())
-    share = sum(found.values()) / max(faulty, 1)
-    print(f"| all | {faulty} | {sum(found.values())} ({share:.2%}) | {sum(false.values())} | {sum(again.values())} |")
+    share = found.total() / max(count.total(), 1)
+    rows = [[kind, *(each[kind] for each in (count, found, false, again))] for kind in kinds]
+    rows.append(["all", count.total(), f"{found.total()} ({share:.2%})", false.total(), again.total()])
+    print(table(["kind", "planted", "found", "false", "false in another em"], rows))
     print(
         f"\n{total} glyphs; of {untouched} untouched ones {spoiled} have false findings, {spoiled_again} in another em."
     )

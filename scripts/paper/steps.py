@@ -16,7 +16,6 @@ from . import (
     characters,
     dimension,
     fairness,
-    fig1,
     fig5,
     lemmas,
     local,
@@ -33,7 +32,7 @@ from .report import write_report
 STEPS: dict[str, Callable[[Run], None]] = {
     "theorems": theorems.theorems,
     "lemmas": lemmas.lemmas,
-    "fig1": fig1.figure_1,
+    "fig1": thresholds.figure_1,
     "fig2": study.figure_2,
     "many": study.many_vertices,
     "fig3": study.figure_3,
