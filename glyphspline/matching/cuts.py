@@ -58,8 +58,9 @@ def common_cuts(one: Landmarks, other: Landmarks) -> tuple[FloatArray, FloatArra
         (k,) ascending places on one, and (k,) those on the other, ascending too and within a lap; and the cost of the
         pairs of strong landmarks, a landmark.
     """
-    pairs, cost = strong_pairs(one, other)
-    i, j = _surest(one, other, pairs)
+    costs = pair_costs(one, other)
+    pairs, cost = _strong_pairs(one, other, costs)
+    i, j = _surest(one.weights[:, None] + other.weights - costs, pairs)
     starts = np.array([one.places[i], other.places[j]])
     found = np.concatenate([[starts], _aligned(_Lap(one, i), _Lap(other, j))])
     found -= np.floor(found[:, :1] / len(one.cubics)) * (len(one.cubics), len(other.cubics))
@@ -67,13 +68,12 @@ def common_cuts(one: Landmarks, other: Landmarks) -> tuple[FloatArray, FloatArra
     return found[:, 0], found[:, 1], cost
 
 
-def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
+def _strong_pairs(one: Landmarks, other: Landmarks, costs: FloatArray) -> tuple[IntArray, float]:
     """(p, 2) indices of strong landmarks that correspond, at least one pair, and the cost of the alignment, a landmark.
 
     Without any, the nearest landmarks of all are a pair.
     """
     rows, columns = np.flatnonzero(one.weights >= STRONG), np.flatnonzero(other.weights >= STRONG)
-    costs = pair_costs(one, other)
     bars = one.weights[rows, None] + other.weights[columns]
     own = costs[np.ix_(rows, columns)]
     allowed = np.where(own < bars, own, np.inf)
@@ -83,15 +83,13 @@ def strong_pairs(one: Landmarks, other: Landmarks) -> tuple[IntArray, float]:
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
 
 
-def _surest(one: Landmarks, other: Landmarks, pairs: IntArray) -> tuple[int, int]:
+def _surest(gains: FloatArray, pairs: IntArray) -> tuple[int, int]:
     """The pair of which no landmark has another partner that is nearly as good."""
-    costs = pair_costs(one, other)
-    gains = one.weights[:, None] + other.weights - costs
-    clear = []
-    for i, j in pairs.tolist():
-        others = np.concatenate([np.delete(gains[i], j), np.delete(gains[:, j], i)])
-        clear.append(gains[i, j] - 0.9 * others.max(initial=0.0))
-    i, j = pairs[int(np.argmax(clear))].tolist()
+    rows, columns = pairs.T
+    own = gains[rows, columns]
+    gains[rows, columns] = 0.0
+    second = np.maximum(gains[rows].max(axis=1), gains[:, columns].max(axis=0))
+    i, j = pairs[np.argmax(own - 0.9 * np.maximum(second, 0.0))].tolist()
     return i, j
 
 

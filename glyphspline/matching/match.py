@@ -1,7 +1,8 @@
 """Masters of a glyph out of outlines whose points do not correspond: single fonts of a family, say.
 
-Contours are paired (:mod:`.contours`), then their landmarks; whole contours are aligned from a sure pair of these
-(:mod:`.alignment`), and all masters are cut where any has a joint (:mod:`.cuts`). Every master keeps its outline.
+Contours are paired by what does not depend on start points and order, then their landmarks; whole contours are aligned
+from a sure pair of these (:mod:`.alignment`), and all masters are cut where any has a joint (:mod:`.cuts`). Every
+master keeps its outline.
 """
 
 from __future__ import annotations
@@ -9,17 +10,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
+from ..curves.integrals import area
 from ..errors import GlyphsplineError, OptionError
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, Outline
-from ..types import FloatArray
-from .contours import along_ink, paired_contours
+from ..types import FloatArray, counted
 from .cuts import common_cuts, cut
-from .landmarks import Landmarks
+from .landmarks import STEPS, Landmarks
 
 MOST_COST = 0.7
 """Cost of a pair of contours, a landmark, from which they are not taken for the same."""
+
+
+FLAT = 0.02
+"""Share of the area of a circle of the same length below which the sign of a contour's area says nothing."""
+
+FARTHEST = 0.95
+"""Largest distance of the features of two contours that are a pair, in the outlines' sizes."""
+
+CORNERS = 0.01
+"""Weight of the number of corners: so far apart, in the outlines' sizes, are contours that have one more or less."""
 
 
 def match_masters(
@@ -61,17 +73,85 @@ def _matched(
     scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
     masters = []
     for scale, outline in zip(scales.tolist(), outlines, strict=True):
-        contours = along_ink(outline)
+        contours = _along_ink(outline)
         masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
     parts = [[own.contour] for own in masters[0]]
     for other, location in zip(masters[1:], locations[1:], strict=True):
         try:
-            partners = paired_contours(masters[0], other)
+            partners = _paired(masters[0], other)
             parts = [_with(own, other[j], i) for i, (own, j) in enumerate(zip(parts, partners, strict=True))]
         except GlyphsplineError as error:
             place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
             raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
     return [_together(own) for own in parts], scales
+
+
+def _along_ink(outline: Outline) -> list[Contour]:
+    """Contours that have an extent, all reversed if their total signed area is negative."""
+    contours = [contour for contour in outline.contours if len(contour) and np.ptp(contour.points, axis=0).any()]
+    if sum(area(contour.cubics()) for contour in contours) < 0:
+        return [contour.reversed() for contour in contours]
+    return contours
+
+
+def _paired(one: Sequence[Landmarks], other: Sequence[Landmarks]) -> list[int]:
+    """For each contour of the first outline the index of its partner in the second.
+
+    Raises:
+        GlyphsplineError: the numbers of contours differ, the area of a contour turns round, or no assignment is near.
+    """
+    if len(one) != len(other):
+        raise GlyphsplineError(f"the default has {counted(len(one), 'contour')}, that one {len(other)}")
+    if not one:
+        return []
+    mine, its = _features(one), _features(other)
+    costs = ((mine[:, None] - its) ** 2).sum(axis=2)
+    _, partners = linear_sum_assignment(costs)
+    chosen: list[int] = partners.tolist()
+    for i, j in enumerate(chosen):
+        signs = [_sign(of) for of in (one[i], other[j])]
+        if signs[0] * signs[1] < 0:
+            words = ["counter-clockwise" if sign > 0 else "clockwise" for sign in signs]
+            raise GlyphsplineError(
+                f"it runs {words[0]} in the default, and its partner, contour {j}, {words[1]}, so that its ink flips",
+                contour=i,
+            )
+        if not costs[i, j] < FARTHEST**2:
+            raise GlyphsplineError(
+                f"no contour there resembles it: its partner, contour {j}, is {costs[i, j] ** 0.5:.2f} of the glyph's"
+                f" size away in place, size and shape, more than {FARTHEST:g}",
+                contour=i,
+            )
+    return chosen
+
+
+def _features(contours: Sequence[Landmarks]) -> FloatArray:
+    """(n, 7) of each contour: signed size, centre, spread, correlation, corners; lengths in sizes of the outline."""
+    every = np.concatenate([of.cubics.reshape(-1, 2) for of in contours])
+    low, size = every.min(axis=0), np.ptp(every, axis=0)
+    size = np.where(size > 0, size, 1.0)
+    rows = []
+    for of in contours:
+        at = np.arange(len(of.cubics) * STEPS) / STEPS
+        points = (of.contour.at(at) - low) / size
+        steps = np.hypot(*(np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)).T) + 1e-12
+        weights = steps / steps.sum()
+        centre = weights @ points
+        away = points - centre
+        spread = np.sqrt(weights @ (away * away))
+        mixed = weights @ (away[:, 0] * away[:, 1])
+        signed = area(np.ascontiguousarray(of.cubics)) / (size[0] * size[1])
+        rows.append([
+            np.copysign(np.sqrt(abs(signed)), signed), *centre, *(2 * spread),
+            np.copysign(np.sqrt(abs(mixed)), mixed), CORNERS * len(of.corners),
+        ])  # fmt: skip
+    return np.array(rows)
+
+
+def _sign(of: Landmarks) -> int:
+    """Of the area: 0 if there is too little to tell."""
+    own = area(np.ascontiguousarray(of.cubics))
+    return int(np.sign(own)) if abs(own) > FLAT * of.length**2 / (4 * np.pi) else 0
 
 
 def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contour]:

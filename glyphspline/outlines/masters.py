@@ -227,7 +227,7 @@ def region_scalars(regions: FloatArray, at: FloatArray) -> FloatArray:
     return np.concatenate([np.ones((*whole.shape[:-1], 1)), whole], axis=-1)
 
 
-def told_apart(regions: Iterable[Region]) -> list[Region]:
+def distinct_regions(regions: Iterable[Region]) -> list[Region]:
     """Regions with a peak of their own each, of which the scalars of the given ones are linear combinations.
 
     Where components of a glyph have unlike intermediate masters, regions of one peak differ in their extents: from 0

@@ -68,9 +68,7 @@ def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resam
         total = lengths[c] = table[-1]
         start = lower_left(cubics)
         s = min(int(start), m - 1)
-        k = firsts[s]
-        while k + 1 < firsts[s + 1] and places[k + 1] <= start - s:
-            k += 1
+        k = firsts[s] + int(np.searchsorted(places[firsts[s] : firsts[s + 1]], start - s, side="right")) - 1
         first = table[k] + _length(cubics, s, places[k], start - s)
         for i in range(count):
             along = first + total * (i / count)
@@ -140,38 +138,25 @@ def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
         (P + 1,) arc length along the chain where each of P parts begins, and at the end; (P,) local parameter where it
         begins; (m + 1,) the first part of each segment, and P.
     """
-    m = len(cubics)
-    table, places, count = np.empty(4 * m + 64), np.empty(4 * m + 64), 0
-    firsts = np.empty(m + 1, dtype=np.int64)
-    todo = np.empty((DEPTH + 2, 4))  # from, to, length, depth
-    total = 0.0
-    for s in range(m):
-        firsts[s] = count
+    table, places, firsts = [0.0], [], np.zeros(len(cubics) + 1, dtype=np.int64)
+    for s in range(len(cubics)):
         scale = 0.0
         for k in range(3):
             dx, dy = cubics[s, k + 1, 0] - cubics[s, k, 0], cubics[s, k + 1, 1] - cubics[s, k, 1]
             scale += np.sqrt(dx * dx + dy * dy)
-        todo[0, 0], todo[0, 1], todo[0, 2], todo[0, 3] = 0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0.0
-        left = 1
-        while left > 0:
-            left -= 1
-            a, b, whole, depth = todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3]
+        todo = [(0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0)]
+        while len(todo) > 0:
+            a, b, whole, depth = todo.pop()
             middle = 0.5 * (a + b)
             one, two = _length(cubics, s, a, middle), _length(cubics, s, middle, b)
             if abs(one + two - whole) > EXACT * scale and depth < DEPTH:
-                todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3] = middle, b, two, depth + 1
-                left += 1
-                todo[left, 0], todo[left, 1], todo[left, 2], todo[left, 3] = a, middle, one, depth + 1
-                left += 1
-                continue
-            if count + 2 > len(table):
-                table, places = np.append(table, np.empty_like(table)), np.append(places, np.empty_like(places))
-            table[count], places[count] = total, a
-            count += 1
-            total += one + two
-    firsts[m] = count
-    table[count] = total
-    return table[: count + 1], places[:count], firsts
+                todo.append((middle, b, two, depth + 1))
+                todo.append((a, middle, one, depth + 1))
+            else:
+                table.append(table[-1] + (one + two))
+                places.append(a)
+        firsts[s + 1] = len(places)
+    return np.array(table), np.array(places), firsts
 
 
 @compiled

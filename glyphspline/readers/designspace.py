@@ -26,7 +26,7 @@ from fontTools.varLib.models import VariationModel, normalizeValue
 
 from ..errors import FontError, GlyphsplineError
 from ..extras import need
-from ..outlines.masters import DesignAxis, Masters, Region, told_apart
+from ..outlines.masters import DesignAxis, Masters, Region, distinct_regions
 from ..outlines.outline import Outline
 from ..types import FloatArray
 from .pens import MAX_COMPONENTS, ContourPen, enter_component
@@ -130,7 +130,7 @@ class Designspace(Source):
             raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
         children = {base: self._mixed(base, nesting) for base in dict.fromkeys(names)}
         regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
-        found = replace(own, regions=self._stacked(told_apart(regions)), metrics=self.metrics)
+        found = replace(own, regions=self._stacked(distinct_regions(regions)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
         pen = ContourPen(masters=len(found))
         notes: list[str] = []

@@ -14,7 +14,7 @@ from fontTools.ttLib import TTFont, newTable
 from fontTools.ttLib.tables import otTables
 
 from glyphspline import FontError, GlyphsplineError, open_font
-from glyphspline.outlines.masters import Masters, region_scalars, told_apart
+from glyphspline.outlines.masters import Masters, distinct_regions, region_scalars
 from tests.places import FONTS
 from tests.variable_fonts import Tuples, polygon, quadratic, variable_font
 
@@ -103,7 +103,7 @@ def test_cut_regions_say_the_same() -> None:
         ((-1.0, -1.0, 0.0), zero),
         (zero, zero),
     ]
-    regions = told_apart(given)
+    regions = distinct_regions(given)
     peaks = [tuple(peak for _, peak, _ in region) for region in regions]
     assert len(set(peaks)) == len(regions)
     assert (0.0, 0.0) not in peaks
@@ -112,14 +112,14 @@ def test_cut_regions_say_the_same() -> None:
     at_peaks = region_scalars(np.array(given), np.array([(0.0, 0.0), *peaks]))
     weights = after @ np.linalg.inv(region_scalars(np.array(regions), np.array([(0.0, 0.0), *peaks])))
     assert np.abs(weights @ at_peaks - before).max() < 1e-12
-    assert told_apart(regions) == regions
+    assert distinct_regions(regions) == regions
 
 
 @pytest.mark.parametrize("other", [(0.0, 0.5, 0.5), (0.5, 0.5, 1.0)])
 def test_regions_that_end_abruptly_cannot_be_cut(other: tuple[float, float, float]) -> None:
     with pytest.raises(GlyphsplineError, match="two regions of one peak"):
-        told_apart([((0.0, 0.5, 1.0),), (other,)])
-    assert told_apart([(other,)]) == [(other,)]
+        distinct_regions([((0.0, 0.5, 1.0),), (other,)])
+    assert distinct_regions([(other,)]) == [(other,)]
 
 
 def test_segments_that_vanish_in_one_master_stay(tmp_path: Path) -> None:

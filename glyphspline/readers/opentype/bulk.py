@@ -259,26 +259,23 @@ class BulkReader:
         Args:
             heads: name, glyph index and code points of each glyph. metrics: of the font at the location.
         """
+        advance = self._hb.font.get_glyph_h_advance
         found: list[OutlineOrError] = []
         while len(found) < len(heads):
-            found += self._as_many_as_fit(heads[len(found) :], metrics)
-        return found
-
-    def _as_many_as_fit(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
-        advance = self._hb.font.get_glyph_h_advance
-        with self._lock:
-            places, expected = self._draw([gid for _, gid, _ in heads])
-            made = _contours(self._buffer, places, expected)
-        points, degrees, offsets, starts, left_out, before, unusual, snapped = made
-        found: list[OutlineOrError] = []
-        glyphs = zip(heads, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
-        for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
-            if odd:
-                found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
-                continue
-            own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
-            notes = notes_of(left_out[a:b].tolist()) if b > a else ()
-            found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics, notes, moved))
+            left = heads[len(found) :]
+            with self._lock:
+                places, expected = self._draw([gid for _, gid, _ in left])
+                points, degrees, offsets, starts, left_out, before, unusual, snapped = _contours(
+                    self._buffer, places, expected
+                )
+            glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
+            for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
+                if odd:
+                    found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
+                    continue
+                own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
+                notes = notes_of(left_out[a:b].tolist()) if b > a else ()
+                found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics, notes, moved))
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:

@@ -19,7 +19,7 @@ from fontTools.ttLib.tables._g_l_y_f import SCALED_COMPONENT_OFFSET, USE_MY_METR
 from fontTools.varLib.iup import iup_delta
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import DesignAxis, Masters, Region, quadratics, region_scalars, told_apart
+from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, quadratics, region_scalars
 from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
 from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, enter_component
@@ -68,7 +68,7 @@ class Variations:
 
     def _empty(self, head: Head, stored: Sequence[Region]) -> tuple[Masters, FloatArray]:
         """Masters without contours; also (K, S + 1) the scalars of the default and of the S stored regions in each."""
-        regions = told_apart(stored)
+        regions = distinct_regions(stored)
         if len(regions) >= MOST_MASTERS:
             raise GlyphsplineError(f"{len(regions) + 1} masters, more than {MOST_MASTERS}")
         masters = Masters(*head, self.axes, self._stacked(regions), metrics=self._metrics)
