@@ -1,4 +1,4 @@
-"""The errors a caller can expect: bad input is an exception that says what was wrong and where."""
+"""The errors a caller can expect: bad input is an exception that names the file, glyph and contour."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class GlyphsplineError(Exception):
     def locate(
         self, *, font: str | None = None, glyph: str | None = None, contour: int | None = None
     ) -> GlyphsplineError:
-        """Add what an outer layer knows, keeping what an inner layer has already said."""
+        """Add what an outer layer knows, keeping what an inner layer has set."""
         self.font = font if self.font is None else self.font
         self.glyph = glyph if self.glyph is None else self.glyph
         self.contour = contour if self.contour is None else self.contour

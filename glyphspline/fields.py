@@ -1,4 +1,4 @@
-"""Options as fields of frozen dataclasses: what is known of one stands once, beside its type and default.
+"""Options as fields of frozen dataclasses: help, bounds and flags are declared once, beside type and default.
 
 The command line, files of settings, checks of values and printed commands are made from it.
 """

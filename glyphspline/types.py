@@ -29,7 +29,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def rounded_up(value: float, digits: int) -> float:
-    """The least number of so many significant digits that is not below ``value``: how a proven bound is written."""
+    """Round up to ``digits`` significant digits, as proven bounds are written."""
     text = f"{value:.{digits}g}"
     near = float(text)
     return near if not near < value else float(Decimal(text).next_plus(Context(prec=digits)))
@@ -38,7 +38,7 @@ def rounded_up(value: float, digits: int) -> float:
 class Views(Sequence[T], Generic[T]):
     """A sequence whose items are made from arrays, all at once, when one is first read.
 
-    A run over a whole font reads the arrays alone: the objects would take longer to make than the curves.
+    A run over a font reads the arrays alone: the objects would take longer to make than the curves.
     Pickled and copied as a tuple.
     """
 

@@ -295,10 +295,10 @@ def demo(
             failed += run_face(source, names, call, executor).failed
             shown.append(folder)
     if not run.quiet:
-        typer.echo("Open in a browser:")
-        for folder in shown:
-            typer.echo(f"  {folder / 'index.html'}")
-        typer.echo("Drawings are in svg/ beside it, curvature maps in curvature/.")
+        pages = [f"  {folder / 'index.html'}" for folder in shown]
+        typer.echo(
+            "\n".join(["Open in a browser:", *pages, "Drawings are in svg/ beside it, curvature maps in curvature/."])
+        )
     return bool(failed)
 
 
@@ -322,12 +322,8 @@ def demo_fonts() -> list[tuple[Path, str]]:
     import matplotlib
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
-    return [
-        (fonts / "kouzan-gyosho.ttf", "龍好"),
-        (fonts / "kouzan-kaisho.ttf", "龍好"),
-        (fonts / "kouzan-gyosho.otf", "龍好"),
-        (dejavu, "g&"),
-    ]
+    brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
+    return [*((fonts / name, "龍好") for name in brushes), (dejavu, "g&")]
 
 
 def limit_memory() -> None:

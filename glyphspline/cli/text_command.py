@@ -1,4 +1,4 @@
-"""The command ``text``: a text laid out on lines or along a path, and written as drawings."""
+"""The command ``text``: sets a text on lines or along a path, and writes drawings."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from ..writers.svg.appearance import Appearance
 
 SHOWN = 10
-"""Remarks that are said."""
+"""Maximum number of remarks printed, and of characters named in one."""
 
 BY_SUFFIX = {
     ".svg": "svg", ".png": "png", ".pdf": "pdf", ".dxf": "dxf", ".json": "json", ".csv": "polyline-csv",
     ".scad": "polyline-scad",
 }  # fmt: skip
-"""The format of a file, unless ``--format`` says it."""
+"""The format of a file by its suffix, without ``--format``."""
 
 LENGTH = re.compile(r"(-?\d{1,9}(?:\.\d{1,9})?)([a-z]*)")
 
@@ -102,7 +102,7 @@ def text(
 
 
 def formats_of(files: Sequence[File], name: str | None) -> Iterator[tuple[File, str]]:
-    """The name of the format of each file: as said, or by its suffix.
+    """The name of the format of each file: ``name``, or by its suffix.
 
     Raises:
         GlyphsplineError: there is none, or several files with one name.
@@ -210,7 +210,7 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
 
 
 def missing(layout: Layout) -> Iterator[str]:
-    """What is said of characters that no font has."""
+    """The remark on characters that no font has."""
     if layout.missing:
         named = ", ".join([f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]])
         more = f" and {len(layout.missing) - SHOWN} more" if len(layout.missing) > SHOWN else ""

@@ -212,7 +212,7 @@ def glyph_answer(work: Work, state: State) -> dict[str, Any]:
 
 
 def compare_answer(work: Work, state: State) -> dict[str, Any]:
-    """The polygon by the variants 1, 2 and 3, all measured, so that the same numbers stand beside each other."""
+    """The polygon by the variants 1, 2 and 3, all measured, so that the same numbers are shown for each."""
     state = replace(state, options=replace(state.options, measure=True))
     return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
 
