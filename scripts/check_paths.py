@@ -73,7 +73,7 @@ def apart(page: Any, folder: Path, file: Path, written: str, data: str) -> tuple
 
 
 def bent(file: Path, written: str) -> str:
-    """What bending the text along the wave takes: segments before and after, the bound in em, milliseconds."""
+    """What bending the text along the wave takes: segments before and after, the distance measured in em, milliseconds."""
     font = gs.open_font(file)
     em = font.metrics.units_per_em
     layout = gs.layout(font, written)
@@ -91,7 +91,7 @@ def bent(file: Path, written: str) -> str:
 
 def main() -> int:
     """Print the table."""
-    print("| text | letters | left out | from Chromium, on lines | on a wave | segments | bent | bound | ms |")
+    print("| text | letters | left out | from Chromium, on lines | on a wave | segments | bent | measured | ms |")
     print("|---|---|---|---|---|---|---|---|---|")
     wrong = False
     sandbox = [] if hasattr(os, "getuid") and os.getuid() != 0 else ["--no-sandbox"]  # it does not work for root
