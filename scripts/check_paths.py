@@ -73,7 +73,7 @@ def apart(page: Any, folder: Path, file: Path, written: str, data: str) -> tuple
 
 
 def bent(file: Path, written: str) -> str:
-    """What bending the text along the wave takes: segments before and after, the distance measured in em, milliseconds."""
+    """What bending the text along the wave takes: segments before and after, distance in em, milliseconds."""
     font = gs.open_font(file)
     em = font.metrics.units_per_em
     layout = gs.layout(font, written)

@@ -86,21 +86,17 @@ class Measured(NamedTuple):
 def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> list[list[Finding]]:
     """What was measured of glyphs, names and glyph indices, as values; ``tags`` of the axes, if there are any."""
     found: list[list[Finding]] = [[] for _ in glyphs]
-    columns = (rows.glyphs, rows.contours, rows.segments, rows.kinds, rows.numbers, rows.points)
-    where = (rows.locations.tolist(), rows.between.tolist())
     for g, contour, segment, what, (parameter, value, detail, other), (x, y), at, (low, high) in zip(
-        *(column.tolist() for column in columns), *where, strict=True
+        *(column.tolist() for column in rows), strict=True
     ):
         kind, (name, gid) = KINDS[what], glyphs[g]
         second, another = None if detail != detail else detail, None if other < 0 else int(other)
         whom = "itself" if another is None else f"contour {another}"
         sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom)
-        place = contour, segment, parameter, (x, y)
-        own = Finding(
-            kind.name, kind.level, name, gid, *place, value, kind.unit, second, another, sentence,
-            dict(zip(tags, at, strict=True)) if at else {}, None if low != low else (low, high),
-        )  # fmt: skip
-        found[g].append(own)
+        found[g].append(Finding(
+            kind.name, kind.level, name, gid, contour, segment, parameter, (x, y), value, kind.unit, second, another,
+            sentence, dict(zip(tags, at, strict=True)) if at else {}, None if low != low else (low, high),
+        ))  # fmt: skip
     return found
 
 

@@ -139,12 +139,16 @@ def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
                     count = put(table, count, SHORT, c, place, (size + legs) / 2)
                     continue
             if degrees[j] == 1:
-                angle = off_axes(chord, limits)
-                if angle > 0:
+                along, off = max(abs(chord.real), abs(chord.imag)), min(abs(chord.real), abs(chord.imag))
+                angle = np.arctan2(off, along)
+                # One unit is all that rounding may make of a line in whole units: it counts where the line is long.
+                rounded = off < 1.5 and along < limits.slanted_length and is_whole(chord)
+                if off >= limits.slanted_offset and angle < limits.slanted and not rounded:
                     count = put(table, count, SLANTED, c, place, np.degrees(angle))
                 continue
             for p in (cubic.real, cubic.imag):
-                for t in stationary(p):
+                first, second, third = p[1] - p[0], p[2] - p[1], p[3] - p[2]
+                for t in quadratic_roots(first - 2 * second + third, 2 * (second - first), first):
                     s = 1 - t
                     at = s * s * (s * p[0] + 3 * t * p[1]) + t * t * (3 * s * p[2] + t * p[3])
                     beyond = max(at - max(p[0], p[3]), min(p[0], p[3]) - at)
@@ -217,19 +221,6 @@ def end_curvature(a: complex, b: complex, c: complex) -> float:
 
 
 @compiled
-def off_axes(line: complex, limits: Limits) -> float:
-    """Angle of a line that is nearly horizontal or vertical with that direction; 0 of one that is exactly, or is not.
-
-    One unit is all that rounding may make of a line in whole units: it counts where the line is long.
-    """
-    along, off = max(abs(line.real), abs(line.imag)), min(abs(line.real), abs(line.imag))
-    angle = np.arctan2(off, along)
-    if off < limits.slanted_offset or angle >= limits.slanted:
-        return 0.0
-    return 0.0 if off < 1.5 and along < limits.slanted_length and is_whole(line) else angle
-
-
-@compiled
 def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
     """The roots of a t² + b t + c inside (0, 1), ascending; NaN for those that there are not. None at a double root."""
     square = b * b - 4 * a * c
@@ -240,15 +231,6 @@ def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
     first = first if AT_END < first < 1 - AT_END else np.nan
     second = second if AT_END < second < 1 - AT_END else np.nan
     return (second, first) if np.isnan(first) or second < first else (first, second)
-
-
-@compiled
-def stationary(p: FloatArray) -> tuple[float, float]:
-    """The parameters inside a cubic where one of its coordinates (4,) is stationary; NaN for none."""
-    a, b, c = p[1] - p[0], p[2] - p[1], p[3] - p[2]
-    if (a >= 0 and b >= 0 and c >= 0) or (a <= 0 and b <= 0 and c <= 0):
-        return np.nan, np.nan
-    return quadratic_roots(a - 2 * b + c, 2 * (b - a), a)
 
 
 @compiled

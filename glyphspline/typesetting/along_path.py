@@ -98,8 +98,7 @@ def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side
     require(is_number(offset), "offset is a finite distance along the path", offset)
     require_choice("align", align, get_args(PathAlign))
     require_choice("side", side, get_args(Side))
-    lines = len(np.unique(layout.line))
-    if lines > 1:
+    if (lines := len(np.unique(layout.line))) > 1:
         raise GlyphsplineError(f"a text of {lines} lines; on a path there is one", font=path.name)
     if layout.vertical:
         raise GlyphsplineError("a text set in columns; on a path it is horizontal", font=path.name)
@@ -136,32 +135,27 @@ def letters_of(layout: Layout) -> Letters:
     Pens stand where the advances before them end. The line begins where most glyphs say it does: marks, and a few
     others, are moved off their pens.
     """
-    n = len(layout)
     wide = layout.advance != 0
     ends = np.cumsum(layout.advance)
     pens = ends - layout.advance
-    if not n:
+    if not len(layout):
         return Letters(np.zeros(0, dtype=np.int64), pens, pens, np.zeros(0, dtype=np.int64))
-    shifts = (layout.origin[:, 0] - pens)[wide if wide.any() else slice(None)]
-    begin = float(np.median(shifts))
+    begin = float(np.median((layout.origin[:, 0] - pens)[wide if wide.any() else slice(None)]))
     runs = np.concatenate([[0], np.cumsum(np.diff(layout.cluster) != 0)])
     m = int(runs[-1]) + 1
     character = np.zeros(m, dtype=np.int64)
     character[runs] = layout.cluster
     standing = np.bincount(runs, weights=wide, minlength=m) > 0
     joined = np.arange(m)
-    if standing.any():
-        bases = np.flatnonzero(standing)
-        for k in np.flatnonzero(~standing).tolist():
-            # A mark comes after its base in the text, so its base is the neighbour with the nearest lower cluster.
-            at = int(np.searchsorted(bases, k))
-            near = [int(base) for base in bases[max(at - 1, 0) : at + 1] if character[base] <= character[k]]
-            if near:
-                joined[k] = max(near, key=lambda base: int(character[base]))
+    bases = np.flatnonzero(standing)
+    for k in np.flatnonzero(~standing).tolist():
+        # A mark comes after its base in the text, so its base is the neighbour with the nearest lower cluster.
+        at = int(np.searchsorted(bases, k))
+        near = [base for base in bases[max(at - 1, 0) : at + 1].tolist() if character[base] <= character[k]]
+        joined[k] = max(near, key=character.__getitem__, default=k)
     kept, of = np.unique(joined[runs], return_inverse=True)
     left, right = np.full(len(kept), np.inf), np.full(len(kept), -np.inf)
-    lone = ~standing[kept][of]
-    counts = wide | lone
+    counts = wide | ~standing[kept][of]
     np.minimum.at(left, of[counts], np.minimum(pens, ends)[counts])
     np.maximum.at(right, of[counts], np.maximum(pens, ends)[counts])
     return Letters(of, left + begin, right + begin, character[kept])
