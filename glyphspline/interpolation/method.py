@@ -19,9 +19,6 @@ Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
 
 CHORD_EXPONENT: dict[str, float] = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
 
-STEPWISE = (0, 4)
-"""Variants that the passes of many vertices at once do not have."""
-
 MOST_ITERATIONS = 10**9
 """Upper bound of ``max_iterations``."""
 
@@ -92,7 +89,7 @@ class Method:
     @property
     def stepwise(self) -> bool:
         """Whether each polygon is iterated on its own, by the driver of any degree and variant."""
-        return self.degree != 3 or self.variant in STEPWISE or self.diagnostics
+        return self.degree != 3 or self.variant in (0, 4) or self.diagnostics
 
     @property
     def peak_share(self) -> float:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, newton_step
-from ...interpolation.kernels.one_interval import add_fixed, margin_at, near_end, one_interval
+from ...interpolation.kernels.lemma2 import add_fixed, margin_at, near_end, one_interval
 from ...types import FloatArray, IntArray
 
 SHORT = 0.01
