@@ -225,38 +225,34 @@ def remove_written(out: Path) -> None:
                     (out / folder / file).unlink(missing_ok=True)
 
 
-class Journal:
-    """The journal, open for appending. A symbolic link of its name is not followed."""
+@contextmanager
+def journal(out: Path, record: Record) -> Iterator[Callable[[list[Done]], None]]:
+    """The journal, open for appending: yields what adds glyphs to it and to the record once their files are written.
 
-    def __init__(self, out: Path, record: Record) -> None:
-        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
-        self.path = out / JOURNAL
-        self.record = record
-        with writing(self.path):
-            self._file = open(os.open(self.path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
-            self._offset = os.fstat(self._file.fileno()).st_size
-            self._write(b"\n")  # ends a truncated line
+    A symbolic link of its name is not followed.
+    """
+    path = out / JOURNAL
+    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
+    with writing(path):
+        file = open(os.open(path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
 
-    def _write(self, data: bytes) -> None:
+    def write(data: bytes) -> None:
         view = memoryview(data)
-        while view:
-            written = self._file.write(view) or 0
-            self._offset += written
-            view = view[written:]
+        with writing(path):
+            while view:
+                view = view[file.write(view) :]
 
-    def add(self, done: list[Done]) -> None:
-        """Record glyphs whose files are written."""
-        at = self._offset
+    def add(done: list[Done]) -> None:
+        at = os.fstat(file.fileno()).st_size
         for glyph in done:
-            self.record.where[glyph.gid] = (JOURNAL, at)
-            self.record.new[glyph.gid] = glyph._replace(line=b"")
+            record.where[glyph.gid] = (JOURNAL, at)
+            record.new[glyph.gid] = glyph._replace(line=b"")
             at += len(glyph.line)
-        with writing(self.path):
-            self._write(b"".join([glyph.line for glyph in done]))
+        write(b"".join([glyph.line for glyph in done]))
 
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+    with file:
+        write(b"\n")  # ends a truncated line
+        yield add
 
 
 def entries_of(out: Path) -> Iterator[dict[str, Any]]:

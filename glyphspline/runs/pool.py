@@ -189,6 +189,9 @@ class WorkerPool(Executor):
         preload: what to load before the first call, as :func:`load` takes it: once, in the process from which
             the workers are forked. If that runs already, for an earlier pool, each worker loads what it lacks.
         expected: number of calls known to come; processes for them start at once.
+
+    Attributes:
+        is_closed: whether it takes no more calls: it was closed, or its processes could not start.
     """
 
     def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
@@ -201,19 +204,14 @@ class WorkerPool(Executor):
             start_forkserver(preload)
         self._queue: deque[Call] = deque()
         self._wake, self._woken = self._context.Pipe()
-        self._closing = self._begun = False
+        self.is_closed = self._begun = False
         self._workers: list[_Worker] = []
         self._thread = threading.Thread(target=self._manage, daemon=True)
         self._thread.start()
 
-    @property
-    def is_closed(self) -> bool:
-        """Whether it takes no more calls: it was closed, or its processes could not start."""
-        return self._closing
-
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call of a function that can be pickled."""
-        if kwargs or self._closing:
+        if kwargs or self.is_closed:
             raise RuntimeError("the pool is closed, or was given keywords")
         future: Future[Any] = Future()
         self._queue.append((future, bytes(ForkingPickler.dumps((fn, args)))))
@@ -222,8 +220,8 @@ class WorkerPool(Executor):
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Kill the processes; running and queued calls are lost."""
-        if not self._closing:
-            self._closing = True
+        if not self.is_closed:
+            self.is_closed = True
             self._wake.send_bytes(b"")
         if wait:
             if not self._begun:  # what workers import may be compiled for minutes yet, which nobody waits for now
@@ -232,7 +230,7 @@ class WorkerPool(Executor):
 
     def _manage(self) -> None:
         try:
-            while not self._closing:
+            while not self.is_closed:
                 self._start()
                 self._assign()
                 busy = any(worker.has for worker in self._workers)
@@ -244,7 +242,7 @@ class WorkerPool(Executor):
                         self._receive(next(worker for worker in self._workers if worker.calls is item))
                 self._end_hung()
         except Exception as error:
-            self._closing = True
+            self.is_closed = True
             self._fail_all(error)
         finally:
             for worker in self._workers:

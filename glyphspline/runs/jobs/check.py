@@ -28,7 +28,7 @@ from ...report.findings_page import home_of
 from ...types import BoolArray, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
-from ..schedule import Side, readers, side_of, sources, workers
+from ..schedule import Head, Side, readers, side_of, sources, workers
 
 if TYPE_CHECKING:
     from ...outlines.masters import Masters
@@ -44,13 +44,6 @@ STEPS = 8
 POOL_FROM = 2000
 POOL_FROM_ALONG_AXES = 100
 """Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
-
-
-class Task(NamedTuple):
-    """One glyph."""
-
-    gid: int
-    name: str
 
 
 class Checked(NamedTuple):
@@ -70,7 +63,7 @@ class Checked(NamedTuple):
 
 
 @dataclass(frozen=True)
-class CheckJob(Job[Task, Checked]):
+class CheckJob(Job[Head, Checked]):
     """Glyphs checked where their font is open.
 
     Attributes:
@@ -87,13 +80,14 @@ class CheckJob(Job[Task, Checked]):
     chunk = 200
     """A few megabytes of outlines."""
 
-    def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
+    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
         """Outlines of one em together: each drawing has its own."""
         (read,) = readers(self.side)
-        found = read([(task.name, task.gid, ()) for task in tasks])
-        return [each if isinstance(each, Exception) else Item(each, kind=each.metrics.units_per_em) for each in found]
+        return [
+            each if isinstance(each, Exception) else Item(each, kind=each.metrics.units_per_em) for each in read(tasks)
+        ]
 
-    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Checked:
+    def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> Checked:
         """Measure glyphs."""
         rows, kinks = self.measured(contents)
         looked_for = [number for number, kind in enumerate(KINDS) if kind.name in self.kinds]
@@ -108,7 +102,7 @@ class CheckJob(Job[Task, Checked]):
         arrays = [outline.arrays for outline in glyphs]
         return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer), ()
 
-    def failed(self, task: Task, error: Exception) -> Checked:
+    def failed(self, task: Head, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
         return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), error=reason(error))
 
@@ -126,13 +120,13 @@ class AxesJob(CheckJob):
 
     chunk = 8
 
-    def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
+    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
         """Glyphs in all their masters."""
         (source,) = sources(self.side.place)
         found: list[Item | Exception] = []
-        for task in tasks:
+        for name, _, _ in tasks:
             try:
-                found.append(Item(masters := source.masters(task.name), kind=masters.metrics.units_per_em))
+                found.append(Item(masters := source.masters(name), kind=masters.metrics.units_per_em))
             except GlyphsplineError as error:
                 found.append(error)
         return found
@@ -216,7 +210,7 @@ def check_font(
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     if unknown := [name for name in names if name not in index]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
-    tasks = sorted({Task(index[name], name) for name in names})
+    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
     looked = frozenset(kind.name for kind in KINDS) if kinds is None else kinds
     job = CheckJob(side_of(source), thresholds, looked, source.outer)
     if chosen:
@@ -232,9 +226,9 @@ def check_font(
                 if once:
                     fresh = reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)
                     rows = rows.chosen(np.flatnonzero(fresh))
-                found = findings([(task.name, task.gid) for task in part.tasks], rows, tags if chosen else ())
-                for task, own, of_axes in zip(part.tasks, found, numbers, strict=True):
-                    yield GlyphFindings(task.name, task.gid, own, error, of_axes)
+                found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
+                for (name, gid, _), own, of_axes in zip(part.tasks, found, numbers, strict=True):
+                    yield GlyphFindings(name, gid, own, error, of_axes)
 
     return glyphs()
 

@@ -31,13 +31,13 @@ from ..folder import (
     MANIFEST,
     SIZES,
     Done,
-    Journal,
     Output,
     Record,
     Task,
     done,
     entries_of,
     finish,
+    journal,
     locked,
     read_record,
     remove_written,
@@ -260,13 +260,10 @@ def recorded(
     """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on."""
     if not tasks:
         return
-    journal = Journal(out, record)
-    try:
+    with journal(out, record) as add:
         for part in run(job, tasks, pool, observer=observer, before=len(record.finished())):
-            journal.add(part.result)
+            add(part.result)
             yield part
-    finally:
-        journal.close()
 
 
 def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:
