@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,17 +84,14 @@ def _loaded(row: Mapping[str, Any]) -> Loaded:
     splines = None
     if not (row["knots"] is None or isinstance(row["knots"], float)):  # pandas: None or NaN
         columns = zip(*map(each, ("control_points", "knots", "degree", "closed")), strict=True)
-        splines = tuple([_splines(*of_contour) for of_contour in columns])
+        splines = tuple([
+            tuple([
+                Spline(_points(rows), np.array(list(knots), dtype=np.float64), int(degree), bool(closed))
+                for rows, knots, degree, closed in zip(*of_contour, strict=True)
+            ])
+            for of_contour in columns
+        ])  # fmt: skip
     return Loaded(outline, splines, tuple([_points(points) for points in each("points")]))
-
-
-def _splines(
-    controls: Sequence[Any], knots: Sequence[Any], degrees: Sequence[int], closed: Sequence[bool]
-) -> tuple[Spline, ...]:
-    return tuple([
-        Spline(_points(rows), np.array(list(own), dtype=np.float64), int(degree), bool(ring))
-        for rows, own, degree, ring in zip(controls, knots, degrees, closed, strict=True)
-    ])  # fmt: skip
 
 
 def _points(rows: Any) -> FloatArray:

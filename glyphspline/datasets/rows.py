@@ -20,7 +20,7 @@ from ..outlines.resampling import at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
-from .columns import OF_FONTS, SCHEMA_VERSION, schema
+from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
 from .scan import FontFacts, category_of, script_of
 from .spec import DatasetSpec
 
@@ -141,16 +141,16 @@ def _point_columns(found: ConvertedContours, factors: FloatArray, fitted: bool, 
 
 def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str, Any]:
     """What a glyph is called, and its metrics."""
-    pa = arrow()
-    return {
-        "schema_version": pa.array(np.full(len(outlines), SCHEMA_VERSION, dtype=np.uint16)),
-        "glyph": pa.array([outline.name for outline in outlines], pa.string()),
-        "gid": pa.array([outline.gid for outline in outlines], pa.uint32()),
-        "codepoints": pa.array([outline.unicodes for outline in outlines], pa.list_(pa.uint32())),
-        "characters": pa.array(["".join(map(chr, outline.unicodes)) for outline in outlines], pa.string()),
-        "advance": pa.array(np.array([outline.advance for outline in outlines], dtype=np.float64) / scales),
-        "em": pa.array(np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales),
+    values: dict[str, Any] = {
+        "schema_version": [SCHEMA_VERSION] * len(outlines),
+        "glyph": [outline.name for outline in outlines],
+        "gid": [outline.gid for outline in outlines],
+        "codepoints": [outline.unicodes for outline in outlines],
+        "characters": ["".join(map(chr, outline.unicodes)) for outline in outlines],
+        "advance": np.array([outline.advance for outline in outlines], dtype=np.float64) / scales,
+        "em": np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales,
     }
+    return {name: arrow().array(value, type_of(OF_GLYPHS[name][0])) for name, value in values.items()}
 
 
 def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:
