@@ -14,8 +14,7 @@ from .curves.bezier import as_cubic, cubic_approximation
 from .curves.bspline import Spline
 from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
-from .fitting.quantities import QUANTITIES, shown
-from .fitting.results import BOUNDS, GlyphResult, Measures, as_glyph
+from .fitting.results import BOUNDS, QUANTITIES, GlyphResult, Measures, as_glyph, shown
 from .outlines.outline import Contour, Outline
 from .types import FloatArray, rounded_up
 

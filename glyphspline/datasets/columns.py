@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..fitting.quantities import QUANTITIES
+from ..fitting.results import QUANTITIES
 from ..writers.arrow_columns import POWERS, arrow, fit_types, measure_types, source_types
 from .spec import DatasetSpec
 

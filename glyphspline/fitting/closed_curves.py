@@ -1,4 +1,4 @@
-"""Closed curves through several polygons under a glyph's options, and their Béziers."""
+"""Closed curves through polygons under a glyph's options, and those sampled by step or by count: no search."""
 
 from __future__ import annotations
 
@@ -6,13 +6,21 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import spline_beziers
+from ..curves.pairing import SHARPNESS, pair_stretches
+from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
 from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.method import Fallback, Method, method_of
 from ..interpolation.polygon import explain
-from ..interpolation.result import BatchedInterpolation
-from ..types import BoolArray, FloatArray, IntArray
+from ..interpolation.result import BatchedInterpolation, Interpolation
+from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
+from ..outlines.places import sampled
+from ..outlines.sampling import MOST_VERTICES
+from ..outlines.segments import all_cubics
+from ..types import BoolArray, FloatArray, IntArray, Views
+from .measures import distance_columns, solved_columns
 from .options import Options
+from .results import ConvertedContours
 
 History = tuple[tuple[FloatArray, FloatArray], ...]
 """Control points (n, 2) and parameters (n,) pass by pass."""
@@ -21,11 +29,11 @@ CERTAIN_RATIO = 6.0
 """Basis functions rise above 1/2 as long as adjacent knot intervals are within 6.15 of each other."""
 
 
-def method_for(options: Options, fallback: Fallback | None = None, closed: bool = True) -> Method:
-    """How a glyph's options interpolate, with another fallback if one is given."""
+def method_for(options: Options, fallback: Fallback) -> Method:
+    """How a glyph's options interpolate closed polygons, with this fallback."""
     return method_of(
-        options.variant, 3, options.margin, "chord", fallback or options.fallback, options.solver_tolerance,
-        options.max_iterations, closed, "iterate", False,
+        options.variant, 3, options.margin, "chord", fallback, options.solver_tolerance, options.max_iterations, True,
+        "iterate", False,
     )  # fmt: skip
 
 
@@ -41,7 +49,7 @@ def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Bat
         PolygonError: one that cannot be interpolated; its ``contour`` is the number of the polygon.
     """
     even = graded_polygons(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
-    found = interpolate_batch(points, offsets, method_for(options), by_knot=even, threads=1)
+    found = interpolate_batch(points, offsets, method_for(options, options.fallback), by_knot=even, threads=1)
     for k in np.flatnonzero(found.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
     return found
@@ -53,7 +61,7 @@ def recorded(points: FloatArray, options: Options) -> History:
     The run is that of :func:`interpolated`, by the passes that keep what they do.
     """
     even = graded_polygons(points, np.array([0, len(points)]), min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
-    method = method_for(options, "knot" if even[0] else None)
+    method = method_for(options, "knot" if even[0] else options.fallback)
     return interpolate_any_degree(points, method, keep_history=True).history or ()
 
 
@@ -96,3 +104,83 @@ def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> Bool
     for k in range(len(offsets) - 1):
         _, even[k] = chords_of(points[offsets[k] : offsets[k + 1]], ratio)
     return even
+
+
+def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
+    """Put a closed C2 curve through points of each contour, as many or as far apart as the options ask for.
+
+    Args:
+        contours: of one glyph or of many. options: with ``step`` or ``count``.
+        tolerance: in font units, what the distance is compared with if ``options.measure`` asks for it.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be interpolated; its ``contour`` is the index.
+    """
+    cubics = all_cubics(contours)
+    points, places, offsets, refused = sampled(
+        cubics, contours.offsets, options.step or 0.0, options.count or 0, options.max_ratio,
+        np.radians(options.corner_angle), MOST_VERTICES,
+    )  # fmt: skip
+    if refused.any():
+        message = f"sampling takes more than {MOST_VERTICES} vertices"
+        raise GlyphsplineError(message, contour=int(np.flatnonzero(refused)[0]))
+    return through_polygons(contours, points, offsets, options, tolerance, places)
+
+
+def through_polygons(
+    contours: ContourArrays, points: FloatArray, offsets: IntArray, options: Options, tolerance: float,
+    places: FloatArray | None = None,
+) -> ConvertedContours:  # fmt: skip
+    """Put a closed C2 curve through each of some polygons.
+
+    Args:
+        contours: what the polygons stand for. points: (N, 2) and offsets: (C + 1,) of the polygons.
+        places: (N,) where on the contours the vertices lie; without them distances are not measured.
+
+    Raises:
+        PolygonError: a polygon that cannot be interpolated; its ``contour`` is the index.
+    """
+    found = interpolated(points, offsets, options)
+    counts = found.whole[:, 1]
+    if counts.sum() < len(points):  # duplicates were merged
+        kept = found.kept[_leading(offsets, counts)] + np.repeat(offsets[:-1], counts)
+        points, places = points[kept], None if places is None else places[kept]
+    ends = offsets_of(counts)
+    controls = found.controls[_leading(offsets, counts)]
+    knots = found.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
+    pieces, written = beziers(controls, knots, ends, 10.0**options.precision)
+    closed, arcs = np.ones(len(counts), dtype=np.bool_), Views(len(counts), found.results)
+    measures = solved_columns([(found, np.arange(len(counts)))])
+    if options.measure and places is not None:
+        vertices, segments = np.split(places, ends[1:-1]), np.diff(contours.offsets).tolist()
+        anchors = np.concatenate([_anchors(*each) for each in zip(vertices, arcs, segments, strict=True)])
+        distances = pair_stretches(
+            written, ends, all_cubics(contours), contours.offsets, anchors, ends + np.arange(len(ends)),
+            SHARPNESS * tolerance, tolerance,
+        )  # fmt: skip
+        bounds, gaps = (np.maximum.reduceat(values, ends[:-1]).tolist() for values in distances)
+        measures |= distance_columns(gaps, bounds, tolerance)
+    return ConvertedContours(
+        contours, cubic_contours(pieces, ends), Polylines(points, ends, closed), arcs,
+        Polylines(controls, ends, closed), np.arange(len(counts) + 1), measures,
+    )  # fmt: skip
+
+
+def _leading(offsets: IntArray, counts: IntArray) -> IntArray:
+    """Indices of the first ``counts[k]`` entries of each part."""
+    total = int(counts.sum())
+    if total == offsets[-1]:
+        return np.arange(total)
+    return np.arange(total) + np.repeat(offsets[:-1] - offsets_of(counts)[:-1], counts)
+
+
+def _anchors(places: FloatArray, arc: Interpolation, segments: int) -> FloatArray:
+    """(n + 1, 2) places on the curve and on the outline of all vertices, the first one again at the end."""
+    u, n = arc.spline.knots, len(places)
+    t = np.maximum.accumulate(arc.parameters)
+    laps = np.floor(t / u[-1])
+    within = t - laps * u[-1]
+    span = np.clip(np.searchsorted(u, within, side="right") - 1, 0, n - 1)
+    on_curve = laps * n + span + (within - u[span]) / (u[span + 1] - u[span])
+    anchors = np.stack([np.minimum(on_curve, on_curve[0] + n), places], axis=1)
+    return np.concatenate([anchors, anchors[:1] + np.array([n, segments])])

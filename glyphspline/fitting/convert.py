@@ -180,15 +180,15 @@ def _convert_contours(
     # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING
-    from .faithful import faithful
-    from .fixed_sampling import convert_fixed, fixed_fits
+    from .closed_curves import convert_fixed
+    from .faithful import Fits, faithful
     from .measures import check_coordinates
 
     check_coordinates(contours)
     if options.is_fixed and not options.measure:
         return convert_fixed(contours, options, tolerance)
     if options.is_fixed:
-        fits = fixed_fits(options, tolerance)
+        fits = Fits(1, lambda given, _: convert_fixed(given, options, tolerance), keeps_collapsed=False)
     elif options.corners == "sharp":
         from .sharp.sharp_fit import sharp_fits
 

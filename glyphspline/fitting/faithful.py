@@ -11,15 +11,14 @@ import numpy as np
 
 from ..curves.crossings import meetings
 from ..errors import GlyphsplineError
-from ..outlines.contour_arrays import NO_POLYLINES, ContourArrays, Polylines, joined, offsets_of
+from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
-from .apart import drawn_apart
 from .ladders import APART
 from .measures import distance_columns, with_geometry
 from .options import Options
-from .results import ConvertedContours, assembled
-from .topology import Changes, changes
+from .results import ConvertedContours, assembled, not_fitted
+from .topology import Changes, changes, drawn_apart
 
 
 class Fits(NamedTuple):
@@ -210,16 +209,8 @@ def as_source(contours: ContourArrays, options: Options, tolerance: float) -> Co
     needed[lines, 1:] = False
     degrees = np.where(lines, 1, 3)
     starts = offsets_of(degrees)[contours.offsets]
-    curves = ContourArrays(cubics[:, :3][needed], degrees, contours.offsets, starts)
-    polygons = Polylines(cubics[:, 0].copy(), contours.offsets, np.ones(contours.num_contours, dtype=np.bool_))
+    found = not_fitted(contours, ContourArrays(cubics[:, :3][needed], degrees, contours.offsets, starts))
     # A curve is within the largest distance of its Bézier points from those of another one.
-    moved = np.hypot(*(curves.rounded(options.precision).points - curves.points).T)
+    moved = np.hypot(*(found.curves.rounded(options.precision).points - found.curves.points).T)
     distances = np.maximum.reduceat(moved, starts[:-1]).tolist()
-    segments = np.diff(contours.offsets).tolist()
-    measures = {
-        "vertices": segments, "segments": segments, "numbers": (2 * np.diff(starts)).tolist(),
-        **distance_columns(distances, distances, tolerance),
-    }  # fmt: skip
-    return ConvertedContours(
-        contours, curves, polygons, (), NO_POLYLINES, np.zeros(contours.num_contours + 1, dtype=np.int64), measures
-    )
+    return replace(found, measures={**found.measures, **distance_columns(distances, distances, tolerance)})

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,22 @@ from ..outlines.contour_arrays import (
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
 from ..types import FloatArray, IntArray, Views, counted, rounded_up
 from .options import Options
+
+PER_EM = "1/em"
+"""Unit of all curvature that people look at: a measure in 1/unit, times the units per em."""
+
+
+class Quantity(NamedTuple):
+    """What people read of a measure: a label, a unit, "" for numbers without any, and a sentence."""
+
+    label: str
+    unit: str
+    about: str
+
+
+def _about(sentence: str, unit: str = "", *, label: str = "", default: Any = None) -> Any:
+    """A field of a measure, with what people read of it; without a label it is the field's name."""
+    return field(default=default, metadata={"quantity": Quantity(label, unit, sentence)})
 
 
 @dataclass(frozen=True)
@@ -55,36 +71,49 @@ class Measures:
         source_kept: whether the result is the source's own contour, because every fit crosses or collapses.
     """
 
-    vertices: int
-    segments: int
-    numbers: int
-    iterations: int | None = None
-    residual: float | None = None
-    converged: bool | None = None
-    rate_bound: float | None = None
-    fallbacks: int | None = None
-    deviation: float | None = None
-    deviation_bound: float | None = None
-    within_tolerance: bool | None = None
-    overshoot: float | None = None
-    length: float | None = None
-    area_change: float | None = None
-    bending_energy: float | None = None
-    max_curvature: float | None = None
-    curvature_extrema: int | None = None
-    source_curvature_extrema: int | None = None
-    new_crossings: int | None = None
-    collapsed: bool | None = None
-    source_kept: bool | None = None
+    vertices: int = _about("points of the outline that the curve passes through", default=MISSING)
+    segments: int = _about("Bézier segments of the result", default=MISSING)
+    numbers: int = _about("coordinates that a file of splines stores", label="numbers to store", default=MISSING)
+    iterations: int | None = _about("updates until the curve passes through all vertices")
+    residual: float | None = _about("largest distance left between a vertex and its footpoint on the curve", "units")
+    converged: bool | None = _about("whether the residual is below the solver's tolerance")
+    rate_bound: float | None = _about("certified factor by which the largest error shrinks at every step")
+    fallbacks: int | None = _about("vertices for which Lemma 2 has no interval")
+    deviation: float | None = _about("largest distance seen between paired points of result and source", "units")
+    deviation_bound: float | None = _about(
+        "bound that the distance is proven to be within", "units", label="deviation, certified"
+    )
+    within_tolerance: bool | None = _about("whether that bound is within the tolerance asked for")
+    overshoot: float | None = _about("largest distance of the curve outside the hull of its polygon", "units")
+    length: float | None = _about("arc length of the result", "units")
+    area_change: float | None = _about("area of the result less that of the source", "units²", label="change of area")
+    bending_energy: float | None = _about("integral of squared curvature: less is rounder", PER_EM)
+    max_curvature: float | None = _about(
+        "of the sharpest bend: 1/radius, with the em as the unit", PER_EM, label="largest curvature"
+    )
+    curvature_extrema: int | None = _about("where curvature peaks between corners; an ellipse has 4")
+    source_curvature_extrema: int | None = _about("the same of the source outline", label="curvature extrema, source")
+    new_crossings: int | None = _about("crossings of contours, with themselves and others, beyond the source's")
+    collapsed: bool | None = _about("whether a contour has lost its area, or runs the other way round")
+    source_kept: bool | None = _about("whether a contour is the source's own, as every fit crosses or collapses")
 
     def __repr__(self) -> str:
-        known = {field.name: getattr(self, field.name) for field in fields(self)}
-        known |= {name: rounded_up(value, 4) for name in BOUNDS if (value := known[name]) is not None}
-        said = [f"{name}={f'{v:.4g}' if isinstance(v, float) else v}" for name, v in known.items() if v is not None]
+        said = []
+        for name in MEASURES:
+            value = getattr(self, name)
+            if value is not None:
+                value = rounded_up(value, 4) if name in BOUNDS else value
+                said.append(f"{name}={f'{value:.4g}' if isinstance(value, float) else value}")
         return f"Measures({', '.join(said)})"
 
 
-MEASURES = tuple(field.name for field in fields(Measures))
+QUANTITIES: dict[str, Quantity] = {
+    one.name: one.metadata["quantity"]._replace(label=one.metadata["quantity"].label or one.name.replace("_", " "))
+    for one in fields(Measures)
+}
+"""What people read of the measures, by name."""
+
+MEASURES = tuple(QUANTITIES)
 """The measures, in the order in which they are written."""
 
 BOUNDS = ("rate_bound", "deviation_bound")
@@ -92,6 +121,12 @@ BOUNDS = ("rate_bound", "deviation_bound")
 
 SOLVED = MEASURES[:8]
 """The measures that the interpolation itself provides."""
+
+
+def shown(name: str, value: Any, units_per_em: float) -> Any:
+    """A measure's value in the unit that people read; None stays None."""
+    return value * units_per_em if value is not None and QUANTITIES[name].unit == PER_EM else value
+
 
 MeasureColumns = Mapping[str, Sequence[Any]]
 """For each measure, its value for each contour. A measure that no contour has is left out."""
@@ -207,19 +242,10 @@ class ContourResults(Views[ContourResult]):
 
     __slots__ = ("_part", "batch", "first", "last")
 
-    def __init__(
-        self, results: Iterable[ContourResult] | ConvertedContours, first: int = 0, last: int | None = None
-    ) -> None:
+    def __init__(self, batch: ConvertedContours, first: int = 0, last: int | None = None) -> None:
+        self.batch, self.first, self.last = batch, first, len(batch) if last is None else last
         self._part: ConvertedContours | None = None
-        self.first = first
-        if isinstance(results, ConvertedContours):
-            self.batch = results
-            self.last = results.source.num_contours if last is None else last
-            super().__init__(self.last - first, lambda: self.arrays.contour_results())
-        else:
-            given = tuple(results)
-            self.batch, self.last = _end_to_end(given), len(given)
-            super().__init__(len(given), lambda: given)
+        super().__init__(self.last - first, lambda: self.arrays.contour_results())
 
     @property
     def arrays(self) -> ConvertedContours:
@@ -229,7 +255,7 @@ class ContourResults(Views[ContourResult]):
         return self._part
 
 
-def _end_to_end(results: tuple[ContourResult, ...]) -> ConvertedContours:
+def _end_to_end(results: Sequence[ContourResult]) -> ConvertedContours:
     arcs = [arc for result in results for arc in result.interpolations]
     splines = [arc.spline for arc in arcs]
     return ConvertedContours(
@@ -254,7 +280,7 @@ class GlyphResult:
 
     def __post_init__(self) -> None:
         if not isinstance(self.contours, ContourResults):
-            object.__setattr__(self, "contours", ContourResults(self.contours))
+            object.__setattr__(self, "contours", ContourResults(_end_to_end(self.contours)))
 
     def __repr__(self) -> str:
         name, contours = self.outline.name, counted(len(self.contours), "contour")
@@ -270,13 +296,11 @@ class GlyphResult:
 def _told(measures: Sequence[Measures]) -> str:
     """The key measures of some contours together, for a line."""
     said = [f"{sum(m.vertices for m in measures)} vertices", f"{sum(m.segments for m in measures)} segments"]
-    for name, words in (("deviation_bound", "certified within"), ("deviation", "deviation")):
-        known = [value for m in measures if (value := getattr(m, name)) is not None]
-        if known:
-            said.append(f"{words} {rounded_up(max(known), 3) if name in BOUNDS else max(known):.3g} units")
-            break
-    bad = sum(m.converged is False for m in measures)
-    return ", ".join([*said, *([f"{bad} not converged"] if bad else [])])
+    if bounds := [m.deviation_bound for m in measures if m.deviation_bound is not None]:
+        said.append(f"certified within {rounded_up(max(bounds), 3):.3g} units")
+    if bad := sum(m.converged is False for m in measures):
+        said.append(f"{bad} not converged")
+    return ", ".join(said)
 
 
 def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
@@ -290,26 +314,27 @@ def as_glyph(thing: GlyphResult | Outline | Contour) -> GlyphResult:
 
 
 def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> list[GlyphResult]:
-    """Results whose curves are the outlines' contours, those without segments left out: nothing is fitted.
-
-    Polygons have the points where segments meet; there are no interpolations, and no measures but the three counts.
-    """
+    """Results whose curves are the outlines' contours, those without segments left out: nothing is fitted."""
     options = options or Options()
     given = joined([outline.arrays for outline in outlines])
     ends = offsets_of([outline.arrays.num_contours for outline in outlines])
     kept = np.diff(given.offsets) > 0
     if not kept.all():
         given, ends = given.chosen(np.flatnonzero(kept).tolist()), offsets_of(kept.astype(np.int64))[ends]
-    joints = given.points[np.cumsum(given.degrees) - given.degrees]
-    polygons = Polylines(joints, given.offsets, np.ones(given.num_contours, dtype=np.bool_))
-    segments, numbers = np.diff(given.offsets).tolist(), (2 * np.diff(given.starts)).tolist()
-    counts = {"vertices": segments, "segments": segments, "numbers": numbers}
-    no_arcs = np.zeros(len(given.offsets), dtype=np.int64)
-    found = ConvertedContours(given, given, polygons, (), NO_POLYLINES, no_arcs, counts)
+    found = not_fitted(given, given)
     return [
         GlyphResult(outline, options, ContourResults(found, first, last))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
+
+
+def not_fitted(source: ContourArrays, curves: ContourArrays) -> ConvertedContours:
+    """Results without interpolations: polygons have the points where the curves' segments meet, and are counted."""
+    joints = curves.points[np.cumsum(curves.degrees) - curves.degrees]
+    polygons = Polylines(joints, curves.offsets, np.ones(curves.num_contours, dtype=np.bool_))
+    segments, numbers = np.diff(curves.offsets).tolist(), (2 * np.diff(curves.starts)).tolist()
+    counts = {"vertices": segments, "segments": segments, "numbers": numbers}
+    return ConvertedContours(source, curves, polygons, (), NO_POLYLINES, np.zeros_like(curves.offsets), counts)
 
 
 def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:

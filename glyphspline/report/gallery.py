@@ -16,7 +16,7 @@ from typing import Any
 from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.options import Options
-from ..fitting.quantities import QUANTITIES
+from ..fitting.results import QUANTITIES
 from .data import COLUMNS, as_json, row_of, script
 from .gallery_files import FOLDER
 from .glyph_measures import MEASURES

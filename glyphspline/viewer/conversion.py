@@ -20,10 +20,9 @@ import numpy as np
 from ..curves.curvature import Comb, robust_scale
 from ..errors import GlyphsplineError
 from ..fields import arguments, instance_arguments
-from ..fitting.closed_curves import History, recorded
+from ..fitting.closed_curves import History, recorded, through_polygons
 from ..fitting.convert import convert
 from ..fitting.convert_masters import MastersResult, convert_masters
-from ..fitting.fixed_sampling import through_polygons
 from ..fitting.measures import with_geometry
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, as_glyph
