@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.bezier import evaluate, split
+from ..curves.bezier import evaluate
 from ..curves.crossings import crossings
 from ..curves.cubics import bernstein
 from ..curves.integrals import area
@@ -157,9 +157,15 @@ class _Strand:
     def __init__(self, cubics: FloatArray, reach: float) -> None:
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
         counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(np.int64)
-        last = np.concatenate([np.arange(1, count + 1) / count for count in counts.tolist()])[:, None, None]
-        before, _ = split(np.repeat(cubics, counts, axis=0), last)
-        _, self.pieces = split(before, 1 - 1 / (np.repeat(counts, counts)[:, None, None] * last))
+        steps = [np.arange(count + 1)[:, None, None] / count for count in counts.tolist()]
+        x = np.concatenate([own[:-1] for own in steps]), np.concatenate([own[1:] for own in steps])
+        points = []
+        for k in range(4):  # of the parts of each segment, by blossoming
+            blossom = np.repeat(cubics, counts, axis=0)
+            for turn in (2, 1, 0):
+                blossom = blossom[:, :-1] + x[k > turn] * (blossom[:, 1:] - blossom[:, :-1])
+            points.append(blossom[:, 0])
+        self.pieces = np.stack(points, axis=1)
         chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
         ends = np.concatenate([[0.0], np.cumsum(chords)])
         self.places, self.total = ends[:-1], ends[-1]  # of all control points but the last of each piece
