@@ -108,27 +108,22 @@ class Contours(Views[Contour]):
         if isinstance(contours, ContourArrays):
             self.arrays = contours
             super().__init__(contours.num_contours, lambda: _views(contours))
+            return
+        given = tuple(contours)
+        if given:
+            points = np.concatenate([contour.points for contour in given])
+            degrees = np.concatenate([contour.degrees for contour in given])
+            offsets = offsets_of([len(contour.degrees) for contour in given])
+            self.arrays = ContourArrays(points, degrees, offsets, offsets_of([len(c.points) for c in given]))
         else:
-            given = tuple(contours)
-            self.arrays = _end_to_end(given)
-            super().__init__(len(given), lambda: given)
+            self.arrays = NO_CONTOURS
+        super().__init__(len(given), lambda: given)
 
 
 def _views(contours: ContourArrays) -> list[Contour]:
     points, degrees, offsets, starts = contours
     ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
     return [Contour.trusted(points[a:b], degrees[i:j]) for (a, b), (i, j) in ends]
-
-
-def _end_to_end(contours: tuple[Contour, ...]) -> ContourArrays:
-    if not contours:
-        return NO_CONTOURS
-    return ContourArrays(
-        np.concatenate([contour.points for contour in contours]),
-        np.concatenate([contour.degrees for contour in contours]),
-        offsets_of([len(contour.degrees) for contour in contours]),
-        offsets_of([len(contour.points) for contour in contours]),
-    )
 
 
 @dataclass(frozen=True)
@@ -166,6 +161,13 @@ class Outline:
     def __post_init__(self) -> None:
         if not isinstance(self.contours, Contours):
             object.__setattr__(self, "contours", Contours(self.contours))
+
+    @classmethod
+    def trusted(cls, **fields: Any) -> Outline:
+        """An outline whose fields, all of them, are of their types already: made in half the time."""
+        outline = cls.__new__(cls)
+        outline.__dict__.update(fields)
+        return outline
 
     @property
     def arrays(self) -> ContourArrays:

@@ -66,7 +66,7 @@ def keep_lasting(points: FloatArray, degrees: IntArray, coincident: float) -> tu
                 lasts = lasts or not (abs(x) <= coincident and abs(y) <= coincident)
                 away = max(away, x * x + y * y)
         if lasts:
-            for k in range(K):
+            for k in range(K if n < first else 0):
                 for i in range(1, min(end, N - 1) - first + 1):
                     points[k, n + i, 0], points[k, n + i, 1] = points[k, first + i, 0], points[k, first + i, 1]
             degrees[m] = degrees[j]

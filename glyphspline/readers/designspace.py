@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -183,18 +182,15 @@ def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
     parsed(master.glyphs.getGLIF(name))  # refuses entities
     glyph, pen = master.glyphs[name], RecordingPen()
     glyph.replay(PointToSegmentPen(pen, outputImpliedClosingLine=True))
-    return [*_parts(pen.value)], float(glyph.width)
-
-
-def _parts(recorded: Sequence[tuple[str, tuple[Any, ...]]]) -> Iterator[_Part]:
+    parts: list[_Part] = []
     operations: list[tuple[str, int]] = []
     points: list[tuple[float, float]] = []
-    for operation, given in recorded:
+    for operation, given in pen.value:
         if operation == "addComponent":
             base, (a, b, c, d, e, f) = given
-            yield _Part((), [(a, b), (c, d), (e, f)], base)
+            parts.append(_Part((), [(a, b), (c, d), (e, f)], base))
         elif operation in ("closePath", "endPath"):
-            yield _Part(tuple(operations), points)
+            parts.append(_Part(tuple(operations), points))
             operations, points = [], []
         elif given[-1] is None:  # quadratics without a point on the curve begin midway between control points
             (ax, ay), (bx, by) = given[-2], given[0]
@@ -204,6 +200,7 @@ def _parts(recorded: Sequence[tuple[str, tuple[Any, ...]]]) -> Iterator[_Part]:
         else:
             operations.append((operation, len(given)))
             points += given
+    return parts, float(glyph.width)
 
 
 def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str) -> None:
@@ -215,24 +212,20 @@ def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str)
         if part.base != other.base:
             kinds = ["a contour" if base is None else f"component {base!r}" for base in (part.base, other.base)]
             raise GlyphsplineError(f"master {name!r} has {kinds[0]}, {default!r} has {kinds[1]}", contour=number)
-        if part.operations != other.operations:
-            words = _difference(part.operations, other.operations)
+        words = ""
+        if len(part.operations) != len(other.operations):
+            words = f"{len(part.operations) - 1} segments, not {len(other.operations) - 1}"
+        for k, ((one, count), (its, its_count)) in enumerate(zip(part.operations, other.operations, strict=False)):
+            if not words and one != its:
+                words = f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[its]}"
+            elif not words and count != its_count:
+                words = f"segment {k - 1} has {count} points, not {its_count}"
+        if words:
             raise GlyphsplineError(f"master {name!r} is unlike {default!r}: {words}", contour=number)
 
 
 KINDS = {"moveTo": "start", "lineTo": "line", "qCurveTo": "quadratic", "curveTo": "cubic"}
 """What the operations of a segment pen draw."""
-
-
-def _difference(operations: Sequence[tuple[str, int]], expected: Sequence[tuple[str, int]]) -> str:
-    """How two contours differ first."""
-    if len(operations) != len(expected):
-        return f"{len(operations) - 1} segments, not {len(expected) - 1}"
-    k = next(k for k, (one, other) in enumerate(zip(operations, expected, strict=True)) if one != other)
-    (one, count), (other, expected_count) = operations[k], expected[k]
-    if one == other:
-        return f"segment {k - 1} has {count} points, not {expected_count}"
-    return f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[other]}"
 
 
 def _axis(axis: AxisDescriptor) -> DesignAxis:

@@ -274,8 +274,11 @@ class BulkReader:
                     found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
-                notes = notes_of(left_out[a:b].tolist()) if b > a else ()
-                found.append(Outline(name, gid, unicodes, float(advance(gid)), Contours(own), metrics, notes, moved))
+                made = Outline.trusted(
+                    name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=Contours(own),
+                    metrics=metrics, notes=notes_of(left_out[a:b].tolist()) if b > a else (), snapped=moved,
+                )  # fmt: skip
+                found.append(made)
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:
