@@ -70,7 +70,7 @@ def outline_svg(outline: Outline) -> str:
 
 def spline_svg(spline: Spline) -> str:
     """The curve, its control polygon, and its knots on the curve."""
-    from .writers.svg.markup import head, number, view_box_value
+    from .writers.svg.document import head, number, view_box_value
     from .writers.svg.path_data import dots_data, polyline_data
 
     control, knots = spline.control_points, spline(spline.knots)
@@ -86,7 +86,7 @@ def spline_svg(spline: Spline) -> str:
         head(box, "spline-title", f"Spline of degree {spline.degree}, {len(control)} control points", pen)
         + f'<path stroke="#75c" stroke-opacity=".7" d="{polyline_data(control, digits, closed=spline.closed)}"/>'
         f'<path d="{curve}"/><path stroke="#0a7" stroke-width="{number(0.016 * extent, 9)}"'
-        f' d="{bytes(dots_data(knots, digits)).decode()}"/></svg>'
+        f' d="{dots_data(knots, digits)}"/></svg>'
     )
 
 
@@ -125,7 +125,7 @@ def plot(
     Returns:
         The axes.
     """
-    from .writers.figures.patches import outline_patch
+    from .writers.figures.basics import outline_patch
 
     if axes is None:
         from matplotlib import pyplot
@@ -176,8 +176,8 @@ def _cubics(spline: Spline) -> FloatArray:
 def _comb_patches(
     curves: list[FloatArray], sides: FloatArray, em: float, scale: float | None, *, closed: bool
 ) -> list[Any]:
-    from .writers.figures.patches import comb_patches
-    from .writers.svg.curvature_map import SPACING, teeth_of
+    from .writers.figures.basics import comb_patches
+    from .writers.svg.comb import SPACING, teeth_of
 
     drawn = [(curvature_comb(cubics, SPACING * em), s) for cubics, s in zip(curves, sides, strict=True) if len(cubics)]
     found = [item for item, _ in drawn]

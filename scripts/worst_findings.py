@@ -25,7 +25,7 @@ from glyphspline.checks.kinds import KINDS
 from glyphspline.curves.curvature import comb
 from glyphspline.outlines.outline import Outline
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.patches import outline_patch
+from glyphspline.writers.figures.basics import outline_patch
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt

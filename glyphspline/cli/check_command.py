@@ -41,7 +41,7 @@ def check(
     """
     from ..runs.font_search import find_fonts
     from ..runs.jobs.check import Face, check_fonts, worst_first
-    from ..writers.figures.images import FigureKind
+    from ..writers.settings import FigureKind
     from .findings import as_csv, as_json, as_markdown, sentences, table
 
     texts = (report.csv, report.ghmarkdown, report.html)
@@ -86,7 +86,7 @@ def check(
         )
     if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source
-        from ..writers.figures.turns import turns_figure
+        from ..writers.figures.axis_pages import turns_figure
 
         kind: Any = report.plot.suffix[1:].lower()
         source = open_source(files[0], instance.face_index or 0, instance.place)

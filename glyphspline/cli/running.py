@@ -142,7 +142,7 @@ def run_face(
     source: Source, names: Sequence[str], call: Conversion, executor: Executor, name: str | None = None
 ) -> Summary:
     """Convert glyphs with progress on a terminal, then print the summary; ``name`` is that of one font of several."""
-    from ..report.gallery_files import FOLDER as GALLERY
+    from ..report import FOLDER as GALLERY
     from ..runs.jobs.convert import convert_font
 
     run, out = call.run, call.out

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..readers import AnySource
     from ..typesetting.path import Path
     from ..typesetting.placed import Layout
-    from ..writers.svg.appearance import Appearance
+    from ..writers.settings import Appearance
 
 SHOWN = 10
 """Maximum number of remarks printed, and of characters named in one."""
@@ -181,7 +181,7 @@ def laid_out(source: AnySource, text: str, lines: opt.TextOptions, on_path: bool
 
 def pixel(em: float, look: Appearance) -> float:
     """Font units in a user unit of a path's drawing, which is 1/96 inch; without ``--size``, one."""
-    from ..writers.svg.appearance import INCHES
+    from ..writers.settings import INCHES
 
     found = look.scale(1.0, em)
     return 1.0 if found is None else INCHES["px"] / (found[0] * INCHES[found[1]])
@@ -193,7 +193,7 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
     Raises:
         OptionError: it is none.
     """
-    from ..writers.svg.appearance import INCHES
+    from ..writers.settings import INCHES
 
     if text is None:
         return None

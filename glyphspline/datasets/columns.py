@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..fitting.results import QUANTITIES
-from ..writers.arrow_columns import POWERS, arrow, fit_types, measure_types, source_types
+from ..writers.parquet import POWERS, arrow, fit_columns, measure_types, source_columns, types_of
 from .spec import DatasetSpec
 
 SCHEMA_VERSION = 1
@@ -128,4 +128,9 @@ def contour_types(spec: DatasetSpec) -> dict[str, Any]:
     pa = arrow()
     point, size = pa.list_(pa.float32(), 2), -1 if spec.points is None else spec.points
     kinds = {"points": point, "tangents": point, "curvature": pa.float32(), "corner": pa.bool_()}
-    return {name: pa.list_(kind, size) for name, kind in kinds.items()} | source_types() | fit_types() | measure_types()
+    return (
+        {name: pa.list_(kind, size) for name, kind in kinds.items()}
+        | types_of(source_columns)
+        | types_of(fit_columns)
+        | measure_types()
+    )

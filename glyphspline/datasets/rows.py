@@ -19,7 +19,7 @@ from ..outlines.outline import FontMetrics, Outline
 from ..outlines.resampling import at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
-from ..writers.arrow_columns import arrow, fit_columns, measure_columns, nested, pairs, source_columns
+from ..writers.parquet import arrow, fit_columns, measure_columns, nested, pairs, source_columns
 from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
 from .scan import FontFacts, category_of, script_of
 from .spec import DatasetSpec

@@ -1,1 +1,9 @@
 """The gallery of a finished run, and other pages."""
+
+from __future__ import annotations
+
+FOLDER = "gallery"
+"""Where a run has its gallery's files."""
+
+SUFFIX = ".glyph.js"
+"""Suffix of a glyph's file; no other file of the gallery has it."""

@@ -8,7 +8,7 @@ from math import isinf
 from ..comparing.difference import Difference, Turn
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import rounded_up
-from ..writers.svg.markup import number, text, union, view_box_value
+from ..writers.svg.document import number, text, union, view_box_value
 from ..writers.svg.path_data import Box, curves_data
 from .pages import page_of
 
@@ -48,7 +48,7 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
     for kind, outline, scale in (("source", old, 1.0), ("result", new, each.scale)):
         contours = [] if outline is None else [Contour(c.points * scale, c.degrees) for c in outline.contours]
         data = curves_data(Contours(contours).arrays, PRECISION)[0]
-        paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{bytes(data.text).decode()}"/>')
+        paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{data.text}"/>')
         box = data.box if box is None else union(box, data.box)
     em = 1000.0 if old is None else old.metrics.units_per_em
     left, bottom, right, top = box or (0.0, 0.0, em, em)
@@ -81,7 +81,7 @@ def marks(each: Difference, em: float, half: float | None = None) -> str:
         found.append(
             ring(each.worst.point, 0.025 * em, "worst")
             if half is None
-            else f'<path class="worst" d="M{digits(ax)} {digits(-ay)}L{digits(bx)} {digits(-by)}"/>'
+            else f'<path class="worst" d="M{digits(ax, -ay)}L{digits(bx, -by)}"/>'
         )
     return "".join(found)
 
@@ -92,18 +92,15 @@ def ring(point: tuple[float, float], radius: float, kind: str) -> str:
     return f'<circle class="{kind}" cx="{digits(x)}" cy="{digits(-y)}" r="{digits(radius)}"/>'
 
 
-def digits(value: float) -> str:
-    """A coordinate of a mark."""
-    return number(value, 4)
+def digits(*values: float) -> str:
+    """Coordinates of a mark."""
+    return " ".join([number(value, 4) for value in values])
 
 
 def drawing(title: str, box: Box, paths: Sequence[str], more: str, kind: str = "whole") -> str:
     """A drawing of a region."""
-    shown = (
-        view_box_value(box, 3)
-        if kind == "whole"
-        else " ".join([digits(value) for value in (box[0], -box[3], box[2] - box[0], box[3] - box[1])])
-    )
+    left, bottom, right, top = box
+    shown = view_box_value(box, 3) if kind == "whole" else digits(left, -top, right - left, top - bottom)
     return (
         f'<svg class="drawing {kind}" viewBox="{shown}" role="img"><title>{title}</title>{"".join(paths)}{more}</svg>'
     )
@@ -117,16 +114,11 @@ def lines(each: Difference) -> list[tuple[str, str]]:
     if each.advance != each.new_advance:
         found.append(("Advance", f"{each.advance:g} → {each.new_advance:g}"))
     for name, gone, came in (
-        ("Contours", numbers(each.contours_gone), numbers(each.contours_new)),
+        ("Contours", ", ".join(map(str, each.contours_gone)), ", ".join(map(str, each.contours_new))),
         ("Kinks", kinks(each.kinks_gone), kinks(each.kinks_new)),
     ):
         found += [(f"{name} gone", gone)] * bool(gone) + [(f"{name} new", came)] * bool(came)
     return found
-
-
-def numbers(contours: Sequence[int]) -> str:
-    """Numbers of contours."""
-    return ", ".join(map(str, contours))
 
 
 def kinks(turns: Sequence[Turn]) -> str:

@@ -3,16 +3,40 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
 from pathlib import PurePosixPath
 from typing import Any
 
 from ..fitting.results import BOUNDS, SOLVED
 from ..types import rounded_up
-from ..writers.svg.markup import Text, document
-from .gallery_files import FOLDER
-from .glyph_measures import MEASURES, glyph_measures
+from ..writers.svg.document import document
+from . import FOLDER
+
+MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
+    "deviation": max,
+    "deviation_bound": max,
+    "iterations": max,
+    "residual": max,
+    "rate_bound": max,
+    "vertices": sum,
+    "segments": sum,
+    "numbers": sum,
+    "fallbacks": sum,
+    "bending_energy": sum,
+    "max_curvature": max,
+    "curvature_extrema": sum,
+    "source_curvature_extrema": sum,
+    "overshoot": max,
+    "length": sum,
+    "area_change": lambda values: max(values, key=abs),
+    "new_crossings": sum,
+    "converged": all,
+    "within_tolerance": all,
+    "collapsed": any,
+    "source_kept": any,
+}
+"""How the values of contours combine to the glyph's, for each measure: the worst, or the sum."""
 
 COLUMNS = (
     "glyph", "gid", "unicodes", "advance", "status", "file", "error", "contours",
@@ -33,7 +57,7 @@ encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", 
 """Data as ASCII JSON in one line."""
 
 
-def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: Sequence[Mapping[str, Any]]) -> bytes:
+def glyph_text(drawing: Mapping[str, str], files: Mapping[str, str], contours: Sequence[Mapping[str, Any]]) -> bytes:
     """A glyph's data file.
 
     Args:
@@ -43,9 +67,9 @@ def glyph_text(drawing: Mapping[str, Text], files: Mapping[str, str], contours: 
     """
     links = {name: path for name, path in files.items() if name != FOLDER}
     known = [{name: value for name, value in contour.items() if value is not None} for contour in contours]
-    parts: list[Text] = ["glyphsplineData({"]
+    parts = ["glyphsplineData({"]
     for name, data in drawing.items():
-        parts += [f'"{name}":"', data, '",']
+        parts.append(f'"{name}":"{data}",')
     parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}}});\n')
     return document(parts)
 
@@ -75,6 +99,17 @@ def row_of(entry: Mapping[str, Any]) -> str:
     while row[-1] is None:
         row.pop()
     return as_json(row)
+
+
+def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """All of ``MEASURES`` for one glyph, None where no contour has it."""
+    found: dict[str, Any] = dict.fromkeys(MEASURES)
+    columns = zip(*[map(contour.get, MEASURES) for contour in contours], strict=True)
+    for (key, together), column in zip(MEASURES.items(), columns, strict=False):
+        values = [value for value in column if value is not None] if None in column else column
+        if values:
+            found[key] = together(values)
+    return found
 
 
 def inside(path: object) -> bool:

@@ -12,8 +12,9 @@ from ..checks.kinds import KINDS
 from ..errors import GlyphsplineError
 from ..outlines.outline import Outline
 from ..readers import Source
+from ..writers.svg.comb import palette
 from ..writers.svg.path_data import path_data
-from .pages import page_of, palette
+from .pages import page_of
 
 DRAWN = 2000
 """Findings with a drawing. Every kind has its share of them, and each share begins with the worst."""

@@ -17,10 +17,10 @@ from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.options import Options
 from ..fitting.results import QUANTITIES
-from .data import COLUMNS, as_json, row_of, script
-from .gallery_files import FOLDER
-from .glyph_measures import MEASURES
-from .pages import page_of, palette
+from ..writers.svg.comb import palette
+from . import FOLDER
+from .data import COLUMNS, MEASURES, as_json, row_of, script
+from .pages import page_of
 
 TABLE = 5000
 """Glyphs in a file of measures."""

@@ -9,8 +9,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from ..writers.svg.colours import SIDES, class_colour
-from ..writers.svg.markup import text
+from ..writers.svg.document import text
 from .data import as_json
 
 
@@ -45,11 +44,6 @@ def page_of(
         heading=text(heading), style="".join(package_text(name) for name in styles),
         body=Template(package_text(template)).substitute(heading=text(heading), **parts), scripts=run,
     )  # fmt: skip
-
-
-def palette() -> list[str]:
-    """The colours of curvature, from the most concave ink to the most convex."""
-    return [class_colour(index) for index in range(-SIDES, SIDES + 1)]
 
 
 def package_text(name: str) -> str:

@@ -17,8 +17,8 @@ from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, re
 from ..fields import WRITTEN, arguments, check, instance_arguments, option
 from ..files import write_whole
 from ..fitting.options import Options
-from ..report.gallery_files import FOLDER as GALLERY
-from ..report.gallery_files import SUFFIX
+from ..report import FOLDER as GALLERY
+from ..report import SUFFIX
 from ..types import Names
 from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import Maps, Settings

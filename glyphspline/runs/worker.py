@@ -17,14 +17,14 @@ from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end
 from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
+from ..report import FOLDER as GALLERY
 from ..report.data import DECIMALS, glyph_text, plain, row_of
-from ..report.gallery_files import FOLDER as GALLERY
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
-from ..writers.svg.curvature_map import curves_of, map_document
-from ..writers.svg.document import svg_document
+from ..writers.svg.comb import curves_of
+from ..writers.svg.curvature_map import map_document
+from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data, svg_document
 from ..writers.svg.path_data import PathData, curves_data
-from ..writers.svg.polygon_drawing import PolygonData, polygon_data, polygon_document, source_data
 from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
@@ -158,7 +158,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
         return to_text(result)
     kind: Any = name.removeprefix("curvature-")
     if name in ("png", "pdf"):
-        from ..writers.figures.drawing import drawing_image  # imports matplotlib
+        from ..writers.figures.drawings import drawing_image  # imports matplotlib
 
         return drawing_image(result, kind, look, glyph.path.box)
     if name == "curvature":
@@ -168,7 +168,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
             path = curves_data(curves_of(result, maps.comb), result.options.precision)[0]
         return map_document(result, path, job.curvature_scale, maps.comb, in_corners=maps.corner_teeth)
     if name in MAPS:
-        from ..writers.figures.raster import map_image
+        from ..writers.figures.drawings import map_image
 
         return map_image(result, kind, comb=maps.comb, scale=job.curvature_scale, in_corners=maps.corner_teeth)
     if name == "source":

@@ -29,7 +29,7 @@ from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS, Options
 from ..readers.facts import axis_facts
 from ..report.gallery import measures
-from ..report.pages import palette
+from ..writers.svg.comb import palette
 from ..writers.svg.document import to_svg
 from .conversion import COMPARED, Work, glyph_payload, instance_payload, result_payload, step_payload, steps
 from .requests import State, read_state, search

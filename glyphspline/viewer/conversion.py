@@ -33,8 +33,8 @@ from ..outlines.outline import Contour, Contours, Outline
 from ..readers import Font, open_font
 from ..types import BoolArray, FloatArray, rounded_up
 from ..typesetting.lay_out import layout
-from ..writers.svg.curvature_map import combs
-from ..writers.svg.markup import code_points
+from ..writers.svg.comb import combs
+from ..writers.svg.document import code_points
 from ..writers.svg.path_data import path_data, polyline_data
 from ..writers.svg.text_drawing import text_document
 from .requests import Moved, State

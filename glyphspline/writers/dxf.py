@@ -30,14 +30,13 @@ from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.outline import Contour
 from ..outlines.polygons import flattened, polygons_of
 from ..types import BoolArray, FloatArray
-from .settings import DxfKind, Settings
-from .svg.appearance import INCHES, Appearance
+from .settings import INCHES, Appearance, DxfKind, Settings
 
 VERSION = "R2000"
 """The oldest version that has SPLINE, LWPOLYLINE and $INSUNITS; programs read it, whatever their age."""
 
 UNITS = {None: 0, "in": 1, "mm": 4, "cm": 5}
-"""Values of $INSUNITS. Other units of :data:`.svg.appearance.INCHES` are written as millimetres."""
+"""Values of $INSUNITS. Other units of :data:`.settings.INCHES` are written as millimetres."""
 
 OUTLINES, HOLES = LAYERS = ("outlines", "holes")
 COLOURS = (7, 1)

@@ -7,10 +7,11 @@ of installed packages, as that takes time.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from ..errors import GlyphsplineError, OptionError, require
 from ..extras import EXTRAS
@@ -67,10 +68,11 @@ def format_named(name: str) -> Format:
         OptionError: there is none; the message lists all there are.
         GlyphsplineError: the plug-in cannot be loaded, or is no format of that name.
     """
-    found = OURS.get(name) or _loaded(name)
-    if found is None:
+    if name in OURS:
+        return OURS[name]
+    if name not in _plug_ins():
         raise OptionError(f"no format {name}: there are {', '.join(format_names())}")
-    return found
+    return _loaded(_plug_ins()[name])
 
 
 def formats() -> tuple[Format, ...]:
@@ -97,124 +99,46 @@ def _plug_ins() -> dict[str, EntryPoint]:
     """Entry points of plug-ins by name, of several with one name the first; names of ours are left out."""
     from importlib.metadata import entry_points  # here and not above: few runs name a plug-in
 
-    found: dict[str, EntryPoint] = {}
-    for entry in entry_points(group=GROUP):
-        if entry.name not in OURS and _NAME.fullmatch(entry.name):
-            found.setdefault(entry.name, entry)
-    return found
+    entries = [entry for entry in entry_points(group=GROUP) if entry.name not in OURS and _NAME.fullmatch(entry.name)]
+    return {entry.name: entry for entry in reversed(entries)}
 
 
 @cache
-def _loaded(name: str) -> Format | None:
-    entry = _plug_ins().get(name)
-    if entry is None:
-        return None
-    package = f" of {entry.dist.name}" if entry.dist else ""
+def _loaded(entry: EntryPoint) -> Format:
+    plug_in = f"the plug-in for format {entry.name!r}{f' of {entry.dist.name}' if entry.dist else ''}"
     try:
         found = entry.load()
     except Exception as error:  # a plug-in may raise anything
-        said = f"{type(error).__name__}: {error}"
-        raise GlyphsplineError(f"the plug-in for format {name!r}{package} cannot be loaded: {said}") from error
-    if not isinstance(found, Format) or found.name != name:
-        raise GlyphsplineError(
-            f"the plug-in for format {name!r}{package} is no such format: {entry.value} is {found!r}"
-        )
+        reason = f"{type(error).__name__}: {error}"
+        raise GlyphsplineError(f"{plug_in} cannot be loaded: {reason}") from error
+    if not isinstance(found, Format) or found.name != entry.name:
+        raise GlyphsplineError(f"{plug_in} is no such format: {entry.value} is {found!r}")
     return found
 
 
-def _by_name(all_formats: Iterable[Format]) -> dict[str, Format]:
-    return {each.name: each for each in all_formats}
+def _lazy(place: str, *more: Any) -> Callable[[GlyphResult, Settings], str | bytes]:
+    """A function that is imported when it is first called: a run imports only what it writes with."""
+    module, name = place.split(":")
+
+    def write(result: GlyphResult, settings: Settings) -> str | bytes:
+        written: str | bytes = getattr(import_module(f".{module}", __package__), name)(result, settings, *more)
+        return written
+
+    return write
 
 
-# The functions import their modules themselves: a run imports only those that it needs.
-
-
-def _source(result: GlyphResult, settings: Settings) -> bytes:
-    from .svg.document import svg_document
-    from .svg.polygon_drawing import source_data
-
-    return svg_document(result, source_data([result])[0], settings.look)
-
-
-def _svg(result: GlyphResult, settings: Settings) -> bytes:
-    from .svg.document import svg_document
-    from .svg.path_data import curves_data
-
-    return svg_document(result, curves_data(result.arrays.curves, result.options.precision)[0], settings.look)
-
-
-def _curvature(result: GlyphResult, settings: Settings) -> str:
-    from .svg.curvature_map import to_curvature_svg
-
-    return to_curvature_svg(result)
-
-
-def _png(result: GlyphResult, settings: Settings) -> bytes:
-    from .figures.drawing import drawing_image
-
-    return drawing_image(result, "png", settings.look)
-
-
-def _pdf(result: GlyphResult, settings: Settings) -> bytes:
-    from .figures.drawing import drawing_image
-
-    return drawing_image(result, "pdf", settings.look)
-
-
-def _curvature_png(result: GlyphResult, settings: Settings) -> bytes:
-    from .figures.raster import map_image
-
-    return map_image(result, "png")
-
-
-def _curvature_pdf(result: GlyphResult, settings: Settings) -> bytes:
-    from .figures.raster import map_image
-
-    return map_image(result, "pdf")
-
-
-def _json(result: GlyphResult, settings: Settings) -> str:
-    from .json_file import json_text
-
-    return json_text(result, settings)
-
-
-def _polyline(result: GlyphResult, settings: Settings) -> str:
-    from .polyline_files import polyline_json
-
-    return polyline_json(result, settings)
-
-
-def _polyline_csv(result: GlyphResult, settings: Settings) -> str:
-    from .polyline_files import polyline_csv
-
-    return polyline_csv(result, settings)
-
-
-def _polyline_scad(result: GlyphResult, settings: Settings) -> str:
-    from .polyline_files import polyline_scad
-
-    return polyline_scad(result, settings)
-
-
-def _dxf(result: GlyphResult, settings: Settings) -> str:
-    from .dxf import write
-
-    return write(result, settings)
-
-
-OURS = _by_name([
-    Format("source", ".svg", _source, fitted=False),
-    Format("svg", ".svg", _svg),
-    Format("curvature", ".svg", _curvature),
-    Format("png", ".png", _png),
-    Format("pdf", ".pdf", _pdf),
-    Format("curvature-png", ".png", _curvature_png),
-    Format("curvature-pdf", ".pdf", _curvature_pdf),
-    Format("json", ".json", _json),
-    Format("polyline", ".json", _polyline),
-    Format("polyline-csv", ".csv", _polyline_csv),
-    Format("polyline-scad", ".scad", _polyline_scad),
-    Format("dxf", ".dxf", _dxf, extra="cad"),
-])  # fmt: skip
+OURS = {each.name: each for each in (
+    Format("source", ".svg", _lazy("svg.document:write_source"), fitted=False),
+    Format("svg", ".svg", _lazy("svg.document:write_svg")),
+    Format("curvature", ".svg", _lazy("svg.curvature_map:write_map")),
+    Format("png", ".png", _lazy("figures.drawings:write_drawing", "png")),
+    Format("pdf", ".pdf", _lazy("figures.drawings:write_drawing", "pdf")),
+    Format("curvature-png", ".png", _lazy("figures.drawings:write_map", "png")),
+    Format("curvature-pdf", ".pdf", _lazy("figures.drawings:write_map", "pdf")),
+    Format("json", ".json", _lazy("json_file:json_text")),
+    Format("polyline", ".json", _lazy("polyline_files:polyline_json")),
+    Format("polyline-csv", ".csv", _lazy("polyline_files:polyline_csv")),
+    Format("polyline-scad", ".scad", _lazy("polyline_files:polyline_scad")),
+    Format("dxf", ".dxf", _lazy("dxf:write"), extra="cad"),
+)}  # fmt: skip
 """Our formats by name, in the order in which a run writes and lists them."""

@@ -27,20 +27,29 @@ source_kept
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..fitting.results import GlyphResult, end_to_end
+from ..extras import need
+from ..fitting.results import BOUNDS, ConvertedContours, GlyphResult, Measures, end_to_end
+from ..outlines.contour_arrays import offsets_of
 from ..readers import Source
-from .arrow_columns import arrow, fit_columns, fit_types, measure_columns, measure_types, source_columns, source_types
+from ..types import FloatArray, IntArray
 
 SCHEMA_VERSION = 1
 
 ROWS = 512
 """Contours in a row group: those held in memory while writing, and the rest of a glyph."""
+
+POWERS = {
+    "residual": 1, "deviation": 1, "deviation_bound": 1, "overshoot": 1, "length": 1, "area_change": 2,
+    "bending_energy": -1, "max_curvature": -1,
+}  # fmt: skip
+"""Of the unit of length, in the measures that have one."""
 
 
 def schema() -> Any:
@@ -56,7 +65,7 @@ def schema() -> Any:
         "units_per_em": pa.float64(),
         "contour": pa.uint32(),
     }
-    columns = of_glyph | fit_types() | source_types() | measure_types()
+    columns = of_glyph | types_of(fit_columns) | types_of(source_columns) | measure_types()
     return pa.schema(columns, metadata={"glyphspline.schema": str(SCHEMA_VERSION)})
 
 
@@ -103,3 +112,96 @@ def rows(source: Source, glyphs: list[GlyphResult]) -> Any:
         columns[name] = pa.array(values, layout.field(name).type).take(pa.array(owner))
     columns["contour"] = pa.array(np.arange(len(found)) - offsets[owner], pa.uint32())
     return pa.Table.from_arrays([columns[name] for name in layout.names], schema=layout)
+
+
+def arrow() -> Any:
+    """The module pyarrow.
+
+    Raises:
+        GlyphsplineError: it is not installed.
+    """
+    return need("parquet")
+
+
+def types_of(columns: Callable[[ConvertedContours, FloatArray], dict[str, Any]]) -> dict[str, Any]:
+    """Arrow types of the columns that one of the functions below makes."""
+    return {name: column.type for name, column in columns(end_to_end([])[0], np.empty(0)).items()}
+
+
+def measure_types() -> dict[str, Any]:
+    """Arrow types of the columns of the measures."""
+    pa = arrow()
+    types = {"int": pa.int64(), "float": pa.float64(), "bool": pa.bool_()}
+    return {field.name: types[str(field.type).split(" | ")[0]] for field in fields(Measures)}
+
+
+def nested(values: Any, *offsets: IntArray) -> Any:
+    """Lists of an Arrow array, or lists of lists: the innermost offsets come first."""
+    pa = arrow()
+    for own in offsets:
+        values = pa.ListArray.from_arrays(pa.array(own.astype(np.int32)), values)
+    return values
+
+
+def pairs(points: FloatArray) -> Any:
+    """Points (N, 2) as an Arrow array of N lists of two."""
+    pa = arrow()
+    return pa.FixedSizeListArray.from_arrays(pa.array(points.ravel()), 2)
+
+
+def source_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
+    """The source of C contours; coordinates are multiplied by (C,) ``factors``."""
+    pa, source = arrow(), found.source
+    points = source.points * np.repeat(factors, np.diff(source.starts))[:, None]
+    return {
+        "source_degrees": nested(pa.array(source.degrees.astype(np.uint8)), source.offsets),
+        "source_points": nested(pairs(points), source.starts),
+    }
+
+
+def fit_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
+    """The fit of C contours; lengths, knots too, are multiplied by (C,) ``factors``."""
+    pa, curves, polygons, controls = arrow(), found.curves, found.polygons, found.controls
+    each = np.repeat(factors, np.diff(found.arc_offsets))
+    splines = [arc.spline for arc in found.arcs]
+    knots, at_knots = _numbers([spline.knots for spline in splines], each)
+    feet, at_feet = _numbers([arc.parameters for arc in found.arcs], each)
+    vertices = polygons.points * np.repeat(factors, np.diff(polygons.offsets))[:, None]
+    beziers = curves.points * np.repeat(factors, np.diff(curves.starts))[:, None]
+    rows = controls.points * np.repeat(each, np.diff(controls.offsets))[:, None]
+    arcs = found.arc_offsets
+    return {
+        "polygon": nested(pairs(vertices), polygons.offsets),
+        "closed": nested(pa.array(controls.closed), arcs),
+        "degree": nested(pa.array([spline.degree for spline in splines], pa.uint8()), arcs),
+        "knots": nested(knots, at_knots, arcs),
+        "control_points": nested(pairs(rows), controls.offsets, arcs),
+        "footpoints": nested(feet, at_feet, arcs),
+        "bezier_degrees": nested(pa.array(curves.degrees.astype(np.uint8)), curves.offsets),
+        "bezier_points": nested(pairs(beziers), curves.starts),
+    }
+
+
+def _numbers(parts: list[FloatArray], factors: FloatArray) -> tuple[Any, IntArray]:
+    """Numbers of some arcs end to end, multiplied, and where each arc begins."""
+    offsets = offsets_of([len(part) for part in parts])
+    return arrow().array(np.concatenate([np.empty(0), *parts]) * np.repeat(factors, np.diff(offsets))), offsets
+
+
+def measure_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
+    """The measures of C contours, null where not computed, with lengths multiplied by (C,) ``factors``."""
+    pa, columns = arrow(), {}
+    scaled = bool((factors != 1.0).any())
+    for name, kind in measure_types().items():
+        values = found.measures.get(name)
+        if values is None:
+            columns[name] = pa.nulls(len(found), kind)
+        elif scaled and name in POWERS:
+            known = np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+            known = known * factors ** POWERS[name]
+            if name in BOUNDS:
+                known = np.nextafter(known, np.inf)  # the product may be rounded down
+            columns[name] = pa.array(known, mask=np.array([value is None for value in values], dtype=np.bool_))
+        else:
+            columns[name] = pa.array(values, kind)
+    return columns

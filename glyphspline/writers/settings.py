@@ -1,21 +1,121 @@
-"""Settings of writers of drawings besides the result: looks, scale and flatness."""
+"""Settings of writers of drawings besides the result: looks, scale, flatness, and what curvature maps show."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
-from ..errors import is_positive, require
+from ..errors import OptionError, is_positive, require
 from ..fields import LOOK, WRITTEN, check, option, positive
-from .svg.appearance import PLAIN, Appearance, Whose
 
 if TYPE_CHECKING:
     from ..outlines.outline import FontMetrics
 
 DxfKind = Literal["spline", "polyline"]
 
+ImageKind = Literal["png", "pdf"]
+"""Of drawings."""
+
+FigureKind = Literal["png", "pdf", "svg"]
+"""Of diagrams."""
+
 RELATIVE_FLATNESS = 1 / 2000
 """Flatness of polylines where none is given, in em."""
+
+ViewBox = Literal["em", "metrics", "ink"]
+VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
+
+INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0, "pt": 1 / 72, "pc": 1 / 6, "px": 1 / 96}
+"""Units of lengths in CSS and SVG, in inches."""
+
+LARGEST = 200.0
+"""Maximum height of a drawing, and of its em, in inches: five metres, which is what a cutter's roll takes."""
+
+_LENGTH = re.compile(rf"(\d{{1,6}}(?:\.\d{{1,6}})?)({'|'.join(INCHES)})")
+_HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
+_NAME = re.compile(r"[a-z]{3,20}")
+
+Whose = Literal["result", "source"]
+WHOSE: tuple[Whose, ...] = get_args(Whose)
+"""Whose curvature a comb shows: the curve's, or that of the outline it was made of, which is exact."""
+
+CURRENT = "currentColor"
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """How drawings of glyphs look.
+
+    Attributes:
+        view_box: the region shown; see :func:`.svg.document.to_svg`.
+        size: height of the drawing with its unit (mm, cm, in, pt, pc, px), its width in proportion; None: none is said.
+        fill: colour of the ink: "currentColor", "none", #rgb, #rrggbb or a name of CSS.
+        stroke: colour of a line of 1/1000 em along the outline, likewise.
+        em: instead of ``size``, the length of an em with its unit, which is the size that type has.
+
+    Raises:
+        OptionError: one of these is none of what it can be, or both sizes are given.
+    """
+
+    view_box: ViewBox = option("em", "Show this region.", LOOK)
+    size: str | None = option(None, "Set the height with its unit, as 20mm; the width is in proportion.", LOOK)
+    fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", LOOK)
+    stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", LOOK)
+    em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", LOOK, "LENGTH", flags="--size")
+
+    def __post_init__(self) -> None:
+        check(self)
+        require(self.size is None or self.em is None, "size and em exclude each other", (self.size, self.em))
+        for name in ("size", "em"):
+            _length_of(name, getattr(self, name))
+        for name in ("fill", "stroke"):
+            rule = f"{name} is a colour: a name of CSS, #rgb, #rrggbb, currentColor or none"
+            require(is_colour(getattr(self, name)), rule, getattr(self, name))
+
+    def scale(self, height: float, units_per_em: float) -> tuple[float, str] | None:
+        """Length of a font unit in a drawing so many of them high, and its unit; None where no size is said."""
+        size, em = _length_of("size", self.size), _length_of("em", self.em)
+        if size:
+            return size[0] / height, size[1]
+        return em and (em[0] / units_per_em, em[1])
+
+    def inches(self, height: float, units_per_em: float, default: float) -> float:
+        """Height in inches of a drawing so many font units high, ``default`` where no size is said."""
+        found = self.scale(height, units_per_em)
+        return default if found is None else height * found[0] * INCHES[found[1]]
+
+
+def _length_of(name: str, value: str | None) -> tuple[float, str] | None:
+    """A length and its unit.
+
+    Raises:
+        OptionError: it is none, or too long.
+    """
+    if value is None:
+        return None
+    found = _LENGTH.fullmatch(value) if isinstance(value, str) else None
+    if found is None or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
+        units = ", ".join(INCHES)
+        raise OptionError(f"{name} is a length above 0 and up to 5 m with its unit ({units}), not {value!r}")
+    return float(found[1]), found[2]
+
+
+def is_colour(value: object) -> bool:
+    """Whether a value is a colour that SVG, PNG and PDF know."""
+    if not isinstance(value, str):
+        return False
+    if value in (CURRENT, "none") or _HEX.fullmatch(value):
+        return True
+    if not _NAME.fullmatch(value):
+        return False
+    from matplotlib.colors import CSS4_COLORS  # here and not above: few runs name a colour
+
+    return value in CSS4_COLORS
+
+
+PLAIN = Appearance()
+"""The em box, in the colour of the text around the drawing."""
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,7 @@ from glyphspline.outlines.joins import share_of_corners
 from glyphspline.runs.folder import locked
 from glyphspline.runs.spec import RunSpec
 from glyphspline.runs.summary import Facts, Summary
-from glyphspline.writers.settings import Maps, Settings
-from glyphspline.writers.svg.appearance import Appearance
+from glyphspline.writers.settings import Appearance, Maps, Settings
 from tests.places import ROOT
 from tests.polygons import circle_contour, square_contour
 from tests.runs.test_batch import content

@@ -27,10 +27,10 @@ from glyphspline.readers.single_fonts import masters_of_fonts
 from glyphspline.runs.jobs.masters import MastersSummary, redrawn_glyph
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.types import FloatArray, MadeOnDemand
-from glyphspline.writers.designspace_folder import write_designspace
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font
 from glyphspline.writers.font.variable_font import to_variable_font
+from glyphspline.writers.ufo_folder import write_designspace
 from tests import topology
 from tests.places import FONTS
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import glyphspline as gs
 from glyphspline.fitting.results import MEASURES, PER_EM, QUANTITIES, shown
-from glyphspline.report.glyph_measures import MEASURES as COMBINED
+from glyphspline.report.data import MEASURES as COMBINED
 from tests.drawings import circle
 
 

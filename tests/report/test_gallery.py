@@ -17,10 +17,9 @@ import pytest
 from svgpathtools import parse_path
 
 import glyphspline as gs
-from glyphspline.report.data import glyph_text, inside
+from glyphspline.report.data import glyph_measures, glyph_text, inside
 from glyphspline.report.gallery import write_index, write_report
-from glyphspline.report.glyph_measures import glyph_measures
-from glyphspline.writers.svg.polygon_drawing import polygon_data, source_data
+from glyphspline.writers.svg.document import polygon_data, source_data
 from tests.drawings import METRICS, circle
 
 HOSTILE = "\"'></script><script>alert(1)</script><!--<img src=x onerror=alert(1)>\u2028"

@@ -30,8 +30,7 @@ from glyphspline.runs.jobs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.runs.summary import Facts, facts_of
 from glyphspline.runs.worker import contour_entries
-from glyphspline.writers.settings import Settings
-from glyphspline.writers.svg.appearance import Appearance
+from glyphspline.writers.settings import Appearance, Settings
 from tests.places import FONTS
 
 SPEC = RunSpec(Options(step=80))

@@ -20,8 +20,7 @@ from glyphspline.runs.folder import LOCK, entries_of, locked
 from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from glyphspline.types import Names
-from glyphspline.writers.settings import Maps, Settings
-from glyphspline.writers.svg.appearance import Appearance
+from glyphspline.writers.settings import Appearance, Maps, Settings
 from tests.places import FONTS, ROOT
 
 SPEC = RunSpec(Options(step=90), ("svg",))

@@ -14,9 +14,9 @@ from matplotlib.image import imread
 import glyphspline as gs
 from glyphspline.outlines.ink import corner_points, ink_sides
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.raster import map_image
-from glyphspline.writers.svg.colours import SIDES, class_colour, colour_classes
-from glyphspline.writers.svg.curvature_map import LONGEST, TOOTH, curvature_scale, teeth, to_curvature_svg
+from glyphspline.writers.figures.drawings import map_image
+from glyphspline.writers.svg.comb import LONGEST, SIDES, TOOTH, colour_classes, curvature_scale, palette, teeth
+from glyphspline.writers.svg.curvature_map import to_curvature_svg
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour, result
 from tests.places import FONTS
 
@@ -54,7 +54,7 @@ def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
 @pytest.mark.parametrize("turn", [1, -1])
 def test_teeth_of_a_circle_are_as_long_as_its_curvature_and_point_outwards(turn: int) -> None:
     written = strokes(to_curvature_svg(disc(200, turn), scale=SIDES / 3 / 200))
-    assert list(written) == [class_colour(3)], "a disc is convex whichever way it runs"
+    assert list(written) == [palette()[SIDES + 3]], "a disc is convex whichever way it runs"
     (pairs,) = written.values()
     radii = np.hypot(*(pairs - 300).transpose(2, 0, 1))
     assert radii[:, 0] == pytest.approx(200, abs=0.1)
@@ -212,15 +212,15 @@ def test_same_input_gives_the_same_bytes() -> None:
 
 def test_png_shows_the_comb_in_its_colours() -> None:
     pixels = np.round(imread(io.BytesIO(map_image(disc(200, 1), "png", scale=1 / 200, vertices=False)))[..., :3] * 255)
-    violet = np.array([int(class_colour(SIDES)[i : i + 2], 16) for i in (1, 3, 5)])
+    violet = np.array([int(palette()[-1][i : i + 2], 16) for i in (1, 3, 5)])
     body = pixels[100:-250]  # without the title and the colour bar, which shows every colour
     assert (np.abs(body - violet).max(axis=2) < 40).sum() > 500
-    red = np.array([int(class_colour(-SIDES)[i : i + 2], 16) for i in (1, 3, 5)])
+    red = np.array([int(palette()[0][i : i + 2], 16) for i in (1, 3, 5)])
     assert (np.abs(body - red).max(axis=2) < 40).sum() == 0
 
 
 def test_writing_svg_does_not_import_matplotlib() -> None:
-    modules = "glyphspline.writers.svg.curvature_map, glyphspline.writers.figures.raster, glyphspline.report"
+    modules = "glyphspline.writers.svg.curvature_map, glyphspline.writers.figures.drawings, glyphspline.report"
     code = f"import sys, {modules}; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
@@ -232,7 +232,7 @@ def luminance(colour: str) -> float:
 
 
 def test_every_colour_is_seen_on_white_and_on_black() -> None:
-    colours = [class_colour(index) for index in range(-SIDES, SIDES + 1)]
+    colours = palette()
     assert len(set(colours)) == 2 * SIDES + 1
     for colour in colours:
         assert 1.05 / (luminance(colour) + 0.05) > 2.5  # contrast with white, as WCAG defines it

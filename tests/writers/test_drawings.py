@@ -17,8 +17,8 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.drawing import drawing_image
-from glyphspline.writers.svg.appearance import Appearance
+from glyphspline.writers.figures.drawings import drawing_image
+from glyphspline.writers.settings import Appearance
 from tests.drawings import circle, result
 from tests.places import GYOSHO as FONT
 

@@ -22,8 +22,7 @@ from glyphspline.errors import OptionError
 from glyphspline.fitting.results import as_glyph
 from glyphspline.writers import dxf
 from glyphspline.writers.formats import format_named
-from glyphspline.writers.settings import DxfKind, Settings
-from glyphspline.writers.svg.appearance import INCHES
+from glyphspline.writers.settings import INCHES, DxfKind, Settings
 from tests.places import ROOT
 
 ezdxf: Any = pytest.importorskip("ezdxf")

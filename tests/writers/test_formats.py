@@ -37,8 +37,7 @@ from glyphspline.writers import formats as registry
 from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
 from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
-from glyphspline.writers.settings import Settings
-from glyphspline.writers.svg.appearance import Appearance
+from glyphspline.writers.settings import Appearance, Settings
 from tests.places import FONTS, ROOT
 
 TTF, OTF = FONTS / "kouzan-gyosho.ttf", FONTS / "kouzan-gyosho.otf"

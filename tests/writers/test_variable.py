@@ -22,10 +22,10 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters, quadratics
 from glyphspline.readers import Font
 from glyphspline.types import FloatArray
-from glyphspline.writers.designspace_folder import unlike_regions, write_designspace
 from glyphspline.writers.font.implied_quadratics import basis
 from glyphspline.writers.font.master_deltas import Redrawn, as_drawn, nearest_whole, rounded_deltas
 from glyphspline.writers.font.variable_font import components, to_variable_font
+from glyphspline.writers.ufo_folder import unlike_regions, write_designspace
 from tests.outlines.test_masters import composed
 from tests.places import FONTS
 from tests.variable_drawings import Drawing, Shaper, apart, as_it_is, changed_tables, dense, refitted, turns_of
@@ -297,8 +297,7 @@ def test_the_fitted_spline_is_what_the_format_draws(closed: bool) -> None:
     contour = MasterContour(points, degrees).mixed(np.ones(1))
     count = 7 if closed else 5
     places = np.linspace(0, count, 101)[:-1]
-    index, weight, _ = basis(places, count, closed)
-    drawn = (weight[..., None] * controls[0][index]).sum(axis=1)
+    drawn = basis(places, count, closed)[0] @ controls[0]
     # The closed contour begins at the first implied point, after control point 0, where the spline is at 1.
     assert contour.at(places - 1 if closed else places) == pytest.approx(drawn)
     assert implied.tolist() == ([True] * 7 if closed else [False, *[True] * 4, False])

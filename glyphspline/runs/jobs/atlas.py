@@ -16,8 +16,8 @@ from ...fitting.results import GlyphResult, as_glyph
 from ...readers import Source
 from ...writers.figures.atlas import write_atlas
 from ...writers.figures.axis_pages import write_axis_atlas
-from ...writers.svg.appearance import Whose
-from ...writers.svg.curvature_map import curvature_scale
+from ...writers.settings import Whose
+from ...writers.svg.comb import curvature_scale
 from ..engine import Job, Observer, reason, run
 from ..schedule import InProcess, Place, place_of, sources
 from .convert import SCALE_SAMPLE

@@ -19,9 +19,9 @@ from ...files import make_folder, remove_partials, replacing, write_whole, writi
 from ...fitting.results import GlyphResult
 from ...readers import Source
 from ...readers.svg import SvgDrawings
+from ...report import FOLDER as GALLERY
 from ...report.data import row_of
 from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
-from ...report.gallery_files import FOLDER as GALLERY
 from ...types import Names, rounded_up
 from ...writers.formats import format_named
 from ..engine import Item, Job, Observer, Part, reason, run
@@ -103,7 +103,7 @@ class SurveyJob(Job[Task, "list[Comb]"]):
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Comb]:
         """The combs of outlines."""
         from ...fitting.results import as_glyph
-        from ...writers.svg.curvature_map import combs
+        from ...writers.svg.comb import combs
 
         return [comb for outline in contents for comb in combs(as_glyph(outline))]
 

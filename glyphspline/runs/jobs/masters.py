@@ -326,7 +326,7 @@ def _write_fonts(
         summary.remarks.append(remark)
         stays |= facts.left
     if "ufo" in spec.formats:
-        from ...writers.designspace_folder import write_designspace
+        from ...writers.ufo_folder import write_designspace
 
         left = write_designspace(source, redrawn, paths["ufo"])
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")

@@ -13,12 +13,12 @@ from ...curves.curvature import Comb, comb
 from ...fitting.results import ContourResult, GlyphResult
 from ...outlines.ink import ink_sides
 from ...outlines.joins import Kind, joins
-from ...outlines.outline import Contour
+from ...outlines.masters import Masters
+from ...outlines.outline import Contour, Outline
 from ...types import FloatArray
-from ..svg.appearance import Whose
-from ..svg.curvature_map import LONGEST, SPACING, Teeth, teeth
-from .images import blank, write_pages
-from .patches import ascii_text, colour_bar, comb_patches, outline_patch
+from ..settings import Whose
+from ..svg.comb import LONGEST, SPACING, Teeth, teeth
+from .basics import ascii_text, blank, colour_bar, comb_patches, outline_patch, write_pages
 
 PAGE = (8.27, 11.69)
 """A4 in inches."""
@@ -103,7 +103,7 @@ def overview(
             outlines += [place(curve.cubics().reshape(-1, 2)).reshape(-1, 4, 2) for curve in shown]
             found = teeth(glyph, scale, whose, in_corners=in_corners)
             drawn += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in found]
-            words = _name(glyph)
+            words = label(glyph.outline)
         else:
             words = f"{glyph[0]}: {glyph[1]}"[:60]
         x, y = corner[0] + 0.04, corner[1] - CELL + 0.03
@@ -117,7 +117,7 @@ def overview(
 def profile(glyph: GlyphResult, scale: float) -> Any:
     """One glyph: the source with its breaks, the result, and κ(s) of its longest contours, as a figure."""
     em = glyph.outline.metrics.units_per_em
-    figure = headed(_name(glyph), glyph.options.words)
+    figure = headed(label(glyph.outline), glyph.options.words)
     longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:PROFILES]
     grid = figure.add_gridspec(
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
@@ -214,6 +214,6 @@ def colour_legend(figure: Any, place: tuple[float, float, float, float], reach: 
     bar.ax.tick_params(labelsize=6)
 
 
-def _name(glyph: GlyphResult) -> str:
-    codes = " ".join(f"U+{code:04X}" for code in glyph.outline.unicodes[:2])
-    return f"gid {glyph.outline.gid}  {glyph.outline.name[:40]}  {codes}"
+def label(of: Outline | Masters) -> str:
+    """Index, name and characters of a glyph."""
+    return f"gid {of.gid}  {of.name[:40]}  {' '.join(f'U+{code:04X}' for code in of.unicodes[:2])}"

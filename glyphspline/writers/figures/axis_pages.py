@@ -1,4 +1,4 @@
-"""Pages of a variable font's atlas: a glyph along an axis, its source beside the curve for all masters."""
+"""Diagrams against an axis: pages of a variable font's atlas, and the turns of its smooth joints."""
 
 from __future__ import annotations
 
@@ -10,33 +10,22 @@ from typing import Any
 import numpy as np
 
 from ...checks.along_axis import AlongAxis, along_axis, places_along
-from ...checks.kinks import Kink
+from ...checks.kinks import AxisKinks, Kink, KinkReport, joint_turns
+from ...checks.kinks import Source as VariableSource
 from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
 from ...outlines.masters import Masters
 from ...types import FloatArray, rounded_up
-from ..svg.curvature_map import LONGEST, TOOTH, Teeth, teeth
-from .atlas import OUTLINE, SOURCE, colour_legend, headed
-from .images import write_pages
-from .patches import ascii_text, comb_patches, outline_patch
+from ..settings import FigureKind
+from ..svg.comb import LONGEST, TOOTH, Teeth, teeth
+from .atlas import OUTLINE, SOURCE, colour_legend, headed, label
+from .basics import ascii_text, blank, comb_patches, outline_patch, saved, write_pages
 
 PAGE = (11.69, 8.27)
 """A4 in inches, broad side down."""
 
-PLACES = 7
-"""Instances of a glyph on its page."""
-
-ROOM = 0.02
-"""Between instances, in em, beyond their longest teeth."""
-
-SHAPE = 0.76
-"""Smallest ratio of width to height of an instance's cell: with it, cells fill the page's width."""
-
 LEAST_SHOWN = 0.05
 """Degrees from which a turn is more than 0.0."""
-
-UNEVEN = 20.0
-"""Ratio of the largest energy to the smallest from which diagrams are logarithmic."""
 
 LISTED = 60
 """Maximum number of glyphs that are named on the page of those without a result."""
@@ -84,7 +73,7 @@ def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], sc
     """
     source = along_axis(result.masters, tag, location, corner_angle=result.options.corner_angle)
     curve = along_axis(curves_of(result), tag, location, corner_angle=result.options.corner_angle)
-    figure = headed(f"{heading}  {_name(result.masters)}", _caption(result, source), PAGE)
+    figure = headed(f"{heading}  {label(result.masters)}", _caption(result, source), PAGE)
     _draw_places(figure.add_axes((0.04, 0.415, 0.93, 0.495)), source, curve, scale)
     grid = figure.add_gridspec(1, 3, left=0.055, right=0.975, top=0.345, bottom=0.12, wspace=0.18)
     turns, energies, ratios = (figure.add_subplot(grid[0, k]) for k in range(3))
@@ -167,11 +156,6 @@ def degrees(turn: float) -> str:
     return f"{turn:.1f}°" if turn >= LEAST_SHOWN or turn == 0 else f"below {rounded_up(turn * (1 + 1e-9), 1):g}°"
 
 
-def _name(masters: Masters) -> str:
-    codes = " ".join(f"U+{code:04X}" for code in masters.unicodes[:2])
-    return f"gid {masters.gid}  {masters.name[:40]}  {codes}"
-
-
 def _caption(result: MastersResult, source: AlongAxis) -> str:
     others = [f"{tag} {value:.4g}" for tag, value in source.location.items() if tag != source.axis.tag]
     bound = max((contour.deviation_bound for contour in result.contours), default=0.0)
@@ -187,13 +171,13 @@ def _caption(result: MastersResult, source: AlongAxis) -> str:
 def _draw_places(axes: Any, source: AlongAxis, curve: AlongAxis, scale: float) -> None:
     """Combs of source, above, and result at places along the axis, on one pair of axes."""
     em = source.masters.metrics.units_per_em
-    values = places_along(source, PLACES)
+    values = places_along(source, 7)
     rows = [[along.instance(value) for value in values] for along in (source, curve)]
     points = np.concatenate([contour.points for row in rows for outline in row for contour in outline.contours]) / em
-    room = TOOTH * LONGEST + ROOM
+    room = TOOTH * LONGEST + 0.02  # between instances, in em, beyond their longest teeth
     low, high = points.min(axis=0) - room, points.max(axis=0) + room
     height = float(high[1] - low[1])
-    width = max(float(high[0] - low[0]), SHAPE * height)
+    width = max(float(high[0] - low[0]), 0.76 * height)  # cells fill the page's width
     middle = (low + high) / 2
     outlines: list[FloatArray] = []
     drawn: list[Teeth] = []
@@ -225,28 +209,83 @@ def _draw_places(axes: Any, source: AlongAxis, curve: AlongAxis, scale: float) -
 
 
 def _draw_lines(axes: Any, source: AlongAxis, curve: AlongAxis, columns: tuple[FloatArray, FloatArray]) -> None:
-    axes.plot(source.values, np.where(np.isfinite(columns[0]), columns[0], np.nan), color=SOURCE, linewidth=1.1,
-              label="source")  # fmt: skip
-    axes.plot(curve.values, np.where(np.isfinite(columns[1]), columns[1], np.nan), color="black", linewidth=0.9,
-              label="result")  # fmt: skip
+    lines = ((source, SOURCE, 1.1, "source"), (curve, "black", 0.9, "result"))
+    for (along, colour, width, words), column in zip(lines, columns, strict=True):
+        shown = np.where(np.isfinite(column), column, np.nan)
+        axes.plot(along.values, shown, color=colour, linewidth=width, label=words)
     _mark_masters(axes, source)
 
 
 def scale_of(axes: Any, values: FloatArray, least: float) -> None:
     """Scale a diagram's values, from ``least`` or the smallest; logarithmically where some are far above the others."""
     shown = values[np.isfinite(values) & (values > 0)]
-    if len(shown) and shown.max() > UNEVEN * shown.min():
+    if len(shown) and shown.max() > 20.0 * shown.min():
         axes.set_yscale("log")
     elif len(shown):
         axes.set_ylim(min(least, 0.98 * float(shown.min())), 1.05 * float(shown.max()))
 
 
 def _mark_masters(axes: Any, source: AlongAxis) -> None:
-    """Dashed lines at the masters, and what all diagrams against the axis have in common."""
-    for position in source.found.positions:
-        axes.axvline(position, color="0.6", linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
-    margin = 0.01 * (source.axis.maximum - source.axis.minimum)
-    axes.set_xlim(source.axis.minimum - margin, source.axis.maximum + margin)
-    axes.set_xlabel(f"{ascii_text(source.axis.name)} ({source.axis.tag}), masters dashed", fontsize=6, labelpad=2)
+    axis = source.axis
+    _against_axis(axes, axis, source.found.positions, (axis.minimum, axis.maximum), 6, 2.0)
     axes.tick_params(labelsize=6)
+
+
+def _against_axis(
+    axes: Any, axis: Any, masters: Iterable[float], limits: tuple[float, float], size: int, gap: float
+) -> None:
+    """What all diagrams against an axis have in common: dashed lines at the masters, limits, and a label."""
+    for position in masters:
+        axes.axvline(position, color="0.6", linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
+    margin = 0.01 * (limits[1] - limits[0])
+    axes.set_xlim(limits[0] - margin, limits[1] + margin)
+    axes.set_xlabel(f"{ascii_text(axis.name)} ({axis.tag}), masters dashed", fontsize=size, labelpad=gap)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def turns_figure(source: VariableSource, report: KinkReport, kind: FigureKind) -> bytes:
+    """A diagram for each axis: the largest turn of all smooth joints, and of those that interpolation kinks most.
+
+    Args:
+        source: which the report is of. report: of :func:`glyphspline.kinks`. kind: of the file.
+    """
+    figure = blank(7.5, 2.9 * len(report), layout="constrained")
+    for axes, found in zip(figure.subplots(len(report), squeeze=False)[:, 0], report, strict=True):
+        _draw_kinks(axes, source, found)
+    return saved(figure, kind)
+
+
+def _draw_kinks(axes: Any, source: VariableSource, found: AxisKinks) -> None:
+    values, largest = found.profile.T
+    axes.fill_between(values, largest, color="0.93", zorder=0)
+    axes.plot(values, largest, color="0.3", linewidth=1.2, label="largest turn of all smooth joints")
+    for colour, kink in zip(("#e8590c", "#1098ad", "#9c36b5"), worst(found), strict=False):
+        at = np.union1d(np.linspace(values[0], values[-1], 241), [value for value, _ in kink.at_masters])
+        axes.plot(at, joint_turns(source.masters(kink.glyph), kink, at), color=colour, linewidth=1.2, label=words(kink))
+        axes.plot(*zip(*kink.at_masters, strict=True), "o", color=colour, markersize=3.5)
+        axes.plot(kink.location[kink.axis], kink.turn, "o", color=colour, markersize=6, markerfacecolor="white")
+    _against_axis(axes, found.axis, found.positions, (values[0], values[-1]), 8, 4.0)
+    axes.set_ylim(0, max(1.0, 1.12 * float(largest.max())))
+    axes.set_ylabel("turn in degrees", fontsize=8)
+    axes.tick_params(labelsize=7)
+    axes.legend(fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(0.0, 1.16), ncols=2)
+
+
+def worst(found: AxisKinks) -> list[Kink]:
+    """The joints whose turn interpolation makes most, one a glyph: up to three of half a degree or more."""
+    kinks: dict[str, Kink] = {}
+    for k in np.argsort(-found.made, kind="stable"):
+        if found.made[k] < 0.5 or len(kinks) == 3:
+            break
+        kink = found[int(k)]
+        kinks.setdefault(kink.glyph, kink)
+    return [*kinks.values()]
+
+
+def words(kink: Kink) -> str:
+    """A kink in a line: "f, contour 1: 9.1° at 632, 0.4° in masters"."""
+    most = max(turn for _, turn in kink.at_masters)
+    return (
+        f"{ascii_text(kink.glyph)}, contour {kink.contour}: {kink.turn:.1f}° at {kink.location[kink.axis]:.4g}, "
+        f"{most:.1f}° in masters"
+    )

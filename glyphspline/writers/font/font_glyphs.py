@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +13,8 @@ from fontTools.misc.roundTools import otRound
 from fontTools.pens.boundsPen import BoundsPen
 from fontTools.pens.cu2quPen import Cu2QuPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
-from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.pens.ttGlyphPen import TTGlyphPen, TTGlyphPointPen
+from fontTools.ttLib import TTFont
 
 from ...curves.bezier import as_cubic
 from ...curves.integrals import area
@@ -144,12 +145,12 @@ def oriented(contours: Sequence[Contour], flavour: Flavour) -> list[Contour]:
 
 def char_string(contours: Sequence[Contour], width: float | None, parts: int, name: str) -> Any:
     """A Type 2 char string with coordinates in multiples of 1/``parts`` unit; ``width`` is stored as given."""
-    pen = T2CharStringPen(width, None, roundTolerance=0)
+    pen = T2CharStringPen(width, None, roundTolerance=0.5 if parts == 1 else 0)  # ints are shorter than floats
     raised = [Contour.from_segments(segments) for segments in map(as_stored, contours)]
     stored = [Contour(on_grid(contour.points, parts), contour.degrees) for contour in raised]
     for contour in stored:
         check_size(contour.points, name)
-        contour.draw(_WholeNumbers(pen) if parts == 1 else pen)
+        contour.draw(pen)
     return pen.getCharString(optimize=not any(map(doubles_back, stored)))
 
 
@@ -166,17 +167,6 @@ def doubles_back(contour: Contour) -> bool:
     before = np.roll(arms, 1, axis=0)
     opposite = ((arms * before).sum(axis=1) < 0) & (arms[:, 0] * before[:, 1] == arms[:, 1] * before[:, 0])
     return bool((opposite & lines & np.roll(lines, 1)).any())
-
-
-class _WholeNumbers:
-    """Passes ints to a pen: they are shorter in a char string than floats of the same value."""
-
-    def __init__(self, pen: Any) -> None:
-        self._pen = pen
-
-    def __getattr__(self, method: str) -> Any:
-        draw = getattr(self._pen, method)
-        return lambda *points: draw(*[(int(x), int(y)) for x, y in points])
 
 
 def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
@@ -206,3 +196,49 @@ def bounds_of(data: Any, contours: Sequence[Contour]) -> tuple[float, float, flo
     for contour in contours:
         contour.draw(pen)
     return pen.bounds and tuple(map(otRound, pen.bounds))
+
+
+def users(font: TTFont, parts: Iterable[str]) -> list[str]:
+    """Glyphs of ``glyf`` that are among ``parts``, or have a component among them at any depth; in the font's order."""
+    glyf = font["glyf"]
+    known = dict.fromkeys(parts, True)
+
+    def uses(name: str, above: tuple[str, ...]) -> bool:
+        if name not in known:
+            glyph = glyf[name]
+            inside = [] if name in above or not glyph.isComposite() else [part.glyphName for part in glyph.components]
+            known[name] = any(uses(part, (*above, name)) for part in inside)
+        return known[name]
+
+    return [name for name in font.getGlyphOrder() if uses(name, ())]
+
+
+def parts_of(font: TTFont, name: str) -> list[str]:
+    """The simple glyphs that a glyph of ``glyf`` is made of, in order, each once; itself if it is simple."""
+    found: dict[str, None] = {}
+    seen: set[str] = set()
+    waiting = [name]
+    while waiting:
+        name = waiting.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        glyph = font["glyf"][name]
+        if glyph.isComposite():
+            waiting += [part.glyphName for part in reversed(glyph.components)]
+        else:
+            found[name] = None
+    return list(found)
+
+
+def decomposed(glyf: Any, name: str) -> Any:
+    """A composite as a simple glyph whose contours begin on the curve, where they touch it."""
+    points, ends, flags = glyf[name].getCoordinates(glyf)[:3]
+    pen = TTGlyphPointPen(None)
+    for start, stop in pairwise([0, *(end + 1 for end in ends)]):
+        first = next((i for i in range(start, stop) if flags[i] & 1), start)
+        pen.beginPath()
+        for i in (*range(first, stop), *range(start, first)):
+            pen.addPoint(points[i], "line" if flags[i] & 1 else None)
+        pen.endPath()
+    return pen.glyph()

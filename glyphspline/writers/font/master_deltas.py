@@ -40,6 +40,27 @@ class Redrawn:
                 raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
 
 
+@dataclass(frozen=True, eq=False)
+class StoredGlyph:
+    """A glyph as a font stores it.
+
+    Attributes:
+        contours: what is drawn, numbers rounded, in the masters of :class:`Redrawn`; none if they were
+            not asked for.
+        inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
+        distance: the largest from the contours that were given, in font units, at the corners of the design space and
+            in between. In CFF2 a bound; in glyf from dense samples.
+        shortest_leg: in glyf, the least distance of an implied point from its control points, in font units and at the
+            same places. Where it is 0 the curve has a corner there; where it is below a unit, renderers' single
+            precision turns it by some thousandths of a degree. None if there is no such point.
+    """
+
+    contours: tuple[MasterContour, ...]
+    inner: tuple[BoolArray, ...]
+    distance: float
+    shortest_leg: float | None = None
+
+
 def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:
     """(K, N, 2) the default's points and a delta for each region, in steps of 1/``parts`` unit.
 

@@ -26,11 +26,11 @@ from ...outlines.masters import DesignAxis, Masters
 from ...readers import Font, Source
 from ...readers.single_fonts import axis_of
 from ...types import MadeOnDemand
-from .font_file import decomposed, to_font
-from .font_tables import postscript
+from .font_file import postscript, to_font
+from .font_glyphs import decomposed, users
 from .master_deltas import Redrawn, check_steps, rounded_deltas
 from .variable_font import VariableSummary, to_variable_font
-from .variable_glyf import PHANTOMS, users
+from .variable_glyf import PHANTOMS
 
 ELIDABLE = "Regular"
 """The style that is left out of the names of others."""

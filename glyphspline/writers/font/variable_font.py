@@ -10,41 +10,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from io import BytesIO
+from typing import Any
 
 import numpy as np
+from fontTools.cffLib import maxStackLimit
+from fontTools.cffLib.specializer import commandsToProgram, specializeCommands
+from fontTools.misc.psCharStrings import SimpleT2Decompiler, T2CharString
+from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import MasterContour
 from ...readers import Font
-from ...types import BoolArray
-from .font_glyphs import Flavour
-from .master_deltas import Redrawn
-from .variable_cff2 import CharStrings2
-from .variable_glyf import Quadratics, parts_of
+from ...types import FloatArray, IntArray
+from .font_glyphs import LIMIT, Flavour, parts_of
+from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
+from .variable_glyf import Quadratics
+
+PARTS = 1 << 16
+"""Parts of a unit to which coordinates are rounded. The format's numbers are 16.16, so that such fractions, and sums
+of them, are exact. Any fraction takes five bytes."""
+
+LONGEST = 65535
+"""Bytes of the longest char string that readers have to take."""
 
 OUTLINES = {"CFF2": "otf", "glyf": "ttf"}
 """The tables whose glyphs can be replaced, and the format of the font that has them."""
-
-
-@dataclass(frozen=True, eq=False)
-class StoredGlyph:
-    """A glyph as a font stores it.
-
-    Attributes:
-        contours: what is drawn, numbers rounded, in the masters of :class:`.master_deltas.Redrawn`; none if they were
-            not asked for.
-        inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
-        distance: the largest from the contours that were given, in font units, at the corners of the design space and
-            in between. In CFF2 a bound; in glyf from dense samples.
-        shortest_leg: in glyf, the least distance of an implied point from its control points, in font units and at the
-            same places. Where it is 0 the curve has a corner there; where it is below a unit, renderers' single
-            precision turns it by some thousandths of a degree. None if there is no such point.
-    """
-
-    contours: tuple[MasterContour, ...]
-    inner: tuple[BoolArray, ...]
-    distance: float
-    shortest_leg: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,10 +109,10 @@ def to_variable_font(
             continue
         try:
             if strings:
-                found = StoredGlyph(*strings.replace(stored, new))
+                found = strings.replace(stored, new)
             else:
                 assert quadratics
-                found = StoredGlyph(*quadratics.replace(stored, new, tolerance))
+                found = quadratics.replace(stored, new, tolerance)
             glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
         except GlyphsplineError as error:
             left[name] = error.message
@@ -162,3 +152,113 @@ def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
     order = font.getGlyphOrder()
     found = [part for name in names for part in parts_of(font, order[gids[name]])]
     return tuple(dict.fromkeys(source.glyph_names[font.getGlyphID(part)] for part in found))
+
+
+class CharStrings2:
+    """The char strings of a font, to be replaced one by one. Those of other glyphs keep their bytes."""
+
+    def __init__(self, font: TTFont) -> None:
+        self._font = font
+        top = font["CFF2"].cff.topDictIndex[0]
+        self._strings = top.CharStrings
+        self._data: list[list[FloatArray]] = []
+        if "VarStore" in top.rawDict:
+            store = top.VarStore.otVarStore
+            axes = font["fvar"].axes
+            supports = [region.get_support(axes) for region in store.VarRegionList.Region]
+            regions = [np.array([support.get(axis.axisTag, (0, 0, 0)) for axis in axes]) for support in supports]
+            self._data = [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
+
+    def replace(self, name: str, redrawn: Redrawn) -> StoredGlyph:
+        """Replace a glyph.
+
+        Raises:
+            GlyphsplineError: its regions are not those of any item of the font's store, or it is too long.
+        """
+        masters = redrawn.masters
+        old = self._strings[name]
+        contours = [cubic(contour) for contour in redrawn.contours]
+        steps = [rounded_deltas(masters, contour.points, PARTS) for contour in contours]
+        for each in steps:
+            check_steps(each, PARTS, name)
+        varies = any(each[1:].any() for each in steps)
+        index, order = self._place(masters.regions, old) if varies else (0, [])
+        commands = drawing([each[[0, *(1 + k for k in order)]] for each in steps], contours, name)
+        program = commandsToProgram(
+            specializeCommands(commands, generalizeFirst=False, preserveTopology=True, maxstack=maxStackLimit)
+        )
+        if varies and index != getattr(old.private, "vsindex", 0):
+            program = [index, "vsindex", *program]
+        new = T2CharString(program=program, private=old.private, globalSubrs=old.globalSubrs)
+        new.compile(isCFF2=True)
+        if len(new.bytecode) > LONGEST:
+            raise GlyphsplineError(
+                f"its char string would have {len(new.bytecode)} bytes, more than {LONGEST}", glyph=name
+            )
+        if self._strings.charStringsAreIndexed:
+            self._strings.charStringsIndex[self._strings.charStrings[name]] = new
+        else:
+            self._strings[name] = new
+        drawn = [as_drawn(masters, each, PARTS) for each in steps]
+        stored = tuple(MasterContour(points, c.degrees) for points, c in zip(drawn, contours, strict=True))
+        # Convex, and multilinear between the corners of the grid: largest at one of them, and at a control point.
+        corners = masters.weights_at(masters.grid())
+        moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
+        far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
+        return StoredGlyph(stored, redrawn.inner, max(far, default=0.0))
+
+    def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:
+        """The index of the item of the store that has just these regions, and their indices in its order."""
+        private = old.private
+        copy = T2CharString(bytecode=old.bytecode, private=private, globalSubrs=old.globalSubrs)
+        reader = SimpleT2Decompiler(getattr(private, "Subrs", []), old.globalSubrs, private)
+        reader.execute(copy)
+        known = {region_key(region): k for k, region in enumerate(regions)}
+        for index in (reader.vsIndex, *range(len(self._data))):
+            if index < len(self._data):
+                keys = [region_key(region) for region in self._data[index]]
+                if len(keys) == len(known) and set(keys) == known.keys():
+                    return index, [known[key] for key in keys]
+        raise GlyphsplineError(f"no item of the font's variation store has just its {len(regions)} regions")
+
+
+def cubic(contour: MasterContour) -> MasterContour:
+    """The contour with lines and cubics alone: quadratics raised, exactly."""
+    if not (contour.degrees == 2).any():
+        return contour
+    raised = contour.cubics()
+    degrees = np.where(contour.degrees == 1, 1, 3)
+    points = [raised[:, j, : 3 if degree == 3 else 1] for j, degree in enumerate(degrees.tolist())]
+    return MasterContour(np.concatenate(points, axis=1), degrees)
+
+
+def drawing(steps: list[IntArray], contours: list[MasterContour], name: str) -> list[tuple[str, list[Any]]]:
+    """The commands that draw contours of default and deltas, (K, N, 2) in steps, each of whose arguments is blended.
+
+    All masters are in one command, so that no master has another operator than the others.
+    """
+    commands: list[tuple[str, list[Any]]] = []
+    at = np.zeros((len(steps[0]) if steps else 1, 1, 2), dtype=np.int64)
+    for each, contour in zip(steps, contours, strict=True):
+        path = np.concatenate([at, each, each[:, :1]], axis=1)
+        moves = np.diff(path, axis=1)
+        if moves.size and np.abs(moves).max() > LIMIT * PARTS:
+            raise GlyphsplineError(f"steps beyond {LIMIT} do not fit into a font", glyph=name)
+        blended = [[_argument(column) for column in point] for point in moves.transpose(1, 2, 0).tolist()]
+        commands.append(("rmoveto", blended[0]))
+        offset = 1
+        last = len(contour) - 1
+        for j, degree in enumerate(contour.degrees.tolist()):
+            if degree == 3:
+                commands.append(("rrcurveto", [*blended[offset], *blended[offset + 1], *blended[offset + 2]]))
+            elif j < last:  # the line back to the start is drawn by the end of the contour
+                commands.append(("rlineto", blended[offset]))
+            offset += degree
+        at = each[:, -1:] if contour.degrees[-1] == 1 else each[:, :1]
+    return commands
+
+
+def _argument(column: list[int]) -> Any:
+    """A number, or a list of the default, the deltas and 1, which the specialiser takes for a blend."""
+    values = [step // PARTS if step % PARTS == 0 else step / PARTS for step in column]
+    return [*values, 1] if any(column[1:]) else values[0]

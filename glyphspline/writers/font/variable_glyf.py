@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -25,8 +25,9 @@ from ...curves.cubics import turns
 from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters, quadratics
 from ...types import BoolArray, FloatArray, IntArray
+from .font_glyphs import parts_of, users
 from .implied_quadratics import Arc, fit
-from .master_deltas import Redrawn, as_drawn, check_steps, region_key, rounded_deltas
+from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
 
 LEVEL = np.radians(0.5)
 """Turn between a line and an arc up to which, if no master turns more, the arc begins along the line."""
@@ -48,11 +49,8 @@ class Quadratics:
         self._new: dict[str, Glyph] = {}
         self._counted = placed_by_points(font)
 
-    def replace(
-        self, name: str, redrawn: Redrawn, tolerance: float
-    ) -> tuple[tuple[MasterContour, ...], tuple[BoolArray, ...], float, float | None]:
-        """Replace a glyph; returns its contours as stored, which joints are implied, the largest distance,
-        and the shortest leg at an implied point.
+    def replace(self, name: str, redrawn: Redrawn, tolerance: float) -> StoredGlyph:
+        """Replace a glyph.
 
         Raises:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
@@ -61,76 +59,54 @@ class Quadratics:
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
         old = self._glyf[name]
-        variations = self._gvar.variations(name)
-        known = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
-        keys = [region_key(self._gvar.region(variation)) for variation in variations]
-        for key, variation in zip(keys, variations, strict=True):
+        # Regions to the numbers of their masters; the default is 0.
+        known: dict[Any, int] = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
+        given = self._gvar.variations(name)
+        keys = [region_key(self._gvar.region(variation)) for variation in given]
+        for key, variation in zip(keys, given, strict=True):
             moves = any(delta not in (None, (0, 0)) for delta in variation.coordinates[:-PHANTOMS])
             if key and key not in known and moves:
                 raise GlyphsplineError("its variations have a region that its masters have not", glyph=name)
-        # Rasterisers move a glyph so that its left side bearing is the font's.
-        left = getattr(old, "xMin", 0) - self._font["hmtx"][name][1]
-        shift = self._left(masters, keys, variations, left)
+        # Rasterisers move a glyph so that its left side bearing is the font's: masters drawn at 0 begin elsewhere.
+        lefts = np.zeros(len(masters))
+        lefts[0] = getattr(old, "xMin", 0) - self._font["hmtx"][name][1]
+        for key, variation in zip(keys, given, strict=True):
+            if key in known and variation.coordinates[-PHANTOMS] is not None:
+                lefts[known[key]] += variation.coordinates[-PHANTOMS][0]
+        shift = np.asarray(masters.scalars(masters.peaks) @ lefts)
         drawn = [
             drawn_contour(masters, contour, inner, shift, tolerance)
             for contour, inner in zip(redrawn.contours, redrawn.inner, strict=True)
         ]
-        steps = np.concatenate(
-            [np.zeros((len(masters), 0, 2), dtype=np.int64), *[each.steps for each in drawn]], axis=1
-        )
+        none = np.zeros((len(masters), 0, 2), dtype=np.int64)
+        steps = np.concatenate([none, *[each.steps for each in drawn]], axis=1)
         check_steps(steps, 1, name)
         on = np.concatenate([np.zeros(0, dtype=bool), *[each.on for each in drawn]])
         ends = (np.cumsum([len(each.on) for each in drawn]) - 1).tolist()
         flags = getattr(old, "flags", b"")
-        overlap = bool(len(flags) and flags[0] & flagOverlapSimple)
-        self._new[name] = simple_glyph(steps[0], on, ends, overlap)
-        self._gvar.put(self._font.getGlyphID(name), self._tuples(masters, steps, ends, keys, variations))
-        distance = max((each.distance for each in drawn), default=0.0)
-        legs = min((each.shortest for each in drawn), default=np.inf)
-        stored, implied = tuple(each.stored for each in drawn), tuple(each.implied for each in drawn)
-        return stored, implied, distance, legs if np.isfinite(legs) else None
-
-    @staticmethod
-    def _left(masters: Masters, keys: list[Any], variations: list[TupleVariation], left: float) -> FloatArray:
-        """(K,) where the masters' glyphs begin that are drawn at 0."""
-        known = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
-        deltas = np.zeros(len(masters))
-        deltas[0] = left
-        for key, variation in zip(keys, variations, strict=True):
-            delta = variation.coordinates[-PHANTOMS]
-            if key in known and delta is not None:
-                deltas[known[key]] += delta[0]
-        return np.asarray(masters.scalars(masters.peaks) @ deltas)
-
-    @staticmethod
-    def _tuples(
-        masters: Masters, steps: IntArray, ends: list[int], keys: list[Any], variations: list[TupleVariation]
-    ) -> list[TupleVariation]:
-        """The variations in the old order, with new deltas of the points; those of the phantom points stay."""
-        known = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
-        places = [*map(tuple, steps[0].tolist()), *[(0, 0)] * PHANTOMS]
-        found = []
-        used: set[Any] = set()
+        self._new[name] = simple_glyph(steps[0], on, ends, bool(len(flags) and flags[0] & flagOverlapSimple))
         tags = [axis.tag for axis in masters.axes]
-        missing = [k for key, k in known.items() if key not in keys]
-        given = [
-            (key, variation.axes, variation.coordinates[-PHANTOMS:])
-            for key, variation in zip(keys, variations, strict=True)
-        ]
-        for k in missing:
-            region = masters.regions[k - 1]
-            axes = {tag: tuple(three) for tag, three in zip(tags, region.tolist(), strict=True) if three[1]}
-            given.append((region_key(region), axes, [None] * PHANTOMS))
-        for key, axes, phantoms in given:
-            deltas = np.zeros_like(steps[0])
-            if key in known and key not in used:  # a second tuple of the same region adds nothing
-                deltas = steps[known[key]]
-                used.add(key)
-            whole = [*map(tuple, deltas.tolist()), *[delta or (0, 0) for delta in phantoms]]
-            kept = iup_delta_optimize(whole, places, ends, tolerance=0.0)
-            if any(delta is not None for delta in kept):
-                found.append(TupleVariation(axes, kept))
-        return found
+        for key, region in zip(known, masters.regions.tolist(), strict=True):
+            if key not in keys:
+                axes = {tag: tuple(three) for tag, three in zip(tags, region, strict=True) if three[1]}
+                given.append(TupleVariation(axes, [None] * PHANTOMS))
+                keys.append(key)
+        places, kept = [*map(tuple, steps[0].tolist()), *[(0, 0)] * PHANTOMS], []
+        for key, variation in zip(keys, given, strict=True):
+            # The phantom points stay. A second tuple of the same region moves no points.
+            deltas = steps[known.pop(key)] if key in known else np.zeros_like(steps[0])
+            phantoms = [delta or (0, 0) for delta in variation.coordinates[-PHANTOMS:]]
+            moved = iup_delta_optimize([*map(tuple, deltas.tolist()), *phantoms], places, ends, tolerance=0.0)
+            if any(delta is not None for delta in moved):
+                kept.append(TupleVariation(variation.axes, moved))
+        self._gvar.put(self._font.getGlyphID(name), kept)
+        shortest = min((each.shortest for each in drawn), default=np.inf)
+        return StoredGlyph(
+            tuple(each.stored for each in drawn),
+            tuple(each.implied for each in drawn),
+            max((each.distance for each in drawn), default=0.0),
+            shortest if np.isfinite(shortest) else None,
+        )
 
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
@@ -180,21 +156,6 @@ def _bounds(glyph: Any) -> tuple[int, ...] | None:
     return (glyph.xMin, glyph.yMin, glyph.xMax, glyph.yMax) if glyph.numberOfContours else None
 
 
-def users(font: TTFont, parts: Iterable[str]) -> list[str]:
-    """Glyphs of ``glyf`` that are among ``parts``, or have a component among them at any depth; in the font's order."""
-    glyf = font["glyf"]
-    known = dict.fromkeys(parts, True)
-
-    def uses(name: str, above: tuple[str, ...]) -> bool:
-        if name not in known:
-            glyph = glyf[name]
-            inside = [] if name in above or not glyph.isComposite() else [part.glyphName for part in glyph.components]
-            known[name] = any(uses(part, (*above, name)) for part in inside)
-        return known[name]
-
-    return [name for name in font.getGlyphOrder() if uses(name, ())]
-
-
 def placed_by_points(font: TTFont) -> dict[str, str]:
     """Glyphs whose points have numbers that matter, and the composite that counts them to place its components."""
     glyf = font["glyf"]
@@ -204,24 +165,6 @@ def placed_by_points(font: TTFont) -> dict[str, str]:
         if glyph.isComposite() and any(hasattr(part, "firstPt") for part in glyph.components):
             found |= dict.fromkeys(parts_of(font, name), name)
     return found
-
-
-def parts_of(font: TTFont, name: str) -> list[str]:
-    """The simple glyphs that a glyph of ``glyf`` is made of, in order, each once; itself if it is simple."""
-    found: dict[str, None] = {}
-    seen: set[str] = set()
-    waiting = [name]
-    while waiting:
-        name = waiting.pop()
-        if name in seen:
-            continue
-        seen.add(name)
-        glyph = font["glyf"][name]
-        if glyph.isComposite():
-            waiting += [part.glyphName for part in reversed(glyph.components)]
-        else:
-            found[name] = None
-    return list(found)
 
 
 def simple_glyph(points: IntArray, on: BoolArray, ends: list[int], overlap: bool) -> Glyph:

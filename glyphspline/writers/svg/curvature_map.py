@@ -2,133 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Sequence
+from functools import cache, lru_cache
 from itertools import pairwise
 
 import numpy as np
 
-from ...curves.curvature import ANGLE, Comb, comb, relative, robust_scale
-from ...errors import require_choice
 from ...fitting.results import GlyphResult
-from ...outlines.contour_arrays import ContourArrays
-from ...outlines.sampling import CORNER_ANGLE
+from ...outlines.contour_arrays import offsets_of
 from ...types import BoolArray, FloatArray, IntArray
-from .appearance import WHOSE, Whose
-from .colours import SIDES, class_colour
-from .document import title
-from .legend import legend_svg
-from .markup import Text, data_attributes, document, head, id_prefix, number, union, view_box_value
-from .path_data import Box, PathData, curves_data, dots_data, polylines_data
-
-SPACING = 1 / 140
-"""Maximum spacing of teeth in em. At half of it teeth run together in print; at twice, the tips cut corners."""
-
-MOST_TEETH = 8000
-"""Maximum number of teeth; beyond it spacing grows. A CJK glyph has some 2000, a hostile one could have millions."""
-
-TOOTH = 0.03
-"""Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs."""
-
-LONGEST = 1.25
-"""Maximum length of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners
-cover a CJK glyph; without a limit a single tooth may cross the page."""
+from ..settings import Settings, Whose
+from . import path_data
+from .comb import LONGEST, SIDES, TOOTH, Teeth, colour_classes, curvature_scale, curves_of, palette, teeth
+from .document import data_attributes, document, em_box, head, id_prefix, number, title, union, view_box_value
+from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 STROKE = 3
 """Width of the outline in 1/1000 em. It would hide teeth of less than half of it, so these are left out."""
 
-PRECISION = 1
-"""Decimals of the comb, per 1000 units of the em: 1/10,000 em is finer than any screen shows."""
-
-
-NEAR = 1 / 40
-"""Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""
-
-
-@dataclass(frozen=True, eq=False)
-class Teeth:
-    """One contour's comb as drawn, in font units: all arrays in curve order.
-
-    Attributes:
-        feet, tips: (k, 2). relative: (k,) curvature in units of the scale, positive where the ink is convex.
-        cut: (k,) whether the tooth was shortened.
-    """
-
-    feet: FloatArray
-    tips: FloatArray
-    relative: FloatArray
-    cut: BoolArray
-
-
-def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
-    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`.
-
-    It is that of the sources, so that combs of sources and of all their results compare; a smooth result's turns about
-    corners would make it larger. Where all sources are straight it is that of the results.
-    """
-    every = list(glyphs)
-    order: tuple[Whose, ...] = ("source", "result")
-    found = (robust_scale(item for glyph in every for item in combs(glyph, whose=whose)) for whose in order)
-    return next(filter(None, found), 0.0)
-
-
-def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> list[Comb]:
-    """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large."""
-    from ...curves.comb import control_length  # here and not above: the package opens without a compiler
-    from ...outlines.segments import all_cubics
-
-    curves = curves_of(glyph, whose)
-    cubics = all_cubics(curves)
-    spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
-    return [comb(cubics[a:b], spacing) for a, b in pairwise(curves.offsets.tolist()) if a < b]
-
-
-def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
-    """The contours whose curvature is shown."""
-    require_choice("comb", whose, WHOSE)
-    return glyph.arrays.curves if whose == "result" else glyph.arrays.source
-
-
-def sides_and_corners(
-    glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """(C,) sides of the ink, (k, 2) corners in whose turn no teeth are drawn, and (C + 1,) where each contour's begin.
-
-    Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
-    curvatures.
-    """
-    from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
-
-    turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
-    corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
-    return ink_sides(curves_of(glyph, whose)), corners, offsets
-
-
-def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
-    """Feet and tips of each contour's comb. Teeth point away from the centre of curvature."""
-    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
-    sides, corners, offsets = sides_and_corners(glyph, whose, in_corners=in_corners)
-    drawn = np.flatnonzero(np.diff(curves.offsets)).tolist()
-    found = combs(glyph, density=1.0, whose=whose)
-    return [
-        teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
-        for item, c in zip(found, drawn, strict=True)
-    ]
-
-
-def teeth_of(item: Comb, em: float, scale: float, side: float = 1.0, corners: FloatArray | None = None) -> Teeth:
-    """Feet and tips of one comb; ``side`` and ``corners`` (k, 2) of its contour as for :func:`sides_and_corners`."""
-    strength = relative(item.curvature, scale)
-    cut = np.abs(strength) > LONGEST
-    if corners is not None and len(corners):
-        from ...outlines.ink import turned_about  # as above
-
-        hidden = turned_about(corners, item.points, cut, NEAR * em)
-        strength[hidden], cut[hidden] = 0.0, False
-    shown = np.clip(strength, -LONGEST, LONGEST)
-    tips = item.points - (TOOTH * em * shown)[:, None] * item.normals
-    return Teeth(item.points, tips, side * strength, cut)
+MEANING = (
+    "Length and colour of a tooth are the curvature there, 1/radius with the em as the unit: 2 is the bend of a circle"
+    " of half an em in radius. Blue to violet: the ink is convex; yellow to red: it is concave."
+)
+"""Tooltip of the legend."""
 
 
 def to_curvature_svg(
@@ -171,6 +67,11 @@ def to_curvature_svg(
     ).decode()
 
 
+def write_map(result: GlyphResult, settings: Settings) -> str:
+    """The file of a result."""
+    return to_curvature_svg(result)
+
+
 def map_document(
     glyph: GlyphResult,
     path: PathData,
@@ -185,80 +86,146 @@ def map_document(
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    marks = sides_and_corners(glyph, whose, in_corners=in_corners)
-    layers, box = _comb_layer(curves_of(glyph, whose), *marks, em, scale, precision)
-    box = box or (0.0, outline.metrics.descender, outline.advance, outline.metrics.ascender)
-    box = (min(box[0], 0.0), box[1], max(box[2], outline.advance), box[3])
+    least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
+    found = teeth(glyph, scale, whose, in_corners=in_corners, flat=scale * least)
+    layers, box = _comb(found, em, least, precision)
+    box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
-    layers += [
+    layers.append(
         f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
-        ' fill-opacity=".07" fill-rule="nonzero" d="', path.text, '"/>\n',
-    ]  # fmt: skip
+        f' fill-opacity=".07" fill-rule="nonzero" d="{path.text}"/>\n'
+    )
     if control_polygon and whose == "result":
         polygons = polylines_data(arrays.controls, precision)[0]
-        layers += [
+        layers.append(
             f'<path class="control-polygon" stroke="currentColor" stroke-opacity=".6" stroke-width="{_width(em, 1.2)}"'
-            f' stroke-dasharray="{_width(em, 6)}" d="', polygons.text, '"/>\n',
-        ]  # fmt: skip
+            f' stroke-dasharray="{_width(em, 6)}" d="{polygons.text}"/>\n'
+        )
         box = union(box, polygons.box)
     if vertices:
-        style = f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="'
         source = arrays.source
         joints = source.points[np.cumsum(source.degrees) - source.degrees]
-        points = arrays.polygons.points if whose == "result" else joints
-        layers += [style, dots_data(points, precision), '"/>\n']
-    legend, box = legend_svg(box, em, scale, precision, TOOTH, LONGEST, whose)
-    margin = 0.02 * em
-    box = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
+        dots = dots_data(arrays.polygons.points if whose == "result" else joints, precision)
+        layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
+    legend, width, height = _legend(em, scale, precision, whose)
+    left, base, margin = box[0] + 0.02 * em, box[1] - (0.06 + TOOTH) * em, 0.02 * em
+    layers.append(
+        f'<g class="legend" transform="translate({number(left, precision)} {number(-base, precision)})"'
+        f' stroke-width="{_width(em, 3)}">{legend}</g>\n</svg>\n'
+    )
+    box = (box[0] - margin, base - height - margin, max(box[2], left + width) + margin, box[3] + margin)
     prefix, drawn = id_prefix(outline.name, outline.gid), "" if whose == "result" else ", source"
     attributes = (
         f'{data_attributes(outline, precision)} data-scale="{scale:.6g}" fill="none" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
-    value = view_box_value(box, precision)
-    begin = head(value, f"{prefix}-map-title", f"Curvature of {title(outline)}{drawn}", attributes)
-    return document([begin, *layers, legend, "\n</svg>\n"])
+    name, words = f"{prefix}-map-title", f"Curvature of {title(outline)}{drawn}"
+    return document([head(view_box_value(box, precision), name, words, attributes), *layers])
 
 
-@cache
-def comb_precision(em: float) -> int:
-    """Decimals of comb coordinates: fewer on a large em."""
-    return max(0, PRECISION + 3 - round(float(np.log10(em))))
+def _comb(drawn: Sequence[Teeth], em: float, least: float, precision: int) -> tuple[list[str], Box | None]:
+    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb.
+
+    Args:
+        least: teeth of less curvature, in units of the scale, are left out.
+    """
+    layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
+    every = [_distinct(each, precision) for each in drawn]
+    if sum(len(each[0]) for each in every):
+        ends, relative, cut = map(np.concatenate, zip(*every, strict=True))
+        if np.abs(ends).max() < path_data.EXACT / 2:
+            x, y, tip_x, tip_y = ends.T
+            shown = (np.minimum(np.abs(relative), LONGEST) > least) & ((x != tip_x) | (y != tip_y))
+            points, commands, offsets = _strokes(ends[shown], colour_classes(relative[shown]))
+            line, of_line = _tip_line(ends[:, 2:], shown, offsets_of([len(each[0]) for each in every]))
+            marks = ends[shown & cut, 2:]
+            commands = np.concatenate([commands, of_line, np.full(len(marks), path_data.MOVE_BY)])
+            offsets = np.append(offsets, offsets[-1] + np.array([len(line), len(line) + len(marks)]))
+            text, at = path_data.path_text(np.concatenate([points, line, marks]), commands, offsets, precision)
+            parts = [text[at[a] : at[b]] for a, b in pairwise(offsets.tolist())]
+            parts[-1] = path_data.dots(text, at[offsets[-2] :])
+            layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
+            low, high = ends.min(axis=0) / 10.0**precision, ends.max(axis=0) / 10.0**precision
+            box = (*np.minimum(low[:2], low[2:]).tolist(), *np.maximum(high[:2], high[2:]).tolist())
+    return [*layers, "</g>\n"], box
 
 
-def _comb_layer(
-    curves: ContourArrays,
-    sides: FloatArray,
-    corners: FloatArray,
-    corner_offsets: IntArray,
-    em: float,
-    scale: float,
-    precision: int,
-) -> tuple[list[Text], Box | None]:
-    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
-    from .comb_paths import comb_text  # here and not above: the package opens without a compiler
+def _distinct(each: Teeth, precision: int) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """(k, 4) feet and tips, rounded, in units of the last decimal; (k,) ``relative`` and ``cut``.
 
-    text, ends, (left, bottom, right, top) = comb_text(
-        curves, sides, corners, corner_offsets, NEAR * em, SPACING * em, float(MOST_TEETH), ANGLE, TOOTH * em, scale,
-        LONGEST, 0.5 * STROKE * em / 1000, precision,
-    )  # fmt: skip
-    view = text.data
-    layers: list[Text] = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">']
-    for style, (a, b) in zip(_styles(em), pairwise(ends.tolist()), strict=True):
-        if b > a:
-            layers += [style, view[a:b], '"/>\n']
-    layers.append("</g>\n")
-    return layers, (float(left), float(bottom), float(right), float(top)) if left <= right else None
+    Pieces share their ends, and the contour is closed: what is where the one before it was is left out.
+    """
+    ends = path_data.to_whole(np.concatenate([each.feet, each.tips], axis=1), precision)
+    new = np.ones(len(ends), dtype=np.bool_)
+    new[1:] = (ends[1:] != ends[:-1]).any(axis=1)
+    kept = np.flatnonzero(new)
+    if len(kept) > 1 and (ends[-1] == ends[0]).all():
+        kept = kept[:-1]
+    return ends[kept], each.relative[kept], each.cut[kept]
+
+
+def _strokes(ends: FloatArray, classes: IntArray) -> tuple[FloatArray, IntArray, IntArray]:
+    """The strokes from foot to tip, (k, 4), as a path for each colour class: points, commands and offsets."""
+    order = np.argsort(classes, kind="stable")
+    first = np.searchsorted(classes[order], np.arange(-SIDES, SIDES + 2))
+    return ends[order].reshape(-1, 2), np.tile([path_data.MOVE_BY, path_data.LINE_BY], len(order)), 2 * first
+
+
+def _tip_line(tips: FloatArray, shown: BoolArray, offsets: IntArray) -> tuple[FloatArray, IntArray]:
+    """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
+    after = np.arange(1, len(tips) + 1)
+    after[offsets[1:] - 1] = offsets[:-1]
+    drawn = shown | shown[after]
+    # Each line as its two ends, the first left out where the line before it ends there.
+    kept = np.stack([drawn, drawn], axis=1)
+    kept[1:, 0] &= ~drawn[:-1]
+    kept[offsets[:-1], 0] = drawn[offsets[:-1]]
+    which = np.flatnonzero(kept)
+    points = np.concatenate([tips, tips[after]], axis=1).reshape(-1, 2)[which]
+    return points, np.where(which % 2, path_data.LINE_BY, path_data.MOVE_BY)
 
 
 @cache
 def _styles(em: float) -> list[str]:
-    """The beginnings of a comb's paths, in the order of ``comb_text``."""
+    """The beginnings of a comb's paths, in their order."""
     return [
-        *(f'<path stroke="{class_colour(index)}" d="' for index in range(-SIDES, SIDES + 1)),
+        *(f'<path stroke="{colour}" d="' for colour in palette()),
         f'<path stroke="currentColor" stroke-opacity=".45" stroke-width="{_width(em, 0.9)}" d="',
         f'<path class="cut" stroke="currentColor" stroke-width="{_width(em, 3)}" d="',
     ]
+
+
+@lru_cache(maxsize=8)
+def _legend(em: float, scale: float, precision: int, whose: Whose) -> tuple[str, float, float]:
+    """The legend: a row of teeth over an axis from -κ to κ of the scale, in 1/em.
+
+    Its origin is at the left end of the axis; also its width, and its extent below the axis.
+    """
+    letters, width, reach = 0.034 * em, 0.56 * em, scale * em
+    strength = np.linspace(-1, 1, 8 * SIDES + 1)
+    feet = np.stack([(strength + 1) / 2 * width, 0 * strength], axis=1)
+    tips = feet + np.stack([0 * strength, np.abs(strength) * TOOTH * em], axis=1)
+    ends = np.rint(np.concatenate([feet, tips], axis=1) * 10**precision)
+    points, commands, offsets = _strokes(ends, colour_classes(strength))
+    data, at = path_data.path_text(points, commands, offsets, precision)
+    strokes = zip(palette(), [data[at[a] : at[b]] for a, b in pairwise(offsets.tolist())], strict=True)
+    words = f"κ of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}"
+    labels = [
+        (0.0, -1.35, "start", f"\N{MINUS SIGN}{reach:.3g}"), (width / 2, -1.35, "middle", "0"),
+        (width, -1.35, "end", f"{reach:.3g}"), (0.0, -2.75, "start", words),
+    ]  # fmt: skip
+    texts = [
+        f'<text x="{number(x, precision)}" y="{number(-y * letters, precision)}" text-anchor="{anchor}">{label}</text>'
+        for x, y, anchor, label in labels
+    ]
+    content = (
+        f"<title>{MEANING}</title>"
+        + "\n".join([f'<path stroke="{colour}" d="{path}"/>' for colour, path in strokes])
+        + f'\n<path stroke="currentColor" d="M0 0h{number(width, precision)}"/>\n'
+        + f'<g fill="currentColor" font-family="sans-serif" font-size="{number(letters, precision)}">'
+        + f"{''.join(texts)}</g>"
+    )
+    return content, max(width, 0.5 * letters * len(words)), 3.1 * letters
 
 
 def _width(em: float, thousandths: float) -> str:

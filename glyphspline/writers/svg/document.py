@@ -1,16 +1,34 @@
-"""A glyph's result as an SVG drawing: one path of exact Béziers."""
+"""A glyph's result as an SVG drawing, one path of exact Béziers; its source with the polygon over it; and the common
+parts of SVG documents."""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from html import escape
+from typing import NamedTuple
+
 from ...errors import require_choice
-from ...fitting.results import GlyphResult
-from ...outlines.outline import Outline
-from .appearance import CURRENT, PLAIN, VIEW_BOXES, Appearance, ViewBox
-from .markup import code_points, data_attributes, document, head, id_prefix, number, text, union, view_box_value
-from .path_data import Box, PathData, curves_data
+from ...fitting.results import GlyphResult, end_to_end
+from ...outlines.contour_arrays import joined, offsets_of
+from ...outlines.outline import FontMetrics, Outline
+from ..settings import CURRENT, PLAIN, VIEW_BOXES, Appearance, Settings, ViewBox
+from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 STROKE = 1 / 1000
 """Width in em of a line along the outline: cutters follow its middle."""
+
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
+
+
+class PolygonData(NamedTuple):
+    """Path data of a glyph's polygons, and of the control polygons of its result."""
+
+    polygon: PathData
+    control: PathData
 
 
 def to_svg(
@@ -52,6 +70,16 @@ def to_svg(
     return svg_document(glyph, path, Appearance(view_box, size, fill, stroke, em)).decode()
 
 
+def write_svg(result: GlyphResult, settings: Settings) -> bytes:
+    """The file of a result."""
+    return svg_document(result, curves_data(result.arrays.curves, result.options.precision)[0], settings.look)
+
+
+def write_source(result: GlyphResult, settings: Settings) -> bytes:
+    """The file of the outline that a result was made of."""
+    return svg_document(result, source_data([result])[0], settings.look)
+
+
 def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -> bytes:
     """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves."""
     outline, precision = glyph.outline, glyph.options.precision
@@ -60,7 +88,7 @@ def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -
     prefix = id_prefix(outline.name, outline.gid)
     value, shape = shown_as(box, look, em, precision)
     begin = head(value, f"{prefix}-title", title(outline), data_attributes(outline, precision), shape)
-    return document([begin, f'<path id="{prefix}-outline" {painting(look, em)} d="', path.text, '"/>\n</svg>\n'])
+    return document([begin, f'<path id="{prefix}-outline" {painting(look, em)} d="{path.text}"/>\n</svg>\n'])
 
 
 def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str, str]:
@@ -68,7 +96,11 @@ def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str
     value = view_box_value(box, precision)
     width, height = map(float, value.split()[2:])
     overflow = ' overflow="visible"' if look.view_box == "metrics" else ""
-    return value, look.attributes(width, height, em) + overflow
+    found = look.scale(height, em)
+    if found is None:
+        return value, overflow
+    scale, unit = found
+    return value, f' width="{number(width * scale, 4)}{unit}" height="{number(height * scale, 6)}{unit}"{overflow}'
 
 
 def painting(look: Appearance, em: float) -> str:
@@ -96,3 +128,123 @@ def shown_box(box: Box, ink: Box | None, choice: ViewBox) -> Box:
 def title(outline: Outline) -> str:
     """The accessible title of a drawing, escaped: the glyph's name and code points."""
     return text(f"{outline.name} {code_points(outline)}".strip())
+
+
+def source_data(glyphs: Sequence[GlyphResult]) -> list[PathData]:
+    """Path data of the source outlines of glyphs, at least one, that have the same options."""
+    outlines = [glyph.outline.arrays for glyph in glyphs]
+    offsets = offsets_of([own.num_contours for own in outlines])
+    return curves_data(joined(outlines), glyphs[0].options.precision, offsets)
+
+
+def polygon_data(glyphs: Sequence[GlyphResult]) -> list[PolygonData]:
+    """Path data of the polygons of glyphs, at least one, that have the same options and em."""
+    precision, coarse = glyphs[0].options.precision, comb_precision(glyphs[0].outline.metrics.units_per_em)
+    arrays, offsets = end_to_end(glyphs)
+    polygon = polylines_data(arrays.polygons, precision, offsets)
+    control = polylines_data(arrays.controls, coarse, arrays.arc_offsets[offsets])
+    return [PolygonData(*parts) for parts in zip(polygon, control, strict=True)]
+
+
+def to_polygon_svg(glyph: GlyphResult) -> str:
+    """The source outline, and over it the polygon with its vertices, as groups of one SVG document.
+
+    Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. As an image with the fragment of the first, as in
+    ``a.svg#g36-A-source``, the drawing has no polygon. A third group, ``…-control``, holds the control
+    polygons of the result; it is not displayed.
+    """
+    return polygon_document(glyph, source_data([glyph])[0], polygon_data([glyph])[0]).decode()
+
+
+def polygon_document(glyph: GlyphResult, source: PathData, data: PolygonData) -> bytes:
+    """The document of :func:`to_polygon_svg` in UTF-8, from its path data."""
+    outline, precision = glyph.outline, glyph.options.precision
+    em = outline.metrics.units_per_em
+    box = union(em_box(outline), source.box)
+    prefix = id_prefix(outline.name, outline.gid)
+    begin = head(
+        view_box_value(box, precision), f"{prefix}-source-title", f"Source outline and polygon of {title(outline)}",
+        data_attributes(outline, precision), ' overflow="visible"',
+    )  # fmt: skip
+    dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
+    return document([
+        begin,
+        f"<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
+        f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
+        f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero" d="{source.text}"/></g>\n'
+        f'<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
+        f' stroke-linecap="round" stroke-linejoin="round"><path d="{data.polygon.text}"/>'
+        f'<path stroke-width="{number(em / 100, 3)}" d="{dots}"/></g>\n'
+        f'<g id="{prefix}-control" display="none" fill="none" stroke="#75c"'
+        f' stroke-width="{number(em / 600, 3)}"><path d="{data.control.text}"/></g>\n</svg>\n'
+    ])  # fmt: skip
+
+
+def document(parts: Iterable[str]) -> bytes:
+    """A document from its parts, in UTF-8."""
+    return "".join(parts).encode()
+
+
+def head(box: str, name: str, title: str, attributes: str = "", shape: str = "") -> str:
+    """The beginning of a document.
+
+    Args:
+        box: value of its ``viewBox``. name: id of its title. title: escaped.
+        attributes, shape: further attributes, each after a space; those of its size come first.
+    """
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"{shape} role="img" aria-labelledby="{name}"'
+        f'{attributes}>\n<title id="{name}">{title}</title>\n'
+    )
+
+
+@lru_cache(maxsize=4096)
+def number(value: float, precision: int) -> str:
+    """One number with at most ``precision`` decimals: no zeros at the end, no "-0"."""
+    return f"{round(float(value), precision) + 0.0:.15g}"  # 17 digits would write 0.1 as 0.10000000000000001
+
+
+def text(value: str) -> str:
+    """Text for element content or a quoted attribute; characters that XML forbids become U+FFFD."""
+    if value.isalnum() and value.isascii():
+        return value
+    return escape(_NOT_XML.sub("\ufffd", value))
+
+
+def id_prefix(name: str, gid: int) -> str:
+    """Prefix of the ids of a glyph's drawing, which are unique in a document of several drawings."""
+    return f"g{gid}-{name if name.isalnum() and name.isascii() else _NOT_ID.sub('_', name)}"
+
+
+def code_points(outline: Outline) -> str:
+    """The glyph's code points as "U+0041 U+0391"."""
+    return " ".join([f"U+{code:04X}" for code in outline.unicodes])
+
+
+def data_attributes(outline: Outline, precision: int) -> str:
+    """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
+    return (
+        f' data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
+        f' data-advance="{number(outline.advance, precision)}" {_font_attributes(outline.metrics, precision)}'
+    )
+
+
+@lru_cache(maxsize=64)
+def _font_attributes(metrics: FontMetrics, precision: int) -> str:
+    values = {"units-per-em": metrics.units_per_em, "ascender": metrics.ascender, "descender": metrics.descender}
+    return " ".join(f'data-{key}="{number(value, precision)}"' for key, value in values.items())
+
+
+def union(a: Box, b: Box | None) -> Box:
+    """The smallest box around both."""
+    return a if b is None else (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
+
+
+@lru_cache(maxsize=4096)
+def view_box_value(box: Box, precision: int) -> str:
+    """The ``viewBox`` value of a box, rounded outwards, at least one unit wide and high (0 would hide all)."""
+    unit = 10.0**precision
+    left, bottom = math.floor(box[0] * unit) / unit, math.floor(box[1] * unit) / unit
+    right, top = math.ceil(box[2] * unit) / unit, math.ceil(box[3] * unit) / unit
+    values = (left, -top, max(right - left, 1.0), max(top - bottom, 1.0))
+    return " ".join(number(value, precision) for value in values)

@@ -9,9 +9,8 @@ import numpy as np
 
 from ...fitting.results import GlyphResult, end_to_end
 from ...typesetting.placed import Layout
-from .appearance import PLAIN, Appearance
-from .document import painting, shown_as, shown_box
-from .markup import document, head, id_prefix, number, text
+from ..settings import PLAIN, Appearance
+from .document import document, head, id_prefix, number, painting, shown_as, shown_box, text
 from .path_data import curves_data
 
 
@@ -42,10 +41,10 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     box = shown_box(layout.box, ink, look.view_box)
     value, shape = shown_as(box, look, em, precision)
     units = f' data-units-per-em="{number(em, precision)}"'
-    parts: list[str | memoryview] = [head(value, "text-title", text(layout.text), units, shape), "<defs>\n"]
+    parts = [head(value, "text-title", text(layout.text), units, shape), "<defs>\n"]
     for name, path in zip(ids, paths, strict=True):
         if path.text:
-            parts += [f'<path id="{name}" d="', path.text, '"/>\n']
+            parts.append(f'<path id="{name}" d="{path.text}"/>\n')
     parts.append(f"</defs>\n<g {painting(look, em)}>\n")
     drawn = [bool(path.text) for path in paths]
     places = zip(

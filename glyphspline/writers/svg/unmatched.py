@@ -8,9 +8,7 @@ import numpy as np
 
 from ...outlines.joins import joins
 from ...outlines.outline import Contour, Outline
-from ...types import FloatArray
-from .document import title
-from .markup import document, head, id_prefix, number, text, view_box_value
+from .document import document, head, id_prefix, number, text, title, view_box_value
 from .path_data import path_data
 
 CONTOURS = ("#d33", "#06c", "#082", "#a0a", "#b60", "#077")
@@ -59,41 +57,24 @@ def to_unmatched_svg(outlines: Sequence[Outline], reason: str = "") -> str:
     edge = 2 * SIZE * em
     box = view_box_value((-edge, below - edge, x - GAP * em + edge, high + edge), 2)
     prefix = id_prefix(first.name, first.gid)
-    begin = head(box, f"{prefix}-title", counted_title(outlines))
+    begin = head(box, f"{prefix}-title", f"{len(outlines)} outlines of {title(first)}")
     group = f'<g font-family="sans-serif" font-size="{number(SIZE * em, 2)}" stroke-width="{number(em / 400, 3)}">\n'
     return document([begin, group, *parts, words, "</g>\n</svg>\n"]).decode()
-
-
-def counted_title(outlines: Sequence[Outline]) -> str:
-    """The title of the drawing, escaped."""
-    return f"{len(outlines)} outlines of {title(outlines[0])}"
 
 
 def _contour(contour: Contour, index: int, em: float) -> list[str]:
     """The drawing of one contour with its corners."""
     if not len(contour):
         return []
-    colour = CONTOURS[index % len(CONTOURS)]
-    found = joins(contour)
-    start = found.points[0]
-    tip = start + _direction(contour) * 2 * SIZE * em
-    radius = number(em / 150, 3)
+    colour, found = CONTOURS[index % len(CONTOURS)], joins(contour)
+    (x, y), away = found.points[0], contour.points - contour.points[0]
+    away = away[away.any(axis=1)][:1]  # along the tangent where the contour starts; none if all of it is one point
+    tip_x, tip_y = found.points[0] + 2 * SIZE * em * (away / np.hypot(*away.T)[:, None]).sum(axis=0)
     lines = [
         f'<path fill="none" stroke="{colour}" d="{path_data([contour], 2)}"/>\n',
-        f'<circle cx="{number(start[0], 2)}" cy="{number(-start[1], 2)}" r="{radius}" fill="none" stroke="{colour}"/>',
-        f'<path stroke="{colour}" d="M{number(start[0], 2)} {number(-start[1], 2)}'
-        f'L{number(tip[0], 2)} {number(-tip[1], 2)}"/>\n',
+        f'<circle cx="{number(x, 2)}" cy="{number(-y, 2)}" r="{number(em / 150, 3)}" fill="none" stroke="{colour}"/>',
+        f'<path stroke="{colour}" d="M{number(x, 2)} {number(-y, 2)}L{number(tip_x, 2)} {number(-tip_y, 2)}"/>\n',
     ]
-    for k, point in enumerate(found.points[found.of("corner", 0.0)]):
-        lines.append(f'<text x="{number(point[0], 2)}" y="{number(-point[1], 2)}" fill="{colour}">{index}:{k}</text>\n')
+    for k, (x, y) in enumerate(found.points[found.of("corner", 0.0)]):
+        lines.append(f'<text x="{number(x, 2)}" y="{number(-y, 2)}" fill="{colour}">{index}:{k}</text>\n')
     return lines
-
-
-def _direction(contour: Contour) -> FloatArray:
-    """The unit tangent where a contour starts; 0 if all of it is one point."""
-    steps = contour.points - contour.points[0]
-    away = np.flatnonzero(steps.any(axis=1))
-    if not len(away):
-        return np.zeros(2)
-    step = steps[away[0]]
-    return step / np.hypot(*step)

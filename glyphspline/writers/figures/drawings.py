@@ -1,0 +1,107 @@
+"""A glyph as PNG or PDF: its drawing, and its curvature map."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...fitting.results import GlyphResult
+from ..settings import CURRENT, PLAIN, Appearance, ImageKind, Settings, Whose
+from ..svg.comb import LONGEST, SIDES, Teeth, colour_classes, curvature_scale, palette, teeth
+from ..svg.document import STROKE, em_box, shown_box
+from ..svg.path_data import Box, curves_data
+from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, saved
+
+SIZE = 6.0
+"""Height in inches of a drawing that says none, and width and height of a map."""
+
+LARGEST = 8000.0
+"""Maximum width and height of a PNG in pixels; a larger one has fewer an inch."""
+
+
+def write_drawing(result: GlyphResult, settings: Settings, kind: ImageKind) -> bytes:
+    """The file of a result's drawing."""
+    return drawing_image(result, kind, settings.look)
+
+
+def write_map(result: GlyphResult, settings: Settings, kind: ImageKind) -> bytes:
+    """The file of a result's curvature map."""
+    return map_image(result, kind)
+
+
+def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN, ink: Box | None = None) -> bytes:
+    """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
+
+    Args:
+        glyph: a result of :func:`glyphspline.convert`. kind: of the file.
+        look: without a size the drawing is 6 inches high; "currentColor" is black.
+        ink: the box around the glyph's curves, if it is known.
+    """
+    outline = glyph.outline
+    left, bottom, right, top = shown_box(
+        em_box(outline), ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
+    )
+    width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
+    inches = look.inches(height, outline.metrics.units_per_em, SIZE)
+    figure = blank(inches * width / height, inches)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height))
+    axes.set_axis_off()
+    fill, stroke = ("black" if colour == CURRENT else colour for colour in (look.fill, look.stroke))
+    line = STROKE * outline.metrics.units_per_em * inches * 72 / height
+    curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
+    for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
+        patch.set_clip_on(False)
+        axes.add_patch(patch)
+    dpi = 96.0 if str(look.size or look.em).endswith("px") else DPI  # a height in px is that many pixels
+    return saved(figure, kind, min(dpi, LARGEST / (inches * max(1.0, width / height))))
+
+
+def map_image(
+    glyph: GlyphResult,
+    kind: ImageKind,
+    *,
+    comb: Whose = "result",
+    scale: float | None = None,
+    vertices: bool = True,
+    in_corners: bool = False,
+) -> bytes:
+    """The curvature map as a PNG on white, or as a one-page PDF; the others as for :func:`to_curvature_svg`."""
+    scale = curvature_scale([glyph]) if scale is None else scale
+    figure = blank(SIZE, SIZE, layout="constrained")
+    draw_map(figure.add_subplot(), glyph, comb, scale, vertices, in_corners)
+    return saved(figure, kind)
+
+
+def draw_map(axes: Any, glyph: GlyphResult, whose: Whose, scale: float, vertices: bool, in_corners: bool) -> None:
+    """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
+    outline = glyph.outline
+    shown = [contour.curve if whose == "result" else contour.source for contour in glyph.contours]
+    curves = [contour.cubics() for contour in shown if len(contour)]
+    for patch in outline_patch(curves, facecolor=(0, 0, 0, 0.07), edgecolor="black", linewidth=1):
+        axes.add_patch(patch)
+    for part in teeth(glyph, scale, whose, in_corners=in_corners):
+        _draw_teeth(axes, part)
+    if vertices:
+        for contour in glyph.contours:
+            points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
+            axes.plot(*points.T, "k.", markersize=1.8)
+    axes.autoscale_view()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    # A name with dollar signs is not mathematics.
+    axes.set_title(f"gid {outline.gid}  {ascii_text(outline.name)}", parse_math=False)
+    reach = scale * outline.metrics.units_per_em
+    bar = colour_bar(axes.figure, reach if reach > 0 else 1.0, ax=axes, location="bottom", shrink=0.5, aspect=40)
+    bar.set_label(f"curvature of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}")
+
+
+def _draw_teeth(axes: Any, part: Teeth) -> None:
+    from matplotlib.collections import LineCollection
+
+    colours = [palette()[index + SIDES] for index in colour_classes(part.relative).tolist()]
+    axes.add_collection(LineCollection(list(np.stack([part.feet, part.tips], axis=1)), colors=colours, linewidths=0.5))
+    closed = np.concatenate([part.tips, part.tips[:1]])
+    axes.plot(*closed.T, color="black", alpha=0.45, linewidth=0.3)
+    axes.plot(*part.tips[part.cut].T, "k.", markersize=1)

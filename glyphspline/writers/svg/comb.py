@@ -1,0 +1,163 @@
+"""Curvature combs as they are drawn: their teeth, the scale that drawings share, and a colour for each curvature."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from ...curves.curvature import ANGLE, Comb, relative, robust_scale
+from ...errors import require_choice
+from ...fitting.results import GlyphResult
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.sampling import CORNER_ANGLE
+from ...types import BoolArray, FloatArray, IntArray
+from ..settings import WHOSE, Whose
+
+SPACING = 1 / 140
+"""Maximum spacing of teeth in em. At half of it teeth run together in print; at twice, the tips cut corners."""
+
+MOST_TEETH = 8000
+"""Maximum number of teeth; beyond it spacing grows. A CJK glyph has some 2000, a hostile one could have millions."""
+
+TOOTH = 0.03
+"""Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs."""
+
+LONGEST = 1.25
+"""Maximum length of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners
+cover a CJK glyph; without a limit a single tooth may cross the page."""
+
+NEAR = 1 / 40
+"""Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""
+
+SIDES = 7
+"""Colour classes on each side of zero. More cannot be distinguished on thin teeth, and each adds a path."""
+
+
+@dataclass(frozen=True, eq=False)
+class Teeth:
+    """One contour's comb as drawn, in font units: all arrays in curve order.
+
+    Attributes:
+        feet, tips: (k, 2). relative: (k,) curvature in units of the scale, positive where the ink is convex.
+        cut: (k,) whether the tooth was shortened.
+    """
+
+    feet: FloatArray
+    tips: FloatArray
+    relative: FloatArray
+    cut: BoolArray
+
+
+def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
+    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`.
+
+    It is that of the sources, so that combs of sources and of all their results compare; a smooth result's turns about
+    corners would make it larger. Where all sources are straight it is that of the results.
+    """
+    every = list(glyphs)
+    order: tuple[Whose, ...] = ("source", "result")
+    found = (robust_scale(item for glyph in every for item in combs(glyph, whose=whose)) for whose in order)
+    return next(filter(None, found), 0.0)
+
+
+def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result", flat: float = 0.0) -> list[Comb]:
+    """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large.
+
+    Args:
+        flat: even pieces of less curvature, in 1/unit, are sampled at their ends only.
+    """
+    from ...curves.comb import control_length, sampled  # here and not above: the package opens without a compiler
+    from ...outlines.segments import all_cubics
+
+    curves = curves_of(glyph, whose)
+    cubics = all_cubics(curves)
+    spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
+    samples, starts = sampled(cubics, spacing, ANGLE, flat)
+    found = []
+    for c in np.flatnonzero(np.diff(curves.offsets)).tolist():
+        at = starts[curves.offsets[c] : curves.offsets[c + 1] + 1]
+        own = samples[at[0] : at[-1]]
+        found.append(Comb(own[:, :2], own[:, 2:4], own[:, 4], own[:, 5], at - at[0]))
+    return found
+
+
+def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
+    """The contours whose curvature is shown."""
+    require_choice("comb", whose, WHOSE)
+    return glyph.arrays.curves if whose == "result" else glyph.arrays.source
+
+
+def teeth(
+    glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False, flat: float = 0.0
+) -> list[Teeth]:
+    """Feet and tips of each contour's comb. Teeth point away from the centre of curvature.
+
+    Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
+    curvatures. Without ``in_corners`` a result's teeth in the turn of a corner have no length.
+    """
+    from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
+
+    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
+    turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
+    corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
+    sides, drawn = ink_sides(curves), np.flatnonzero(np.diff(curves.offsets)).tolist()
+    return [
+        teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
+        for item, c in zip(combs(glyph, 1.0, whose, flat), drawn, strict=True)
+    ]
+
+
+def teeth_of(item: Comb, em: float, scale: float, side: float = 1.0, corners: FloatArray | None = None) -> Teeth:
+    """Feet and tips of one comb.
+
+    Args:
+        side: 1.0 where the ink is to the left of its contour, else -1.0.
+        corners: (k, 2) the teeth in whose turn have no length; see :func:`...outlines.ink.turned_about`.
+    """
+    strength = relative(item.curvature, scale)
+    cut = np.abs(strength) > LONGEST
+    if corners is not None and len(corners):
+        from ...outlines.ink import turned_about  # as above
+
+        hidden = turned_about(corners, item.points, cut, NEAR * em)
+        strength[hidden], cut[hidden] = 0.0, False
+    shown = np.clip(strength, -LONGEST, LONGEST)
+    tips = item.points - (TOOTH * em * shown)[:, None] * item.normals
+    return Teeth(item.points, tips, side * strength, cut)
+
+
+def colour_classes(relative: FloatArray) -> IntArray:
+    """Class -SIDES to SIDES of curvature in units of the scale; ±1 and all beyond are the outermost."""
+    return np.clip(np.rint(relative * SIDES), -SIDES, SIDES).astype(np.int64)
+
+
+@cache
+def palette() -> list[str]:
+    """The colours "#rrggbb" of the classes, from the most concave ink to the most convex; 0 is grey.
+
+    Their OKLCh lightness is 0.66: contrast of about 3:1 with white and 6:1 with black, so both themes can show them.
+    Hues run from green-blue to violet where the ink is convex, from yellow to red where it is concave.
+    """
+    found = []
+    for index in range(-SIDES, SIDES + 1):
+        strength = abs(index) / SIDES
+        chroma = 0.06 + 0.14 * strength if index else 0.0
+        found.append(_oklch(0.66, chroma, 215.0 + 85.0 * strength if index > 0 else 80.0 - 60.0 * strength))
+    return found
+
+
+def _oklch(lightness: float, chroma: float, hue: float) -> str:
+    """An OKLCh colour (Ottosson 2020), its hue in degrees, as sRGB clipped to the gamut channel by channel."""
+    lms = [[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]]
+    rgb = [
+        [4.0767416621, -3.3077115913, 0.2309699292],
+        [-1.2684380046, 2.6097574011, -0.3413193965],
+        [-0.0041960863, -0.7034186147, 1.7076147010],
+    ]
+    lab = np.array([lightness, chroma * np.cos(np.radians(hue)), chroma * np.sin(np.radians(hue))])
+    linear = np.clip(np.array(rgb) @ (np.array(lms) @ lab) ** 3, 0, 1)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return "#" + "".join(f"{round(255 * value):02x}" for value in encoded.tolist())
