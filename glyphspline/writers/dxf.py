@@ -30,7 +30,7 @@ from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.outline import Contour
 from ..outlines.polygons import flattened, polygons_of
 from ..types import BoolArray, FloatArray
-from .settings import INCHES, Appearance, DxfKind, Settings
+from .settings import INCHES, NO_HANDLE, SMOOTH, Appearance, DxfKind, Settings
 
 VERSION = "R2000"
 """The oldest version that has SPLINE, LWPOLYLINE and $INSUNITS; programs read it, whatever their age."""
@@ -44,12 +44,6 @@ COLOURS = (7, 1)
 
 PLANAR = 8
 """The flag of a SPLINE in a plane."""
-
-SMOOTH = 1e-3
-"""Radians of turn up to which a SPLINE goes on from cubic to cubic."""
-
-NO_HANDLE = 1e-9
-"""Handles up to this length in font units may be rounding errors and have no direction."""
 
 _metadata = threading.Lock()
 

@@ -20,6 +20,12 @@ ImageKind = Literal["png", "pdf"]
 FigureKind = Literal["png", "pdf", "svg"]
 """Of diagrams."""
 
+SMOOTH = 1e-3
+"""Radians of turn up to which a join is written as smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
+
+NO_HANDLE = 1e-9
+"""Handles up to this length in font units may be rounding errors and have no direction."""
+
 RELATIVE_FLATNESS = 1 / 2000
 """Flatness of polylines where none is given, in em."""
 

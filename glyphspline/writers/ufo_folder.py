@@ -36,16 +36,11 @@ from ..outlines.outline import Contour
 from ..readers import Font, Source
 from ..types import MadeOnDemand
 from .font.master_deltas import Redrawn
+from .settings import NO_HANDLE, SMOOTH
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
 BACKGROUND = "public.background"
-
-SMOOTH = 1e-3
-"""Radians of turn below which a join is smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
-
-NO_HANDLE = 1e-9
-"""Handles up to this length in font units may be rounding errors and have no direction."""
 
 DIGITS = 4
 """Decimals of coordinates: a handle of 10 units turns by less than 0.001 degrees."""
