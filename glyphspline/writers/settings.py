@@ -21,7 +21,7 @@ FigureKind = Literal["png", "pdf", "svg"]
 """Of diagrams."""
 
 SMOOTH = 1e-3
-"""Radians of turn up to which a join is written as smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
+"""Radians of turn up to which a join is smooth: rounding to 1/100 unit turns handles of 10 units by as much."""
 
 NO_HANDLE = 1e-9
 """Handles up to this length in font units may be rounding errors and have no direction."""
