@@ -116,7 +116,7 @@ class _Fitting:
         parameters 0 … n of the samples."""
         closed = self.arc.closed
         t = count * (self.places[:-1] if closed else self.places)
-        for _ in range(3):  # the parameters, which all masters share, step towards the footpoints of the samples
+        for _ in range(4):  # the parameters, which all masters share, step towards the footpoints of the samples
             controls, form = self._least_squares(t, count)
             at, slope = (weight @ controls for weight in basis(t, count, closed))
             off, size = ((self.points - at) * slope).sum(axis=(0, 2)), (slope**2).sum(axis=(0, 2))
