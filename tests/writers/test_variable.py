@@ -298,8 +298,8 @@ def test_the_fitted_spline_is_what_the_format_draws(closed: bool) -> None:
     count = 7 if closed else 5
     places = np.linspace(0, count, 101)[:-1]
     drawn = basis(places, count, closed)[0] @ controls[0]
-    # The closed contour begins at the first implied point, after control point 0, where the spline is at 1.
-    assert contour.at(places - 1 if closed else places) == pytest.approx(drawn)
+    # The closed contour begins at the implied point before control point 0, where the spline is at 0.
+    assert contour.at(places) == pytest.approx(drawn)
     assert implied.tolist() == ([True] * 7 if closed else [False, *[True] * 4, False])
 
 
