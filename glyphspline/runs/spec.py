@@ -91,7 +91,7 @@ class RunSpec:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
-        masters: all masters of a variable font at once; see :mod:`.masters_run`.
+        masters: all masters of a variable font at once; see :mod:`.jobs.masters`.
 
     Raises:
         OptionError: one of these is none of what it can be.
