@@ -2,7 +2,7 @@
 
 The K masters of an arc are one curve in R^{2K}, interpolated there by variant 2 on one knot vector. An instance is a
 linear combination of the masters, and so a C2 spline on the same knots. The certificate holds at every location: see
-:mod:`.stacked_distance`.
+:mod:`..curves.pairing`.
 """
 
 from __future__ import annotations
@@ -270,14 +270,12 @@ def _contour_result(
 
     Lines are meant to stay in a ``sharp`` fit only.
     """
-    from .sharp.pieces import CLOSED, SPANS
-
     assert fit.regular is not None  # it is a fit of masters
     own = slice(fit.offsets[c], fit.offsets[c + 1])
-    spans = fit.pieces.where[own, SPANS]
+    spans = fit.pieces.spans[own]
     segments = np.maximum(spans, 1)
     inner = np.ones(int(segments.sum()), dtype=np.bool_)
-    if not fit.pieces.where[own.start, CLOSED]:  # every piece begins at the end of another
+    if not fit.pieces.closed[own.start]:  # every piece begins at the end of another
         inner[np.cumsum(segments) - segments] = False
     arcs = [fit.splines[q] for q in range(own.start, own.stop) if q in fit.splines]
     bound = float(fit.bounds[own].max())

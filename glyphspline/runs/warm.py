@@ -207,7 +207,7 @@ def points() -> None:
 
 def rest() -> None:
     """What single options or measures need: united contours, joins, unlike masters, bent text."""
-    from ..fitting.sharp.cubic_fit import fit_cubic
+    from ..fitting.sharp.cubics import fit_cubic
     from ..matching.cuts import common_cuts
     from ..matching.landmarks import Landmarks
     from ..outlines.joins import joins
@@ -216,8 +216,7 @@ def rest() -> None:
     inked_area([DISC, LEAF])
     joins(LEAF)
     common_cuts(Landmarks(LEAF, 1000.0), Landmarks(LEAF, 1000.0))
-    first, last = np.eye(2)
-    fit_cubic(LEAF.points[:4], first, False, last, False, 1.0, 1, np.empty(2), np.empty(2))
+    fit_cubic(LEAF.points[:4], np.eye(2), (False, False), 1.0, 1, np.empty((2, 2)))
 
 
 WORK: dict[str, Callable[[], Any]] = {

@@ -251,7 +251,7 @@ def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, 
     Raises:
         GlyphsplineError: one folds over.
     """
-    from ..fitting.sharp.cubic_fit import fit_cubic
+    from ..fitting.sharp.cubics import fit_cubic
 
     basis = bernstein(SAMPLES - 1)
     x, y = np.einsum("jp,kjc->ckp", basis, parts)
@@ -266,8 +266,8 @@ def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, 
     error = np.sqrt(((np.einsum("jp,kjc->kpc", basis, pieces) - target) ** 2).sum(axis=2).max(axis=1))
     enough, handles = ENOUGH * tolerance, np.empty((2, 2))
     for k in np.flatnonzero(error > enough).tolist():
-        ways = first[k] / np.hypot(*first[k]), last[k] / np.hypot(*last[k])
-        off = fit_cubic(target[k], ways[0], False, ways[1], False, enough, ROUNDS, handles[0], handles[1])
+        ways = np.stack([first[k] / np.hypot(*first[k]), last[k] / np.hypot(*last[k])])
+        off = fit_cubic(target[k], ways, (False, False), enough, ROUNDS, handles)
         if off < error[k]:
             arms = handles * (np.hypot(*(target[k, -1] - target[k, 0])) / 3)
             pieces[k, 1:3], error[k] = [target[k, 0] + arms[0], target[k, -1] - arms[1]], off

@@ -11,16 +11,14 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
-from glyphspline.fitting.ladders import SEARCHES
 from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import Corners, Effort
 from glyphspline.fitting.sharp.assembly import certify, put_together
-from glyphspline.fitting.sharp.cubic_fit import fit_cubic
-from glyphspline.fitting.sharp.cutting import choose, cut_all
+from glyphspline.fitting.sharp.cubics import fit_cubic
+from glyphspline.fitting.sharp.cutting import Chains, fit_contours, refit
 from glyphspline.fitting.sharp.pieces import Pieces
-from glyphspline.fitting.sharp.sharp_fit import chords, refitted
-from glyphspline.fitting.sharp.spline_search import fit_splines
-from glyphspline.fitting.sharp.split_contours import Settings, SplitContours
+from glyphspline.fitting.sharp.settings import EFFORTS
+from glyphspline.fitting.sharp.sharp_fit import chords
 from glyphspline.outlines.outline import Contours
 from glyphspline.outlines.overlaps import remove_overlaps
 from glyphspline.outlines.segments import all_cubics
@@ -144,67 +142,64 @@ def test_an_error_names_the_contour_whatever_was_left_out_before_it(corners: str
 def test_a_single_cubic_is_found_again(free: bool) -> None:
     cubic = np.array([[0.0, 0.0], [40.0, 90.0], [150.0, 120.0], [200.0, 10.0]])
     samples = evaluate(np.broadcast_to(cubic, (60, 4, 2)), np.linspace(0, 1, 60))
-    directions = [leg / np.hypot(*leg) for leg in (cubic[1] - cubic[0], cubic[3] - cubic[2])]
-    start, end = np.empty(2), np.empty(2)
-    error = fit_cubic(samples, directions[0], free, directions[1], free, 0.3, 10, start, end)
+    directions = np.stack([leg / np.hypot(*leg) for leg in (cubic[1] - cubic[0], cubic[3] - cubic[2])])
+    tangents = np.empty((2, 2))
+    error = fit_cubic(samples, directions, (free, free), 0.3, 10, tangents)
     assert error <= 0.3
     third = np.hypot(*(cubic[3] - cubic[0])) / 3
-    found = np.stack([cubic[0], cubic[0] + third * start, cubic[3] - third * end, cubic[3]])
+    found = np.stack([cubic[0], cubic[0] + third * tangents[0], cubic[3] - third * tangents[1], cubic[3]])
     fine = evaluate(np.broadcast_to(found, (5000, 4, 2)), np.linspace(0, 1, 5000))
     true = np.hypot(*(samples[:, None] - fine[None]).transpose(2, 0, 1)).min(axis=1).max()
     assert error == pytest.approx(true, abs=0.01)
     if not free:
-        np.testing.assert_allclose(start / np.hypot(*start), directions[0], atol=1e-12)
-        np.testing.assert_allclose(end / np.hypot(*end), directions[1], atol=1e-12)
+        np.testing.assert_allclose(tangents / np.hypot(*tangents.T)[:, None], directions, atol=1e-12)
 
 
 def test_what_no_cubic_is_near_is_not_taken_for_one() -> None:
     x = np.linspace(0, 6 * np.pi, 200)
     wave = np.stack([10 * x, 20 * np.sin(x)], axis=1)
-    start, end = np.empty(2), np.empty(2)
-    east = np.array([1.0, 0.0])
-    assert fit_cubic(wave, east, True, east, True, 1.0, 6, start, end) > 5
-    assert fit_cubic(np.zeros((5, 2)), east, False, east, False, 1.0, 6, start, end) == np.inf
+    tangents, east = np.empty((2, 2)), np.array([[1.0, 0.0], [1.0, 0.0]])
+    assert fit_cubic(wave, east, (True, True), 1.0, 6, tangents) > 5
+    assert fit_cubic(np.zeros((5, 2)), east, (False, False), 1.0, 6, tangents) == np.inf
 
 
-SEARCH = SEARCHES["fast"](margin=0.02, residual=0.005, most=1000, lays=0)
+SETTINGS = EFFORTS["fast"](
+    near=0.9, angle=np.radians(12.0), line=20.0, c2=True, round_corners=False, margin=0.02, residual=0.005
+)
 
-SETTINGS = Settings(0.9, np.radians(12.0), 20.0, True, SEARCH, 4, 2)
 
-
-def cut(contours: Sequence[gs.Contour]) -> tuple[SplitContours, Pieces]:
+def cut(contours: Sequence[gs.Contour]) -> tuple[Chains, Pieces]:
     arrays = Contours(contours).arrays
-    split, pieces, stretches = cut_all(all_cubics(arrays)[None], arrays, SETTINGS)
-    return split, choose(split, fit_splines(pieces, stretches, SETTINGS.near, SETTINGS.search, False), SETTINGS.near)
+    return fit_contours(all_cubics(arrays)[None], arrays, SETTINGS)
 
 
 def test_pieces_that_all_fail_become_the_source_itself() -> None:
     contours = [circle_contour(300), square_contour(200), *glyph("永").contours]
-    split, pieces = cut(contours)
-    assert pieces.where[0, [0, 1, 2, 4]].tolist() == [0, 0, len(contours[0]), 1]
-    exact, _ = refitted(split, pieces, np.ones(len(pieces.where), dtype=np.bool_), (), SETTINGS, {})
-    assembly = put_together(exact, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
+    chains, pieces = cut(contours)
+    assert (pieces.contour[0], *pieces.joints[0], pieces.closed[0]) == (0, 0, len(contours[0]), 1)
+    exact, _ = refit(chains, pieces, np.ones(len(pieces.spans), dtype=np.bool_), np.empty(0), SETTINGS)
+    assembly = put_together(exact, 0, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
     curve = assembly.curves
-    bounds, _ = certify(split, exact, assembly.segments, curve, 0.01, 1.0)
+    bounds, _ = certify(chains, exact, assembly.segments, curve, 0.01, 1.0)
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
     none = np.zeros(len(contours) + 1, dtype=np.int64)
-    areas = geometry(curve, curve, Contours(contours).arrays, exact.vertices[0], none).area_change
+    areas = geometry(curve, curve, Contours(contours).arrays, exact.vertices[:, 0].copy(), none).area_change
     np.testing.assert_allclose(areas, 0, atol=1e-6)
 
 
 def test_one_piece_is_replaced_and_the_others_stay() -> None:
-    split, pieces = cut(glyph("龍").contours)
-    q = int(pieces.where[:, 3].argmax())
-    poor = np.arange(len(pieces.where)) == q
-    closer, _ = refitted(split, pieces, poor, ((0.9, False),), SETTINGS, {})
-    assert len(closer.where) == len(pieces.where)
-    assert closer.where[q, :3].tolist() == pieces.where[q, :3].tolist()
+    chains, pieces = cut(glyph("龍").contours)
+    q = int(pieces.spans.argmax())
+    poor = np.arange(len(pieces.spans)) == q
+    closer, same = refit(chains, pieces, poor, np.array([0.9]), SETTINGS)
+    assert same.tolist() == np.where(poor, -1, np.arange(len(poor))).tolist()
+    assert closer.joints[q].tolist() == pieces.joints[q].tolist()
     assert closer.errors[q] <= 0.9 * SETTINGS.near
     for k in np.flatnonzero(~poor):
-        old, new = (p.vertices[:, p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
+        old, new = (p.vertices[p.starts[k] : p.starts[k + 1]] for p in (pieces, closer))
         np.testing.assert_array_equal(old, new)
-    old, new = (p.vertices[:, [p.starts[q], p.starts[q + 1] - 1]] for p in (pieces, closer))
+    old, new = (p.vertices[[p.starts[q], p.starts[q + 1] - 1]] for p in (pieces, closer))
     np.testing.assert_array_equal(old, new)
 
 

@@ -14,8 +14,8 @@ from ...curves.slip import regular
 from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
-from .pieces import CLOSED, CONTOUR, FIRST, LAST, SPANS, Pieces
-from .split_contours import SplitContours
+from .cutting import Chains
+from .pieces import Pieces
 
 
 class Assembly(NamedTuple):
@@ -34,53 +34,45 @@ class Assembly(NamedTuple):
 
 @compiled
 def put_together(
-    pieces: Pieces, contours: int, knots: FloatArray, controls: FloatArray, chords: FloatArray
+    pieces: Pieces, v: int, contours: int, knots: FloatArray, controls: FloatArray, chords: FloatArray
 ) -> Assembly:
-    """The curves of all pieces in one master.
+    """The curves of all pieces in master v.
 
     Args:
-        pieces: of so many contours, in that master alone.
+        contours: their number.
         knots, controls: of the splines of more than one span, one after the other: k + 1 knots each, and k + 3 control
             points of an arc or k of a closed curve.
         chords: (P,) the chord of each piece in all masters: what the tangents of an arc of one span go by.
     """
-    P = len(pieces.where)
-    segments, arcs = np.zeros(P + 1, dtype=np.int64), 0
-    for q in range(P):
-        segments[q + 1] = segments[q] + max(pieces.where[q, SPANS], 1)
-        arcs += pieces.where[q, SPANS] > 0
+    P, arcs = len(pieces.spans), int((pieces.spans > 0).sum())
+    segments = np.zeros(P + 1, dtype=np.int64)
+    segments[1:] = np.cumsum(np.maximum(pieces.spans, 1))
     total = segments[P]
-    points, degrees, b = np.empty((3 * total, 2)), np.empty(total, dtype=np.int64), np.empty((total, 4, 2))
+    points, degrees, b = np.empty((3 * total, 2)), np.full(total, 3), np.empty((total, 4, 2))
     offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
     own, ends, closed = np.empty((total + 3 * arcs, 2)), np.zeros(arcs + 1, np.int64), np.empty(arcs, np.bool_)
     at = knot = control = arc = 0
     for q in range(P):
-        c, k, ring, first = pieces.where[q, CONTOUR], pieces.where[q, SPANS], pieces.where[q, CLOSED], pieces.starts[q]
-        p, tau = pieces.vertices[0, first : pieces.starts[q + 1]], pieces.tangents[0, q]
-        count, end = k + 3 * (1 - ring), ends[arc]
-        for axis in range(2):
-            points[at, axis] = p[0, axis]
-        if k == 1:
+        c, k, ring, first = pieces.contour[q], pieces.spans[q], pieces.closed[q], pieces.starts[q]
+        p, tau, count, end = pieces.vertices[first:, v], pieces.tangents[q, v], k + 3 * (1 - ring), ends[arc]
+        if k == 0:
+            points[at], degrees[segments[q]] = p[0], 1
+        elif k == 1:
             third = chords[q] / 3
             for axis in range(2):
-                points[at + 1, axis] = p[0, axis] + third * tau[0, axis]
-                points[at + 2, axis] = p[1, axis] - third * tau[1, axis]
-                for r in range(3):
-                    own[end + r, axis] = points[at + r, axis]
-                own[end + 3, axis] = p[1, axis]
-        if k > 1:
-            spline_beziers(controls[control : control + count], knots[knot : knot + k + 1], ring > 0, b[:k])
-            for axis in range(2):
-                for r in range(3 * k):
-                    points[at + r, axis] = b[r // 3, r % 3, axis]
-                for r in range(count):
-                    own[end + r, axis] = controls[control + r, axis]
+                own[end, axis], own[end + 3, axis] = p[0, axis], p[1, axis]
+                own[end + 1, axis] = p[0, axis] + third * tau[0, axis]
+                own[end + 2, axis] = p[1, axis] - third * tau[1, axis]
+            points[at : at + 3] = own[end : end + 3]
+        else:
+            own[end : end + count] = controls[control : control + count]
+            spline_beziers(own[end : end + count], knots[knot : knot + k + 1], ring > 0, b[:k])
+            for s in range(k):
+                points[at + 3 * s : at + 3 * s + 3] = b[s, :3]
             knot, control = knot + k + 1, control + count
         if k > 0:
             ends[arc + 1], closed[arc] = end + count, ring > 0
             arc += 1
-        for s in range(segments[q], segments[q + 1]):
-            degrees[s] = 1 if k == 0 else 3
         at += max(3 * k, 1)
         offsets[c + 1], starts[c + 1] = segments[q + 1], at
     return Assembly(
@@ -89,7 +81,7 @@ def put_together(
 
 
 @compiled
-def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours: SplitContours) -> FloatArray:
+def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours: Chains) -> FloatArray:
     """(spans + C, 2) places on curves and on their sources where every span begins, and where every contour ends.
 
     A knot is paired with the point of the outline nearest to it, sought near the place of its vertex.
@@ -99,8 +91,8 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
     """
     anchors = np.empty((len(cubics) + len(offsets) - 1, 2))
     at = 0
-    for q in range(len(pieces.where)):
-        c, k, closed = pieces.where[q, CONTOUR], max(pieces.where[q, SPANS], 1), pieces.where[q, CLOSED]
+    for q in range(len(pieces.spans)):
+        c, k, closed = pieces.contour[q], max(pieces.spans[q], 1), pieces.closed[q]
         outline = contours.cubics[0, contours.offsets[c] : contours.offsets[c + 1]]
         own = pieces.places[pieces.starts[q] : pieces.starts[q + 1]]
         m = len(outline)
@@ -121,7 +113,7 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
 
 
 def certify(
-    contours: SplitContours, pieces: Pieces, segments: IntArray, written: ContourArrays, sharpness: float, limit: float
+    contours: Chains, pieces: Pieces, segments: IntArray, written: ContourArrays, sharpness: float, limit: float
 ) -> tuple[FloatArray, FloatArray]:
     """(P,) certified bound between each piece, as written, and its stretch of contour; and the largest gap seen.
 
@@ -140,7 +132,7 @@ def certify(
 
 
 def certify_masters(
-    contours: SplitContours, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
+    contours: Chains, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
     mixes: FloatArray, limit: float, bounds: FloatArray, speed: BoolArray,
 ) -> None:  # fmt: skip
     """Certify pieces in a whole design space.
@@ -158,17 +150,17 @@ def certify_masters(
     first = pieces.starts[:-1]
     spans = np.diff(segments)
     for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
-        own = np.flatnonzero(pieces.where[:, CONTOUR] == c)
+        own = np.flatnonzero(pieces.contour == c)
         wanted = np.isnan(bounds[own])
         if not wanted.any():
             continue
         source = sources[V * contours.offsets[c] : V * contours.offsets[c + 1]]
         result, m, r = results[V * a : V * b], len(source) // V, b - a
-        closed = bool(pieces.where[own[0], CLOSED])
+        closed = bool(pieces.closed[own[0]])
         places, arcs = np.empty(r), np.empty((r, 4))
         for q, look in zip(own, wanted, strict=True):
             s, e = segments[q] - a, segments[q + 1] - a
-            low, high = float(pieces.where[q, FIRST]), float(pieces.where[q, LAST])
+            low, high = pieces.joints[q].astype(np.float64).tolist()
             arcs[s:e] = (-np.inf, np.inf, -np.inf, np.inf) if closed else (s, e, low, high)
             places[s:e] = pieces.places[first[q] : first[q] + e - s]
             inner = s if closed else s + 1  # an arc begins where the source's does

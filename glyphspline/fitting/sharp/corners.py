@@ -13,6 +13,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import directions, jet, length, turns
 from ...types import BoolArray, FloatArray, IntArray
+from .settings import Settings
 from .spline_curve import chord
 
 NO_HANDLE = 1e-9
@@ -20,7 +21,6 @@ NO_HANDLE = 1e-9
 
 SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
-
 
 ONE_DIRECTION = 1e-3
 """Masters' lines have one direction if they turn by no more than this from each other, in radians."""
@@ -62,108 +62,78 @@ class Joints(NamedTuple):
 
 
 @compiled
-def find_joints(
-    cubics: FloatArray, degrees: IntArray, tolerance: float, angle: float, shortest_line: float, graded: bool
-) -> Joints:  # fmt: skip
+def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Joints:
     """Sample a contour and classify its joints.
 
     Args:
         cubics: (K, m, 4, 2) its segments in each master; degrees: (m,) as in :class:`...outlines.outline.Contour`.
-        tolerance: the fit's, in font units.
-        angle: turn from which a joint is a corner, in radians.
-        shortest_line: straight lines at least this long stay lines.
-        graded: whether samples are denser beside tight turns, where a spline might swing out between them.
     """
-    masters, m = len(cubics), len(degrees)
-    places = even_places(cubics, degrees, tolerance)
-    if graded:
-        places = graded_places(cubics, places, tolerance)
-    N = len(places)
-    first = np.empty(m + 1, dtype=np.int64)
-    first[m] = N - 1
-    for i in range(N - 1):
-        j = int(places[i])
-        if places[i] - j == 0.0:
-            first[j] = i
-    samples = sampled(cubics, places)
-    spacing = spacings(cubics, places, samples, tolerance)
-    corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
-    arriving, leaving = np.empty((masters, m + 1, 2)), np.empty((masters, m + 1, 2))
-    for j in range(m):
-        square = 0.0
-        for v in range(masters):
-            square += np.hypot(cubics[v, j, 3, 0] - cubics[v, j, 0, 0], cubics[v, j, 3, 1] - cubics[v, j, 0, 1]) ** 2
-        line[j] = degrees[j] == 1 and np.sqrt(square / masters) >= shortest_line
+    masters, m, near = len(cubics), len(degrees), settings.near
+    places = even_places(cubics, degrees, near)
+    if settings.c2:  # a spline might swing out between the samples beside a tight turn
+        places = graded_places(cubics, places, near)
+    samples, spacing = sampled(cubics, places, near)
+    first = np.searchsorted(places, np.arange(m + 1.0))
     bends = np.zeros(m)
+    corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
+    for j in range(m):
+        line[j] = degrees[j] == 1 and chord(samples, first[j], first[j + 1]) >= settings.line
     for v in range(masters):
         own = np.abs(turns(cubics[v], NO_HANDLE))
         for j in range(m):
             bends[j] = max(bends[j], own[j])
-            if own[j] >= angle:
+            if own[j] >= settings.angle:
                 corner[j] = True
-                hard[j] = hard[j] or shows(samples[v], first[j], tolerance, angle)
+                hard[j] = hard[j] or shows(samples[v], first[j], near, settings.angle)
     for j in range(m):
         hard[j] = hard[j] or line[j] or line[j - 1]
-        kink = tolerance / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
-        for i in (first[j], (first[j] - 1) % (N - 1)):
+        kink = near / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
+        for i in (first[j], first[j] - 1):
             spacing[i] = min(spacing[i], kink)
     corner[m], hard[m] = corner[0], hard[0]
+    arriving, leaving = np.empty((masters, m + 1, 2)), np.empty((masters, m + 1, 2))
     for v in range(masters):
         set_directions(cubics[v], bends, corner, line, arriving[v], leaving[v])
-    tied = tie_to_lines(cubics, bends, corner, line, arriving, leaving)
+    tied = np.zeros(m + 1, dtype=np.bool_)
+    if masters > 1:
+        for j in range(m):
+            if line[j] != line[j - 1] and not corner[j] and bends[j] < SMOOTH_KINK:
+                s = j if line[j] else (j - 1) % m
+                tied[j] = tie_to_line(cubics[:, s].copy(), arriving[:, j], leaving[:, j])
+        arriving[:, m], leaving[:, m], tied[m] = arriving[:, 0], leaving[:, 0], tied[0]
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
 
 
 @compiled
-def tie_to_lines(
-    cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
-) -> BoolArray:
-    """Which joints are tied, see :class:`Joints`; the line's vectors take the place of the tangents there."""
-    masters, m = len(cubics), len(line)
-    tied = np.zeros(m + 1, dtype=np.bool_)
-    for j in range(m if masters > 1 else 0):
-        if corner[j] or line[j] == line[j - 1] or not bends[j] < SMOOTH_KINK:
-            continue
-        s, square, turn = j if line[j] else (j - 1) % m, 0.0, 0.0
-        for v in range(masters):
-            x, y = cubics[v, s, 3, 0] - cubics[v, s, 0, 0], cubics[v, s, 3, 1] - cubics[v, s, 0, 1]
-            square += x * x + y * y
-            turn = max(turn, abs(leaving[v, j, 0] * leaving[0, j, 1] - leaving[v, j, 1] * leaving[0, j, 0]))
-        if turn < ONE_DIRECTION:
-            continue
-        size, tied[j] = np.sqrt(square / masters), True
-        for v in range(masters):
-            for axis in range(2):
-                arriving[v, j, axis] = (cubics[v, s, 3, axis] - cubics[v, s, 0, axis]) / size
-                leaving[v, j, axis] = arriving[v, j, axis]
-    tied[m] = tied[0]
-    for v in range(masters):
+def tie_to_line(line: FloatArray, arriving: FloatArray, leaving: FloatArray) -> bool:
+    """Whether a joint beside a line (K, 4, 2) is tied, see :class:`Joints`; then the line's vectors in the masters take
+    the place of its tangents (K, 2).
+    """
+    turn = 0.0
+    for v in range(len(line)):
+        turn = max(turn, abs(leaving[v, 0] * leaving[0, 1] - leaving[v, 1] * leaving[0, 0]))
+    if turn < ONE_DIRECTION:
+        return False
+    size = chord(line, 0, 3)
+    for v in range(len(line)):
         for axis in range(2):
-            arriving[v, m, axis], leaving[v, m, axis] = arriving[v, 0, axis], leaving[v, 0, axis]
-    return tied
+            arriving[v, axis] = leaving[v, axis] = (line[v, 3, axis] - line[v, 0, axis]) / size
+    return True
 
 
 @compiled
-def sampled(cubics: FloatArray, places: FloatArray) -> FloatArray:
-    """(K, N, 2) the outline at places that run once round."""
-    N = len(places)
-    samples = np.empty((len(cubics), N, 2))
-    for v in range(len(cubics)):
-        for i in range(N - 1):
-            j = int(places[i])
-            samples[v, i, 0], samples[v, i, 1], _, _, _, _ = jet(cubics[v], j, places[i] - j)
-        samples[v, N - 1, 0], samples[v, N - 1, 1] = cubics[v, 0, 0, 0], cubics[v, 0, 0, 1]
-    return samples
-
-
-@compiled
-def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolerance: float) -> FloatArray:
-    """(N - 1,) the wanted distance of vertices between each sample and the next.
+def sampled(cubics: FloatArray, places: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
+    """(K, N, 2) the outline at places that run once round, and (N - 1,) the wanted distance of vertices after each.
 
     A master's own counts in proportion to its step: in the one that asks for most vertices it is the wanted one.
     """
     masters, N = len(cubics), len(places)
-    spacing = np.empty(N - 1)
+    samples, spacing = np.empty((masters, N, 2)), np.empty(N - 1)
+    for v in range(masters):
+        for i in range(N - 1):
+            j = int(places[i])
+            samples[v, i, 0], samples[v, i, 1], _, _, _, _ = jet(cubics[v], j, places[i] - j)
+        samples[v, N - 1] = cubics[v, 0, 0]
     for i in range(N - 1):
         j = int(places[i])
         step = chord(samples, i, i + 1)
@@ -177,7 +147,7 @@ def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolera
                 spacing[i] = min(spacing[i], wanted * step / own if masters > 1 else wanted)
         if spacing[i] == np.inf:
             spacing[i] = 1e6 * tolerance
-    return spacing
+    return samples, spacing
 
 
 @compiled
@@ -193,7 +163,7 @@ def set_directions(
         size, size_there = np.hypot(ax, ay), np.hypot(bx, by)
         leaving[j, 0], leaving[j, 1] = ax / size, ay / size
         arriving[j + 1, 0], arriving[j + 1, 1] = bx / size_there, by / size_there
-    arriving[0, 0], arriving[0, 1] = arriving[m, 0], arriving[m, 1]
+    arriving[0] = arriving[m]
     for j in range(m):
         if corner[j]:
             continue
@@ -207,26 +177,35 @@ def set_directions(
             size = np.hypot(x, y)
             x, y = x / size, y / size
         arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1] = x, y, x, y
-    for axis in range(2):
-        arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
+    arriving[m], leaving[m] = arriving[0], leaving[0]
 
 
 @compiled
 def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
-    """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later."""
+    """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later.
+
+    The outline between two samples is straight to a seventh of the tolerance in every master.
+    """
     m = len(degrees)
-    counts, total = np.empty(m, dtype=np.int64), 0
+    counts = np.empty(m, dtype=np.int64)
     for j in range(m):
-        counts[j] = 0
+        most = 2.0 if degrees[j] == 1 else 3.0
         for v in range(len(cubics)):
-            counts[j] = max(counts[j], samples_of(cubics[v], j, degrees[j] == 1, tolerance))
-        total += counts[j]
-    places, at = np.empty(total + 1), 0
+            p, size, bend = cubics[v, j], 0.0, 0.0
+            for k in range(3):
+                size += np.hypot(p[k + 1, 0] - p[k, 0], p[k + 1, 1] - p[k, 1])
+            for k in range(1, 3):
+                x, y = p[k + 1, 0] - 2 * p[k, 0] + p[k - 1, 0], p[k + 1, 1] - 2 * p[k, 1] + p[k - 1, 1]
+                bend = max(bend, np.hypot(x, y))
+            wanted = max(size / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
+            most = min(max(np.ceil(wanted), most), 40.0)
+        counts[j] = int(most)
+    places, at = np.empty(counts.sum() + 1), 0
     for j in range(m):
         for i in range(counts[j]):
             places[at] = j + i / counts[j]
             at += 1
-    places[total] = m
+    places[at] = m
     return places
 
 
@@ -260,20 +239,6 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
             return places
         new[count] = m
         places = new[: count + 1]
-
-
-@compiled
-def samples_of(cubics: FloatArray, j: int, straight: bool, tolerance: float) -> int:
-    """Samples that segment j needs: the outline between two of them is straight to a seventh of the tolerance."""
-    length = bend = 0.0
-    for k in range(3):
-        length += np.hypot(cubics[j, k + 1, 0] - cubics[j, k, 0], cubics[j, k + 1, 1] - cubics[j, k, 1])
-    for k in range(1, 3):
-        x = cubics[j, k + 1, 0] - 2 * cubics[j, k, 0] + cubics[j, k - 1, 0]
-        y = cubics[j, k + 1, 1] - 2 * cubics[j, k, 1] + cubics[j, k - 1, 1]
-        bend = max(bend, np.hypot(x, y))
-    wanted = max(length / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
-    return int(min(max(np.ceil(wanted), 2.0 if straight else 3.0), 40.0))
 
 
 REACH, HEIGHT = 6.0, 2.0

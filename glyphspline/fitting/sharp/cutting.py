@@ -1,259 +1,244 @@
-"""Cutting contours at their hard joints, and what lies between them: lines, cubics, and stretches that need splines.
+"""Cutting contours at their hard joints, and fitting what lies between them: lines, cubics and splines.
 
 Between two hard joints there is one C2 spline (``continuity="c2"``), or a chain of cubics that meet without a kink
 (``continuity="g1"``). A contour without hard joints is one closed C2 spline. Most stretches of a typeface need a single
-cubic, which is fitted here; :mod:`.spline_search` fits the others. Where a stretch has corners that do not show, one
-spline and splines between all of these corners are both fitted, and the cheaper is kept.
+cubic; :mod:`.spline_search` fits the others. Where a stretch has corners that do not show, one spline and splines
+between all of these corners are both fitted, and the cheaper is kept.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import split
+from ...intrinsics import borrowed, keep_alive
 from ...outlines.contour_arrays import ContourArrays
-from ...types import FloatArray
+from ...outlines.segments import begun_at, directed, farthest_joint, lasting
+from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
-from .cubic_chain import add_cubics, ends, fit_between, is_straight
-from .pieces import (
-    CHOICE,
-    CONTOUR,
-    CUT,
-    FIRST,
-    LAST,
-    ONLY,
-    SPANS,
-    WHOLE,
-    Pieces,
-    Row,
-    add_piece,
-    add_pieces,
-    add_source,
-    empty_pieces,
-    part,
-    reverse_last,
-    row_of,
-    used,
-)
-from .split_contours import Settings, SplitContours, laid_out
-from .stretches import Stretches, add_stretch, empty_stretches, stretches_used
+from .cubics import add_chain, fit_between, is_straight
+from .pieces import Pieces, add_piece, add_source, copy_piece, empty_pieces, enlarged, used
+from .settings import Settings
+from .spline_search import fit_spline
+
+
+class Chains(NamedTuple):
+    """Contours from a hard joint on if there is any, without segments of no length.
+
+    They keep their own direction, in which lines and arcs are put together.
+
+    Attributes:
+        cubics: (K, M, 4, 2) in each master and degrees: (M,) of all; offsets: (C + 1,) where each begins.
+        flipped: (C,) whether it is fitted the other way round.
+    """
+
+    cubics: FloatArray
+    degrees: IntArray
+    offsets: IntArray
+    flipped: BoolArray
 
 
 @compiled
-def cut_all(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> tuple[SplitContours, Pieces, Stretches]:
-    """All contours cut: their pieces in the direction in which they are fitted, and the stretches that need splines.
+def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
+    """The segments that have a length in some master; those that end where they begin are cut in two: an arc needs two
+    ends.
+    """
+    masters, m = len(cubics), len(degrees)
+    lasts = np.zeros(m, dtype=np.bool_)
+    for v in range(masters):
+        lasts[lasting(cubics[v])] = True
+    found, kept, count = np.empty((masters, 2 * m, 4, 2)), np.empty(2 * m, dtype=np.int64), 0
+    for j in range(m):
+        if not lasts[j]:
+            continue
+        closed = True
+        for v in range(masters):
+            own = cubics[v, j]
+            closed = closed and own[0, 0] == own[3, 0] and own[0, 1] == own[3, 1]
+        last = count + 1 if closed else count
+        for v in range(masters):
+            found[v, last] = cubics[v, j]
+            if closed:
+                split(found[v, last], 0.5, found[v, count])
+        kept[count] = kept[last] = degrees[j]
+        count = last + 1
+    return found[:, :count].copy(), kept[:count]
+
+
+@compiled
+def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple[FloatArray, IntArray, bool, Joints]:
+    """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
+
+    It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first point.
+    Direction and that joint are those of the first master.
+    """
+    chain, kept = with_ends(cubics, degrees)
+    m = len(kept)
+    _, flipped = directed(chain[0])
+    if flipped:
+        chain, kept = chain[:, ::-1, ::-1].copy(), kept[::-1].copy()
+    joints = find_joints(chain, kept, settings)
+    k = 0
+    while k < m and not joints.hard[k]:
+        k += 1
+    if k == m:
+        k = farthest_joint(chain[0, :, 0])
+    if k > 0:
+        for v in range(len(chain)):
+            chain[v] = begun_at(chain[v], k)
+        kept = np.roll(kept, -k)
+        joints = find_joints(chain, kept, settings)
+    return chain, kept, flipped, joints
+
+
+@compiled
+def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> tuple[Chains, Pieces]:
+    """All contours as they are cut, and lines and arcs that follow them.
+
+    Pieces that are farther off than ``settings.near`` become the source's own segments.
 
     Args:
         cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
     """
     masters, count, most = len(cubics), len(contours.offsets) - 1, 2 * len(contours.degrees)
-    split = SplitContours(
-        np.empty((masters, most, 4, 2)), np.empty(most, dtype=np.int64), np.empty(count + 1, dtype=np.int64),
+    chains = Chains(
+        np.empty((masters, most, 4, 2)), np.empty(most, dtype=np.int64), np.zeros(count + 1, dtype=np.int64),
         np.empty(count, dtype=np.bool_),
     )  # fmt: skip
-    pieces, stretches = empty_pieces(masters, 2 * most, 4 * most), empty_stretches(masters, 2 * most, most)
-    at = split.offsets[0] = 0
-    done = wanted = 0
+    pieces, done = empty_pieces(masters, most, 4 * most), 0
     for c in range(count):
         a, b = contours.offsets[c], contours.offsets[c + 1]
-        chain, degrees, back, joints = laid_out(cubics[:, a:b].copy(), contours.degrees[a:b], settings)
-        split.flipped[c], m = back, len(degrees)
-        i = 0
-        while i < m:
-            j = i + 1
-            while not joints.hard[j] and j < m:
-                j += 1
-            if joints.line[i]:
-                done = _add_line(joints, (c, i, j, 0, 0, ONLY), pieces, done)
-            elif settings.c2:
-                done, wanted, stretches = _add_splines(joints, c, i, j, settings, pieces, done, stretches, wanted)
+        chain, degrees, flipped, joints = prepared(cubics[:, a:b].copy(), contours.degrees[a:b], settings)
+        own = fit_contour(borrowed(joints), c, settings)
+        keep_alive(joints)
+        if flipped:
+            chain, degrees = chain[:, ::-1, ::-1].copy(), degrees[::-1].copy()
+        m, P, at = len(degrees), len(own.spans), chains.offsets[c]
+        chains.cubics[:, at : at + m], chains.degrees[at : at + m] = chain, degrees
+        chains.offsets[c + 1], chains.flipped[c] = at + m, flipped
+        pieces = enlarged(pieces, done, P + m, len(own.places) + 2 * m)
+        for n in range(P):
+            q = P - 1 - n if flipped else n
+            i, j = own.joints[q, 0], own.joints[q, 1]
+            if own.errors[q] <= settings.near:
+                done = copy_piece(own, q, pieces, done, m if flipped else 0)
+            elif flipped:
+                done = add_source(pieces, done, c, m - j, m - i, chain, degrees)
             else:
-                done = _add_chain(joints, c, i, j, settings, pieces, done)
-            i = j
-        for j in range(m):
-            t = m - 1 - j if back else j
-            split.degrees[at + j] = degrees[t]
-            for v in range(masters):
-                for k in range(4):
-                    for axis in range(2):
-                        split.cubics[v, at + j, k, axis] = chain[v, t, 3 - k if back else k, axis]
-        at += m
-        split.offsets[c + 1] = at
-    split = SplitContours(split.cubics[:, :at].copy(), split.degrees[:at], split.offsets, split.flipped)
-    return split, used(pieces, done), stretches_used(stretches, wanted)
+                done = add_source(pieces, done, c, i, j, chain, degrees)
+    at = chains.offsets[count]
+    chains = Chains(chains.cubics[:, :at].copy(), chains.degrees[:at], chains.offsets, chains.flipped)
+    return chains, used(pieces, done)
 
 
 @compiled
-def _add_line(joints: Joints, row: Row, pieces: Pieces, count: int) -> int:
-    """Add a line between two joints."""
-    p, places = ends(joints, row[1], row[2])
-    return add_piece(pieces, count, row, p, places, p, 0.0)
+def fit_contour(joints: Joints, c: int, settings: Settings) -> Pieces:
+    """Lines and arcs from joint to joint of contour c, in the direction in which it is fitted."""
+    m, near = len(joints.line), settings.near
+    owned, count, i = empty_pieces(len(joints.samples), 2 * m, 2 * (len(joints.places) + 2 * m)), 0, 0
+    pieces = borrowed(owned)
+    while i < m:
+        j = i + 1
+        while j < m and not joints.hard[j]:
+            j += 1
+        if joints.line[i]:
+            count = add_piece(pieces, count, joints, i, j, 0, 0.0)
+        elif not settings.c2:
+            count = add_chain(joints, i, j, settings, pieces, count)
+        else:
+            first, cut = count, joints.hard[0] and joints.corner[i + 1 : j].any()
+            for whole in range(0 if cut else 1, 2):
+                a = i
+                for b in range(i + 1, j + 1):
+                    if b == j or (not whole and joints.corner[b]):
+                        count = add_simplest(joints, a, b, settings, pieces, count)
+                        if pieces.errors[count - 1] > near:
+                            fit_spline(joints, near, settings, False, pieces, count - 1)
+                        a = b
+            if cut:
+                count = keep_cheaper(pieces, first, count, near)
+        i = j
+    owned.contour[:] = c
+    return used(owned, count)
 
 
 @compiled
-def _add_chain(joints: Joints, c: int, i: int, j: int, settings: Settings, pieces: Pieces, count: int) -> int:
-    """Add cubics from hard joint i to hard joint j, which end at corners and at every so many joints."""
-    nodes = np.empty(j - i + 1, dtype=np.int64)
-    nodes[0] = i
-    last = 0
-    for n in range(i + 1, j):
-        if joints.corner[n] or n - nodes[last] >= settings.stride:
-            last += 1
-            nodes[last] = n
-    nodes[last + 1] = j
-    return add_cubics(joints, c, nodes[: last + 2], settings, pieces, count)
-
-
-@compiled
-def _add_splines(
-    joints: Joints, c: int, i: int, j: int, settings: Settings, pieces: Pieces, count: int, stretches: Stretches,
-    wanted: int,
-) -> tuple[int, int, Stretches]:  # fmt: skip
-    """Add what runs from hard joint i to hard joint j: as a whole, and cut at its corners if it has any."""
-    corners = 0
-    if joints.hard[0]:
-        for n in range(i + 1, j):
-            corners += joints.corner[n]
-    row = c, i, j, 1, 0, WHOLE if corners > 0 else ONLY
-    count, wanted, stretches = _add_spline(joints, row, settings, pieces, count, stretches, wanted)
-    if corners > 0:
-        return _add_cut(joints, c, i, j, CUT, settings, pieces, count, stretches, wanted)
-    return count, wanted, stretches
-
-
-@compiled
-def _add_cut(
-    joints: Joints, c: int, i: int, j: int, choice: int, settings: Settings, pieces: Pieces, count: int,
-    stretches: Stretches, wanted: int,
-) -> tuple[int, int, Stretches]:  # fmt: skip
-    """Add pieces from joint i to joint j that end at all corners between."""
-    for n in range(i + 1, j + 1):
-        if n == j or joints.corner[n]:
-            row = c, i, n, 1, 0, choice
-            count, wanted, stretches = _add_spline(joints, row, settings, pieces, count, stretches, wanted)
-            i = n
-    return count, wanted, stretches
-
-
-@compiled
-def _add_spline(
-    joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int, stretches: Stretches, wanted: int
-) -> tuple[int, int, Stretches]:
-    """Add a line or a cubic between two joints, and a stretch that needs a spline where neither is near enough."""
-    count = _add_simplest(joints, row, settings, pieces, count)
-    if pieces.errors[count - 1] > settings.near:
-        stretches = add_stretch(stretches, wanted, joints, row[1], row[2], count - 1)
-        wanted += 1
-    return count, wanted, stretches
-
-
-@compiled
-def _add_simplest(joints: Joints, row: Row, settings: Settings, pieces: Pieces, count: int) -> int:
-    """Add a line or a cubic between two joints, with its error.
+def add_simplest(joints: Joints, i: int, j: int, settings: Settings, pieces: Pieces, count: int) -> int:
+    """Add a line or a cubic between two joints, with its error; the number of pieces then.
 
     It is infinite for a closed curve, and beside a tied joint, where the cubics of the masters have to agree: these are
-    stretches that need a spline, which may have one span.
+    for splines, which may have one span.
     """
-    c, i, j, _, _, choice = row
     closed = i == 0 and j == len(joints.line) and not joints.hard[0]
-    corners = not closed and joints.corner[i] and joints.corner[j]
-    if corners and is_straight(joints.samples, joints.first[i], joints.first[j], settings.near):
-        return _add_line(joints, (c, i, j, 0, 0, choice), pieces, count)
-    (p, places), tangents = ends(joints, i, j), np.zeros((len(joints.samples), 2, 2))
-    error = np.inf
-    if not (closed or joints.tied[i] or joints.tied[j]):
-        error = fit_between(joints, i, j, settings.near, settings.search.cubic_rounds, tangents)
-    return add_piece(pieces, count, (c, i, j, 1, int(closed), choice), p, places, tangents, error)
+    straight = not closed and joints.corner[i] and joints.corner[j]
+    straight = straight and is_straight(joints.samples, joints.first[i], joints.first[j], settings.near)
+    error = 0.0 if straight else np.inf
+    if not (straight or closed or joints.tied[i] or joints.tied[j]):
+        error = fit_between(joints, i, j, settings.near, settings.cubic_rounds, pieces.tangents[count])
+    add_piece(pieces, count, joints, i, j, 0 if straight else 1, error)
+    pieces.closed[count] = closed
+    return count + 1
 
 
 @compiled
-def choose(contours: SplitContours, pieces: Pieces, near: float) -> Pieces:
-    """The pieces that are kept, in each contour's own direction.
+def keep_cheaper(pieces: Pieces, first: int, count: int, near: float) -> int:
+    """Of pieces cut at corners, from ``first`` on, and the whole, which is the last, keep what stores less.
 
-    Of a spline and its cut version the one that stores less is kept, the cut one if they store the same: a corner that
-    is rounded is a peak of curvature. What is farther off than ``near`` becomes the source's own segments.
-    """
-    P = len(pieces.where)
-    kept = np.ones(P, dtype=np.bool_)
-    q = 0
-    while q < P:
-        last = q + 1
-        while pieces.where[q, CHOICE] == WHOLE and last < P and pieces.where[last, CHOICE] == CUT:
-            last += 1
-        if last > q + 1:
-            worst = pieces.errors[q + 1 : last].max()
-            numbers = 0
-            for r in range(q + 1, last):
-                numbers += 2 * pieces.where[r, SPANS] + (4 if pieces.where[r, SPANS] > 0 else 2)
-            cut = worst <= near and (numbers <= 2 * pieces.where[q, SPANS] + 4 or pieces.errors[q] > near)
-            for r in range(q, last):
-                kept[r] = cut == (r > q)
-        q = last
-    m = len(contours.degrees)
-    found = empty_pieces(len(contours.cubics), P + m, len(pieces.places) + 2 * m)
-    count = first = contours.offsets[0]
-    for c in range(len(contours.flipped)):
-        a, b, back = contours.offsets[c], contours.offsets[c + 1], contours.flipped[c]
-        last = first
-        while last < P and pieces.where[last, CONTOUR] == c:
-            last += 1
-        for n in range(last - first):
-            q = last - 1 - n if back else first + n
-            if not kept[q]:
-                continue
-            count = add_pieces(found, count, part(pieces, q, q + 1))
-            if back:
-                reverse_last(found, count, b - a)
-            if pieces.errors[q] > near:
-                count = add_source(
-                    found, count - 1, row_of(found, count - 1), contours.cubics[:, a:b].copy(), contours.degrees[a:b]
-                )
-        first = last
-    return used(found, count)
-
-
-@compiled
-def source_pieces(contours: SplitContours, piece: Pieces) -> Pieces:
-    """The source's own segments in the place of a single piece."""
-    row = row_of(piece, 0)
-    a, b = contours.offsets[row[CONTOUR]], contours.offsets[row[CONTOUR] + 1]
-    most = row[LAST] - row[FIRST]
-    found = empty_pieces(len(contours.cubics), most, 2 * most)
-    return used(found, add_source(found, 0, row, contours.cubics[:, a:b].copy(), contours.degrees[a:b]))
-
-
-@compiled
-def joints_again(contours: SplitContours, c: int, settings: Settings) -> Joints:
-    """The joints of contour c, in the direction in which it is fitted."""
-    a, b = contours.offsets[c], contours.offsets[c + 1]
-    cubics, degrees = contours.cubics[:, a:b].copy(), contours.degrees[a:b].copy()
-    if contours.flipped[c]:
-        cubics, degrees = cubics[:, ::-1, ::-1].copy(), degrees[::-1].copy()
-    return find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
-
-
-@compiled
-def cut_again(
-    contours: SplitContours, piece: Pieces, joints: Joints, cut: bool, settings: Settings
-) -> tuple[Pieces, Stretches]:
-    """A single piece taken apart again, in the direction in which it is fitted: as it is, or cut at its corners.
-
-    Args:
-        joints: of its contour, by :func:`joints_again`.
+    The cut ones are kept if they store the same: a corner that is rounded is a peak of curvature.
 
     Returns:
-        Lines and cubics, and the stretches that need splines: of a piece as it is, always.
+        The number of pieces then.
     """
-    c = piece.where[0, CONTOUR]
-    masters = len(contours.cubics)
-    given, count = empty_pieces(masters, 1, len(piece.places)), 0
-    add_pieces(given, count, piece)
-    if contours.flipped[c]:
-        reverse_last(given, count + 1, contours.offsets[c + 1] - contours.offsets[c])
-    i, j = given.where[0, FIRST], given.where[0, LAST]
-    found = empty_pieces(masters, j - i, 2 * (j - i))
-    stretches = empty_stretches(masters, j - i, 2 * len(joints.places))
-    if not cut:
-        return given, stretches_used(add_stretch(stretches, count, joints, i, j, count), count + 1)
-    count, wanted, stretches = _add_cut(joints, c, i, j, ONLY, settings, found, count, stretches, count)
-    return used(found, count), stretches_used(stretches, wanted)
+    whole, numbers, worst = count - 1, 0, 0.0
+    for q in range(first, whole):
+        numbers += 2 * pieces.spans[q] + (4 if pieces.spans[q] > 0 else 2)
+        worst = max(worst, pieces.errors[q])
+    if worst <= near and (numbers <= 2 * pieces.spans[whole] + 4 or pieces.errors[whole] > near):
+        return whole
+    return copy_piece(pieces, whole, pieces, first, 0)
+
+
+@compiled
+def refit(
+    chains: Chains, pieces: Pieces, poor: BoolArray, shares: FloatArray, settings: Settings
+) -> tuple[Pieces, IntArray]:
+    """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments.
+
+    Args:
+        shares: of ``settings.near``, to be tried in turn.
+
+    Returns:
+        The pieces, and which of the given ones each is; -1 for others.
+    """
+    masters, most = len(chains.cubics), len(pieces.spans) + len(chains.degrees)
+    found, same, count = empty_pieces(masters, most, 2 * len(pieces.places) + 2 * most), np.full(most, -1), 0
+    for q in range(len(pieces.spans)):
+        if not poor[q]:
+            same[count] = q
+            found = enlarged(found, count, most - count, pieces.starts[q + 1] - pieces.starts[q])
+            count = copy_piece(pieces, q, found, count, 0)
+            continue
+        c = pieces.contour[q]
+        a, b, flipped = chains.offsets[c], chains.offsets[c + 1], chains.flipped[c]
+        chain, degrees, turned = chains.cubics[:, a:b].copy(), chains.degrees[a:b].copy(), b - a if flipped else 0
+        joints = find_joints(
+            chain[:, ::-1, ::-1].copy() if flipped else chain, degrees[::-1].copy() if flipped else degrees, settings
+        )
+        own = empty_pieces(masters, 1, len(joints.places) + pieces.starts[q + 1] - pieces.starts[q])
+        own.errors[0] = np.inf
+        for share in shares:
+            copy_piece(pieces, q, own, 0, turned)
+            # The masters' vertices may be where slip rules them out: a new guess is better.
+            fit_spline(joints, share * settings.near, settings, masters == 1, own, 0)
+            if own.errors[0] <= share * settings.near:
+                break
+            own.errors[0] = np.inf
+        found = enlarged(found, count, most - count, len(own.places) + 2 * (b - a))
+        if own.errors[0] < np.inf:
+            count = copy_piece(own, 0, found, count, turned)
+        else:
+            count = add_source(found, count, c, pieces.joints[q, 0], pieces.joints[q, 1], chain, degrees)
+    return used(found, count), same[:count]

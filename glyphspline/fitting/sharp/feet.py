@@ -17,7 +17,6 @@ EXTRA = 6
 NOTICED = 0.5
 """Points of the curve between two feet count from this share of the tolerance on."""
 
-
 ASIDE, BENT = 1.0, 0.5
 """What a unit of slip costs across the curve, by the sine of a master's angle to the others and by its bend."""
 
@@ -32,8 +31,8 @@ class Samples(NamedTuple):
         Q: (K, n, 2) points in order, in each master; the ends of an arc are the first and the last.
         places: (n,) their places on the contour.
         D: (n,) integral of the wanted vertex density up to each.
-        directions: (K, 2, 2) of the end tangents of an arc; free: (2,) what they may do. See
-            :class:`.stretches.Stretches`.
+        directions: (K, 2, 2) unit tangents at the ends of an arc. free: (2,) whether these may turn (FREE), or keep
+            their directions (HELD) and, besides, the ratio of their lengths in the masters (TIED).
         lap: how far the places count on around a closed contour: its number of segments.
     """
 
@@ -71,7 +70,7 @@ class Rows(NamedTuple):
 
 @compiled
 def empty_rows(masters: int, samples: int) -> Rows:
-    """Room for the rows of so many samples."""
+    """Arrays for the rows of so many samples."""
     room, apart = (masters, (1 + EXTRA) * samples), (masters, samples if masters > 1 else 0)
     return Rows(
         np.zeros((masters, 1), dtype=np.int64), np.empty(room, dtype=np.int64), np.empty(room), np.empty(room),
@@ -80,20 +79,68 @@ def empty_rows(masters: int, samples: int) -> Rows:
 
 
 @compiled
-def rows_of(rows: Rows, v: int) -> Rows:
-    """The rows of master v, in arrays of one dimension."""
-    return Rows(rows.used[v], rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v], rows.lever[v])
-
-
-@compiled
 def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
-    """Pair the outline with the curve in every master; the largest distance. Arguments as of :func:`_measure`."""
+    """Pair the outline with the curve, in order and in every master by itself; the largest distance.
+
+    Each foot is the nearest point after the foot before it, by Newton's method across the spans. Between two feet the
+    curve is measured too, in several places where they are far apart on it: from loops, and from humps of short spans,
+    no sample is far.
+
+    Args:
+        near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
+        rows: receives the feet and distances.
+    """
+    h, k, closed, n = curve.h, curve.size[0], curve.size[1], len(samples.places)
     worst = 0.0
     for v in range(len(samples.Q)):
-        worst = max(worst, _measure(samples.Q[v], curve, curve.b[v], near, rows_of(known, v), rows_of(rows, v)))
+        Q, b, guessed = samples.Q[v], curve.b[v], known.used[v, 0] > 0
+        span, x, e, nx, ny = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v]
+        for j in range(n):
+            s, at = (k - 1, 1.0) if j > 0 else (0, 0.0)
+            if closed or 0 < j < n - 1:
+                s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
+                later = guessed and (known.span[v, j] > s0 or (known.span[v, j] == s0 and known.x[v, j] > at0))
+                s, at = (known.span[v, j], known.x[v, j]) if later else ((s0, at0) if j > 0 else (0, 0.0))
+                end = k if not closed else (span[0] + k + 1 if j > 0 else k)
+                span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
+            else:
+                span[j], x[j] = s, at
+                e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
+            worst = max(worst, abs(e[j]))
+        count = n
+        for j in range(n if closed else n - 1):
+            i = j + 1 if j + 1 < n else 0
+            lap = k if i == 0 else 0
+            step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
+            chord = length(step_x, step_y)
+            own = _distance_along(h, k, span[j], x[j], span[i] + lap, x[i])
+            if chord == 0.0 or own <= 0.0:
+                continue
+            spans = (span[i] + lap + x[i]) - (span[j] + x[j])
+            wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
+            pieces = min(int(wanted) + 2, EXTRA + 1)
+            for r in range(1, pieces):
+                s, at = _moved(h, k, span[j], x[j], own * r / pieces)
+                cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
+                along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
+                ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
+                away = length(ex, ey)
+                if away > NOTICED * near:
+                    span[count], x[count], e[count] = s, at, away
+                    nx[count], ny[count] = ex / away, ey / away
+                    count += 1
+                    worst = max(worst, away)
+        rows.used[v, 0] = count
     if len(samples.Q) > 1:
         worst = max(worst, _measure_slip(curve, rows))
     return worst
+
+
+@compiled
+def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
+    """Measure a curve without first guesses."""
+    rows.used[:] = 0
+    return measure(samples, curve, near, rows, rows)
 
 
 @compiled
@@ -131,69 +178,6 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
             rows.slip[v, j], rows.lever[v, j] = slip, lever
             worst = max(worst, abs(rows.e[v, j]) + lever * abs(slip))
     return worst
-
-
-@compiled
-def _measure(Q: FloatArray, curve: Curve, b: FloatArray, near: float, known: Rows, rows: Rows) -> float:
-    """Pair the outline in a master with the curve, in order; the largest distance.
-
-    Each foot is the nearest point after the foot before it, by Newton's method across the spans. Between two feet the
-    curve is measured too, in several places where they are far apart on it: from loops, and from humps of short spans,
-    no sample is far.
-
-    Args:
-        Q: (n, 2) samples. b: (room, 4, 2) Bézier points of the curve in this master.
-        near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
-        rows: receives the feet and distances.
-    """
-    h, k, closed = curve.h, curve.size[0], curve.size[1]
-    n = len(Q)
-    span, x, e, nx, ny = rows.span, rows.x, rows.e, rows.nx, rows.ny
-    worst, guessed = 0.0, known.used[0] > 0
-    for j in range(n):
-        s, at = (k - 1, 1.0) if j > 0 else (0, 0.0)
-        if closed or 0 < j < n - 1:
-            s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
-            later = guessed and (known.span[j] > s0 or (known.span[j] == s0 and known.x[j] > at0))
-            s, at = (known.span[j], known.x[j]) if later else ((s0, at0) if j > 0 else (0, 0.0))
-            end = k if not closed else (span[0] + k + 1 if j > 0 else k)
-            span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
-        else:
-            span[j], x[j] = s, at
-            e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
-        worst = max(worst, abs(e[j]))
-    count = n
-    for j in range(n if closed else n - 1):
-        i = j + 1 if j + 1 < n else 0
-        lap = k if i == 0 else 0
-        step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
-        chord = length(step_x, step_y)
-        own = _distance_along(h, k, span[j], x[j], span[i] + lap, x[i])
-        if chord == 0.0 or own <= 0.0:
-            continue
-        spans = (span[i] + lap + x[i]) - (span[j] + x[j])
-        wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
-        pieces = min(int(wanted) + 2, EXTRA + 1)
-        for r in range(1, pieces):
-            s, at = _moved(h, k, span[j], x[j], own * r / pieces)
-            cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
-            along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
-            ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
-            away = length(ex, ey)
-            if away > NOTICED * near:
-                span[count], x[count], e[count] = s, at, away
-                nx[count], ny[count] = ex / away, ey / away
-                count += 1
-                worst = max(worst, away)
-    rows.used[0] = count
-    return worst
-
-
-@compiled
-def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
-    """Measure a curve without first guesses."""
-    rows.used[:] = 0
-    return measure(samples, curve, near, rows, rows)
 
 
 @compiled
@@ -285,12 +269,11 @@ def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[in
 def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
     for v in range(len(source.used)):
-        target.used[v, 0] = source.used[v, 0]
-        for r in range(source.used[v, 0]):
-            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
-            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
-        for j in range(source.slip.shape[1]):
-            target.slip[v, j], target.lever[v, j] = source.slip[v, j], source.lever[v, j]
+        count = target.used[v, 0] = source.used[v, 0]
+        target.span[v, :count], target.x[v, :count] = source.span[v, :count], source.x[v, :count]
+        target.e[v, :count] = source.e[v, :count]
+        target.nx[v, :count], target.ny[v, :count] = source.nx[v, :count], source.ny[v, :count]
+    target.slip[:], target.lever[:] = source.slip, source.lever
 
 
 @compiled
@@ -310,30 +293,21 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
 @compiled
 def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) -> None:
     """The places of the outline beside the knots of a curve, from the feet of the samples in the first master."""
-    Q, k, closed, n, lap = samples.places, curve.size[0], curve.size[1], len(samples.places), samples.lap
-    span, x = rows.span[0], rows.x[0]
-    j = 0
+    k, closed, n, lap = curve.size[0], curve.size[1], len(samples.places), samples.lap
+    feet, own = np.empty(n + 1), np.empty(n + 1)
+    for j in range(n):
+        feet[j], own[j] = rows.span[0, j] + rows.x[0, j], samples.places[j]
+    feet[n], own[n] = feet[0] + k, own[0] + lap
     for i in range(k + 1 - closed):
-        knot = float(i)
-        if closed and knot < span[0] + x[0]:
-            knot += k
-        if closed:
-            j = 0
-        while j + 1 < n and span[j + 1] + x[j + 1] <= knot:
-            j += 1
-        low, here = span[j] + x[j], Q[j]
-        if j + 1 < n:
-            high, there = span[j + 1] + x[j + 1], Q[j + 1]
-        else:
-            high, there = span[0] + x[0] + k, Q[0] + lap
-        share = (knot - low) / (high - low) if high > low else 0.0
-        places[i] = here + share * (there - here)
-    if closed:
-        for i in range(1, k):
-            if places[i] < places[0]:
-                places[i] += lap
-        if places[0] >= lap:
-            for i in range(k):
-                places[i] -= lap
-    else:
-        places[k] = Q[n - 1]
+        knot = i + k if closed and i < feet[0] else i
+        j = int(np.searchsorted(feet[:n], knot, side="right")) - 1
+        gap = feet[j + 1] - feet[j]
+        places[i] = own[j] + ((knot - feet[j]) / gap if gap > 0 else 0.0) * (own[j + 1] - own[j])
+    if not closed:
+        places[k] = own[n - 1]
+        return
+    for i in range(1, k):
+        if places[i] < places[0]:
+            places[i] += lap
+    if places[0] >= lap:
+        places -= lap

@@ -8,32 +8,27 @@ import numpy as np
 
 from ...compiled import compiled
 from ...types import FloatArray, IntArray
-
-Row = tuple[int, int, int, int, int, int]
-"""A row of ``Pieces.where``."""
-
-CONTOUR, FIRST, LAST, SPANS, CLOSED, CHOICE = range(6)
-"""Its columns."""
-
-ONLY, WHOLE, CUT = 0, 1, 2
-"""A piece is the only way between two hard joints; or one spline; or it is one of several cut at corners instead."""
+from .corners import Joints
 
 
 class Pieces(NamedTuple):
     """Lines, arcs and closed curves, contour after contour, in order.
 
     Attributes:
-        where: (P, 6) contour; first and last joint of it between which the piece runs; spans, 0 for a line; 1 for a
-            closed curve, which runs once round its contour; and ONLY, WHOLE or CUT.
+        contour: (P,) of which each is a piece. joints: (P, 2) of it between which the piece runs.
+        spans: (P,) 0 for a line. closed: (P,) 1 for a closed curve, which runs once round its contour, or else 0.
         starts: (P + 1,) where in ``vertices`` each begins.
-        vertices: (K, V, 2) of each piece in each master, both ends of a line or an arc among them. places: (V,) of
+        vertices: (V, K, 2) of each piece in each master, both ends of a line or an arc among them. places: (V,) of
             their contour near which they lie; around a closed curve these count on.
-        tangents: (K, P, 2, 2) end tangents of arcs, derivatives by chord length: by the root mean square of the chords
+        tangents: (P, K, 2, 2) end tangents of arcs, derivatives by chord length: by the root mean square of the chords
             in all masters. Unset for others.
         errors: (P,) largest distance of a sample of the outline.
     """
 
-    where: IntArray
+    contour: IntArray
+    joints: IntArray
+    spans: IntArray
+    closed: IntArray
     starts: IntArray
     vertices: FloatArray
     places: FloatArray
@@ -43,133 +38,92 @@ class Pieces(NamedTuple):
 
 @compiled
 def empty_pieces(masters: int, count: int, vertices: int) -> Pieces:
-    """Room for so many pieces, with so many vertices together."""
-    pieces = Pieces(
-        np.empty((count, 6), dtype=np.int64), np.empty(count + 1, dtype=np.int64), np.empty((masters, vertices, 2)),
-        np.empty(vertices), np.empty((masters, count, 2, 2)), np.empty(count),
+    """Arrays for up to ``count`` pieces, with up to ``vertices`` vertices together."""
+    return Pieces(
+        np.empty(count, dtype=np.int64), np.empty((count, 2), dtype=np.int64), np.empty(count, dtype=np.int64),
+        np.zeros(count, dtype=np.int64), np.zeros(count + 1, dtype=np.int64), np.empty((vertices, masters, 2)),
+        np.empty(vertices), np.zeros((count, masters, 2, 2)), np.empty(count),
     )  # fmt: skip
-    pieces.starts[0] = 0
-    return pieces
+
+
+@compiled
+def add_piece(pieces: Pieces, count: int, joints: Joints, i: int, j: int, spans: int, error: float) -> int:
+    """Add a line or an arc of one span between two joints after ``count`` other pieces; the number then."""
+    at = pieces.starts[count]
+    pieces.joints[count, 0], pieces.joints[count, 1] = i, j
+    pieces.spans[count], pieces.closed[count], pieces.errors[count] = spans, 0, error
+    for end, joint in ((0, i), (1, j)):
+        pieces.places[at + end] = joint
+        pieces.vertices[at + end] = joints.samples[:, joints.first[joint]]
+    pieces.starts[count + 1] = at + 2
+    return count + 1
+
+
+@compiled
+def add_source(pieces: Pieces, count: int, c: int, i: int, j: int, cubics: FloatArray, degrees: IntArray) -> int:
+    """Add a contour's segments between two joints as they are, as lines and arcs of one span; the number then."""
+    for s in range(i, j):
+        at, own = pieces.starts[count], cubics[:, s].copy()
+        pieces.contour[count], pieces.joints[count, 0], pieces.joints[count, 1] = c, s, s + 1
+        pieces.spans[count], pieces.closed[count], pieces.errors[count] = min(degrees[s] - 1, 1), 0, 0.0
+        square = 0.0
+        for v in range(len(own)):
+            square += np.hypot(own[v, 3, 0] - own[v, 0, 0], own[v, 3, 1] - own[v, 0, 1]) ** 2
+        factor = 3 / np.sqrt(square / len(own))
+        for end in range(2):
+            pieces.places[at + end] = s + end
+            pieces.vertices[at + end] = own[:, 3 * end]
+            pieces.tangents[count, :, end] = (own[:, 2 * end + 1] - own[:, 2 * end]) * factor
+        pieces.starts[count + 1] = at + 2
+        count += 1
+    return count
+
+
+@compiled
+def copy_piece(source: Pieces, q: int, target: Pieces, count: int, turned: int) -> int:
+    """Add a copy of piece q of others after ``count`` pieces; the number then.
+
+    Args:
+        turned: the segments of its contour if the copy runs the other way round, or else 0.
+    """
+    a, n, at, closed = source.starts[q], source.starts[q + 1] - source.starts[q], target.starts[count], source.closed[q]
+    target.contour[count], target.errors[count] = source.contour[q], source.errors[q]
+    target.spans[count], target.closed[count] = source.spans[q], closed
+    target.starts[count + 1] = at + n
+    if not turned:
+        target.joints[count], target.tangents[count] = source.joints[q], source.tangents[q]
+        target.vertices[at : at + n], target.places[at : at + n] = source.vertices[a : a + n], source.places[a : a + n]
+        return count + 1
+    lap = turned if closed and source.places[a] > 0.0 else 0
+    for end in range(2):
+        target.joints[count, end] = turned - source.joints[q, 1 - end]
+        target.tangents[count, :, end] = -source.tangents[q, :, 1 - end]
+    for r in range(n):
+        s = a + (n - r if closed else n - 1 - r) % n  # the first vertex of a closed curve stays the first
+        target.vertices[at + r], target.places[at + r] = source.vertices[s], turned + lap - source.places[s]
+    if closed:
+        target.places[at] -= turned
+    return count + 1
+
+
+@compiled
+def enlarged(pieces: Pieces, count: int, more: int, vertices: int) -> Pieces:
+    """The first ``count`` pieces, in larger arrays if others do not fit after them."""
+    needed = pieces.starts[count] + vertices
+    if count + more <= len(pieces.spans) and needed <= len(pieces.places):
+        return pieces
+    larger = empty_pieces(pieces.vertices.shape[1], 2 * (count + more), 2 * needed)
+    for q in range(count):
+        copy_piece(pieces, q, larger, q, 0)
+    return larger
 
 
 @compiled
 def used(pieces: Pieces, count: int) -> Pieces:
     """The first ``count`` pieces."""
-    where, starts, vertices, places, tangents, errors = pieces
-    end = starts[count]
+    end = pieces.starts[count]
     return Pieces(
-        where[:count], starts[: count + 1], vertices[:, :end].copy(), places[:end], tangents[:, :count].copy(),
-        errors[:count],
+        pieces.contour[:count], pieces.joints[:count], pieces.spans[:count], pieces.closed[:count],
+        pieces.starts[: count + 1], pieces.vertices[:end], pieces.places[:end], pieces.tangents[:count],
+        pieces.errors[:count],
     )  # fmt: skip
-
-
-@compiled
-def part(pieces: Pieces, a: int, b: int) -> Pieces:
-    """Pieces a to b - 1."""
-    where, starts, vertices, places, tangents, errors = pieces
-    first, end = starts[a], starts[b]
-    own = starts[a : b + 1] - first
-    return Pieces(
-        where[a:b], own, vertices[:, first:end].copy(), places[first:end], tangents[:, a:b].copy(), errors[a:b]
-    )
-
-
-@compiled
-def of_master(pieces: Pieces, v: int) -> Pieces:
-    """The pieces in one master."""
-    where, starts, vertices, places, tangents, errors = pieces
-    return Pieces(where, starts, vertices[v : v + 1], places, tangents[v : v + 1], errors)
-
-
-@compiled
-def row_of(pieces: Pieces, q: int) -> Row:
-    """Piece q's row of ``where``."""
-    where = pieces.where
-    return where[q, 0], where[q, 1], where[q, 2], where[q, 3], where[q, 4], where[q, 5]
-
-
-@compiled
-def add_pieces(pieces: Pieces, count: int, others: Pieces) -> int:
-    """Add pieces after ``count`` others; the number then."""
-    for q in range(len(others.where)):
-        a, b = others.starts[q], others.starts[q + 1]
-        count = add_piece(
-            pieces, count, row_of(others, q), others.vertices[:, a:b].copy(), others.places[a:b],
-            others.tangents[:, q].copy(), others.errors[q],
-        )  # fmt: skip
-    return count
-
-
-@compiled
-def add_piece(
-    pieces: Pieces, count: int, row: Row, p: FloatArray, places: FloatArray, tangents: FloatArray, error: float
-) -> int:
-    """Add a piece after ``count`` others; the number then.
-
-    Args:
-        row: of ``where``. p: (K, n, 2) its vertices, and their (n,) places. tangents: (K, 2, 2) at its ends.
-    """
-    at, n = pieces.starts[count], max(row[SPANS], 1) + 1 - row[CLOSED]
-    for c in range(6):
-        pieces.where[count, c] = row[c]
-    for r in range(n):
-        pieces.places[at + r] = places[r]
-    for v in range(len(p)):
-        for axis in range(2):
-            for r in range(n):
-                pieces.vertices[v, at + r, axis] = p[v, r, axis]
-            for end in range(2):
-                pieces.tangents[v, count, end, axis] = tangents[v, end, axis]
-    pieces.errors[count] = error
-    pieces.starts[count + 1] = at + n
-    return count + 1
-
-
-@compiled
-def reverse_last(pieces: Pieces, count: int, m: int) -> None:
-    """Turn the last of ``count`` pieces round, for a contour of m segments that is fitted the other way."""
-    q = count - 1
-    where, places, first, stop = pieces.where[q], pieces.places, pieces.starts[q], pieces.starts[q + 1]
-    where[FIRST], where[LAST] = m - where[LAST], m - where[FIRST]
-    lap = float(m) if where[CLOSED] and places[first] > 0.0 else 0.0
-    for r in range(first, stop):
-        places[r] = m + lap - places[r]
-    low, high = first, stop - 1
-    if where[CLOSED]:  # the first vertex of a closed curve stays the first
-        places[first] -= m
-        low += 1
-    while low < high:
-        places[low], places[high] = places[high], places[low]
-        for v in range(len(pieces.vertices)):
-            p = pieces.vertices[v]
-            for axis in range(2):
-                p[low, axis], p[high, axis] = p[high, axis], p[low, axis]
-        low, high = low + 1, high - 1
-    for v in range(len(pieces.tangents)):
-        tangents = pieces.tangents[v, q]
-        for axis in range(2):
-            tangents[0, axis], tangents[1, axis] = -tangents[1, axis], -tangents[0, axis]
-
-
-@compiled
-def add_source(pieces: Pieces, count: int, row: Row, cubics: FloatArray, degrees: IntArray) -> int:
-    """Add the segments of a contour between two joints as they are, as lines and arcs of one span; the number then."""
-    masters = len(cubics)
-    p, places, tangents = np.empty((masters, 2, 2)), np.empty(2), np.empty((masters, 2, 2))
-    for s in range(row[FIRST], row[LAST]):
-        places[0], places[1] = s, s + 1
-        square = 0.0
-        for v in range(masters):
-            own = cubics[v, s]
-            square += np.hypot(own[3, 0] - own[0, 0], own[3, 1] - own[0, 1]) ** 2
-        factor = 3 / np.sqrt(square / masters)
-        for v in range(masters):
-            own = cubics[v, s]
-            for axis in range(2):
-                for end in range(2):
-                    p[v, end, axis] = own[3 * end, axis]
-                    tangents[v, end, axis] = (own[2 * end + 1, axis] - own[2 * end, axis]) * factor
-        count = add_piece(
-            pieces, count, (row[CONTOUR], s, s + 1, int(degrees[s] > 1), 0, ONLY), p, places, tangents, 0.0
-        )
-    return count

@@ -29,13 +29,16 @@ SHORT = 0.01
 MOST_PASSES = 200
 """Passes of variant 2 before a curve counts as lost."""
 
+SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 8, 4 / 3
+"""Lengths between which the end handles of an arc are kept, in chords of their end: shorter ones end in a spike of
+curvature."""
 
 HELD, FREE, TIED = 0, 1, 2
-"""What the tangent at an end may do: see :class:`.stretches.Stretches`."""
+"""What the tangent at an end may do: see :class:`.feet.Samples`."""
 
 
 class Curve(NamedTuple):
-    """A cubic spline of k spans and its vertices in K masters, in arrays that have room for more.
+    """A cubic spline of k spans and its vertices in K masters, in arrays for ``room`` - 1 spans.
 
     Attributes:
         size: (2,) k, and whether the curve is closed.
@@ -63,7 +66,7 @@ class Curve(NamedTuple):
 
 @compiled
 def empty_curve(masters: int, most: int, closed: int) -> Curve:
-    """Room for a curve of up to ``most`` spans."""
+    """Arrays for a curve of up to ``most`` spans."""
     size, room = np.zeros(2, dtype=np.int64), most + 1
     size[1] = closed
     return Curve(
@@ -75,33 +78,12 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
 
 @compiled
 def copy_curve(source: Curve, target: Curve) -> None:
-    """Copy all that belongs to a curve into another one's arrays."""
-    k = source.size[0]
-    target.size[0], target.size[1] = k, source.size[1]
-    for i in range(k + 4):
-        target.h[i] = source.h[i]
-    for i in range(k + 1):
-        target.t[i] = source.t[i]
-        target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
-    for s in range(k):
-        for r in range(4):
-            for c in range(4):
-                target.W[s, r, c] = source.W[s, r, c]
-    for v in range(len(source.p)):
-        for axis in range(2):
-            for i in range(k + 3):
-                target.X[v, i, axis] = source.X[v, i, axis]
-            for i in range(k + 1):
-                target.p[v, i, axis] = source.p[v, i, axis]
-        for s in range(k):
-            for r in range(4):
-                target.b[v, s, r, 0], target.b[v, s, r, 1] = source.b[v, s, r, 0], source.b[v, s, r, 1]
-
-
-@compiled
-def inner_vertices(curve: Curve) -> tuple[int, int]:
-    """The first vertex that is free to move, and the one after the last."""
-    return (0 if curve.size[1] else 1), curve.size[0]
+    """Copy what is in use of a curve into the arrays of another one of the same kind."""
+    k = target.size[0] = source.size[0]
+    target.h[: k + 4], target.t[: k + 1] = source.h[: k + 4], source.t[: k + 1]
+    target.bounds[: k + 1] = source.bounds[: k + 1]
+    target.W[:k], target.b[:, :k] = source.W[:k], source.b[:, :k]
+    target.X[:, : k + 3], target.p[:, : k + 1] = source.X[:, : k + 3], source.p[:, : k + 1]
 
 
 @compiled
@@ -121,15 +103,13 @@ def set_handles(curve: Curve, tangents: FloatArray) -> None:
     if curve.size[1]:
         return
     first, last = chord(p, 0, 1) / 3, chord(p, k - 1, k) / 3
-    for v in range(len(p)):
-        for axis in range(2):
-            X[v, 0, axis], X[v, 1, axis] = p[v, 0, axis], p[v, 0, axis] + first * tangents[v, 0, axis]
-            X[v, k + 1, axis], X[v, k + 2, axis] = p[v, k, axis] - last * tangents[v, 1, axis], p[v, k, axis]
+    X[:, 0], X[:, k + 2] = p[:, 0], p[:, k]
+    X[:, 1], X[:, k + 1] = p[:, 0] + first * tangents[:, 0], p[:, k] - last * tangents[:, 1]
 
 
 @compiled
 def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
-    """Make the handles of tied ends the directions (K, 2, 2) times one number."""
+    """Make the handles of tied ends the directions (K, 2, 2) times one number; ``free``: see :class:`.feet.Samples`."""
     k, X = curve.size[0], curve.X
     for end in range(2):
         if curve.size[1] or free[end] != TIED:
@@ -146,18 +126,6 @@ def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
 
 
 @compiled
-def end_tangents(curve: Curve, tangents: FloatArray) -> None:
-    """The end tangents (K, 2, 2) of an arc, derivatives by chord length; those of a closed curve stay as they are."""
-    k, X, h = curve.size[0], curve.X, curve.h
-    if curve.size[1]:
-        return
-    for v in range(len(X)):
-        for axis in range(2):
-            tangents[v, 0, axis] = 3 * (X[v, 1, axis] - X[v, 0, axis]) / h[2]
-            tangents[v, 1, axis] = 3 * (X[v, k + 2, axis] - X[v, k + 1, axis]) / h[k + 1]
-
-
-@compiled
 def set_knots(curve: Curve) -> bool:
     """Knot intervals from the chords, and the Bézier weights; False if a chord has no length."""
     k, closed, p, h = curve.size[0], curve.size[1], curve.p, curve.h
@@ -166,8 +134,10 @@ def set_knots(curve: Curve) -> bool:
         e = s + 1 if s + 1 < k or not closed else 0
         h[s + 2] = chord(p, s, e)
         least = min(least, h[s + 2])
-    for n in range(2):
-        h[n], h[k + 2 + n] = (h[k + n], h[2 + n]) if closed else (0.0, 0.0)
+    if closed:
+        h[:2], h[k + 2 : k + 4] = h[k : k + 2], h[2:4]
+    else:
+        h[:2], h[k + 2 : k + 4] = 0.0, 0.0
     for s in range(k):
         span_weights(h, s, curve.W[s])
     return least > 0.0
@@ -180,9 +150,7 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
     before, own, after = h0 + h1 + h2, h1 + h2 + h3, h2 + h3 + h4
     low, high = h2 / (h1 + h2), h2 / (h2 + h3)
     a, c, d, e = h1 / own, (h1 + h2) / own, (h0 + h1) / before, h2 / after
-    for r in range(4):
-        for j in range(4):
-            W[r, j] = 0.0
+    W[:] = 0.0
     W[0, 0], W[0, 1], W[0, 2] = low * (1 - d), low * d + (1 - low) * (1 - a), (1 - low) * a
     W[1, 1], W[1, 2] = 1 - a, a
     W[2, 1], W[2, 2] = 1 - c, c
@@ -190,51 +158,24 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
 
 
 @compiled
-def set_beziers(curve: Curve) -> None:
-    """The Bézier points of all spans."""
-    k, W = curve.size[0], curve.W
-    for v in range(len(curve.X)):
-        X, b = curve.X[v], curve.b[v]
-        if curve.size[1]:
-            for axis in range(2):
-                X[0, axis], X[k + 1, axis], X[k + 2, axis] = X[k, axis], X[1, axis], X[2, axis]
-        for s in range(k):
-            for r in range(4):
-                for axis in range(2):
-                    total = W[s, r, 0] * X[s, axis] + W[s, r, 1] * X[s + 1, axis]
-                    b[s, r, axis] = total + W[s, r, 2] * X[s + 2, axis] + W[s, r, 3] * X[s + 3, axis]
-
-
-@compiled
-def cold_start(curve: Curve, margin: float) -> None:
-    """The vertices as control points, the intervals of Lemma 2, and footpoints at the knots where these allow it."""
-    k, closed, (first, stop) = curve.size[0], curve.size[1], inner_vertices(curve)
-    before, after = np.empty(4), np.empty(4)
-    for i in range(first, stop):
-        for v in range(len(curve.p)):
-            curve.X[v, i + 1, 0], curve.X[v, i + 1, 1] = curve.p[v, i, 0], curve.p[v, i, 1]
-        last = i - 1 if i > 0 else k - 1
-        for r in range(4):
-            before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
-        c = margin
-        if not closed and near_end(i, k + 1):
-            add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)
-            c = margin_at(i, k + 1, margin)
-        low, high, _, _ = one_interval(before, after, c, 1.0)
-        curve.bounds[i, 0], curve.bounds[i, 1] = low, high
-        curve.t[i] = min(max(0.0, low), high)
-
-
-@compiled
 def iterate(curve: Curve, tolerance: float, most: int) -> float:
     """Variant 2 (Algorithm 2) from the control points at hand, for at most so many passes; the largest error left."""
-    first, stop = inner_vertices(curve)
-    X, e, masters = curve.X, curve.e, len(curve.X)
+    k, closed, X, e, masters = curve.size[0], curve.size[1], curve.X, curve.e, len(curve.X)
     error = 0.0
-    for _ in range(most):
-        set_beziers(curve)
+    for n in range(most + 1):
+        for v in range(masters):
+            W, b, own = curve.W, curve.b[v], X[v]
+            if closed:
+                own[0], own[k + 1], own[k + 2] = own[k], own[1], own[2]
+            for s in range(k):
+                for r in range(4):
+                    for axis in range(2):
+                        total = W[s, r, 0] * own[s, axis] + W[s, r, 1] * own[s + 1, axis]
+                        b[s, r, axis] = total + W[s, r, 2] * own[s + 2, axis] + W[s, r, 3] * own[s + 3, axis]
+        if n == most:
+            break
         error = 0.0
-        for i in range(first, stop):
+        for i in range(1 - closed, k):
             find_footpoint(curve, i)
             square = 0.0
             for v in range(masters):
@@ -244,11 +185,9 @@ def iterate(curve: Curve, tolerance: float, most: int) -> float:
         if error < tolerance or not error < 1e9:
             break
         for v in range(masters):
-            for i in range(first, stop):
+            for i in range(1 - closed, k):
                 X[v, i + 1, 0] += e[v, i, 0]
                 X[v, i + 1, 1] += e[v, i, 1]
-    else:
-        set_beziers(curve)
     return error
 
 
@@ -287,8 +226,22 @@ def find_footpoint(curve: Curve, i: int) -> None:
 
 @compiled
 def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
-    """Variant 2 from the vertices, as the interpolation runs it; the largest error left, infinite without a curve."""
+    """Variant 2 from the vertices, as the interpolation runs it; the largest error left, infinite without a curve.
+
+    It begins from the vertices as control points, and from footpoints at the knots where Lemma 2 allows them.
+    """
     if not set_knots(curve):
         return np.inf
-    cold_start(curve, margin)
+    k, closed = curve.size[0], curve.size[1]
+    before, after = np.empty(4), np.empty(4)
+    for i in range(1 - closed, k):
+        curve.X[:, i + 1] = curve.p[:, i]
+        before[:], after[:] = curve.W[i - 1 if i > 0 else k - 1, :, 2], curve.W[i, :, 1]
+        c = margin
+        if not closed and near_end(i, k + 1):
+            add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)
+            c = margin_at(i, k + 1, margin)
+        low, high, _, _ = one_interval(before, after, c, 1.0)
+        curve.bounds[i, 0], curve.bounds[i, 1] = low, high
+        curve.t[i] = min(max(0.0, low), high)
     return iterate(curve, tolerance, MOST_PASSES)

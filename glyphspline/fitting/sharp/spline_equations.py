@@ -18,9 +18,10 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, length
-from ...types import FloatArray, IntArray
-from .feet import EXTRA, Rows, Samples, empty_rows, rows_of
-from .spline_curve import FREE, TIED, Curve, empty_curve, inner_vertices, span_weights
+from ...types import BoolArray, FloatArray, IntArray
+from .feet import EXTRA, Rows, Samples, empty_rows
+from .settings import Settings
+from .spline_curve import FREE, TIED, Curve, empty_curve, span_weights
 
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
@@ -31,48 +32,61 @@ RATIO_ROOM = 0.85
 BAND = 8
 """Unknowns that meet in one equation: those of four slots."""
 
-
 MOST_KNOTS = 4.0
 """A knot moves at most this many times as far as its vertex in a master: chords of one may vanish."""
 
 
 class Fit(NamedTuple):
-    """Scratch arrays of a fit, for curves of up to ``room`` spans.
+    """The search for the spline of a stretch: all that it works on, in arrays for curves of up to ``room`` spans.
 
     Attributes:
-        curve, trial: the curve so far, and the one tried. rows, tried: of both. best: the best curve so far.
+        samples: of the stretch. near: how near all of them have to be.
+        curve, trial: the curve so far, and one step further. rows, tried: of both.
+        best: the curve with the fewest spans that passed.
+        goals: (room + 1,) integrals of the density up to vertices that are fixed on the outline.
+        costs: (room + 1,) what taking out each vertex of ``best`` is estimated to cost; left: which ones are still to
+            be tried.
         frames: (K, room + 1, 4) normal and tangent of each vertex at its footpoint.
-        moves: (K, room, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
-            slots: across and along the curve; along, a vertex takes its knot with it.
-        gram: (K, room, 9, 8) equations of each span.
+        moves: (K, room + 1, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its
+            four slots: across and along the curve; along, a vertex takes its knot with it.
+        gram: (K, room + 1, 9, 8) equations of each span.
         A: the equations of one master. first: (2 room + 2,) where each of its rows begins. step: (K, 2 room + 2).
+        place: (room + 3,) which of the slots that move each slot i is, in entry i + 1; -1 if it does not move.
         longer: (K, 2) by how much the handles of tied ends become longer; NaN while that is open.
     """
 
+    samples: Samples
+    near: float
+    settings: Settings
     curve: Curve
     trial: Curve
     best: Curve
     rows: Rows
     tried: Rows
+    goals: FloatArray
+    costs: FloatArray
+    left: BoolArray
     frames: FloatArray
     moves: FloatArray
     gram: FloatArray
     A: FloatArray
     step: FloatArray
     first: IntArray
+    place: IntArray
     longer: FloatArray
 
 
 @compiled
-def empty_fit(masters: int, samples: int, spans: int, closed: int) -> Fit:
-    """Scratch arrays for a stretch of so many samples and curves of up to so many spans."""
-    slots = spans + 1
+def empty_fit(samples: Samples, near: float, settings: Settings, spans: int, closed: int) -> Fit:
+    """A search for curves of up to ``spans`` spans."""
+    masters, n, slots = len(samples.Q), len(samples.places), spans + 1
     return Fit(
+        samples, near, settings,
         empty_curve(masters, spans, closed), empty_curve(masters, spans, closed), empty_curve(masters, spans, closed),
-        empty_rows(masters, samples), empty_rows(masters, samples),
+        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots), np.empty(slots), np.empty(slots, np.bool_),
         np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
         np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
-        np.full((masters, 2), np.nan),
+        np.empty(slots + 2, dtype=np.int64), np.full((masters, 2), np.nan),
     )  # fmt: skip
 
 
@@ -84,11 +98,10 @@ def differentiate(fit: Fit) -> None:
     """
     curve = fit.curve
     k, closed, h = curve.size[0], curve.size[1], curve.h
-    first, stop = inner_vertices(curve)
     for v in range(len(curve.X)):
         X, frames, moves = curve.X[v], fit.frames[v], fit.moves[v]
         for i in range(k + 1 - closed):
-            if i < first or i >= stop:
+            if i in (0, k) and not closed:
                 tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
                 dx, dy = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
             else:
@@ -105,7 +118,7 @@ def differentiate(fit: Fit) -> None:
                         moves[s, 2 * r + axis, 2 * c] = curve.W[s, r, c] * frames[i, axis] if exists else 0.0
                         moves[s, 2 * r + axis, 2 * c + 1] = curve.W[s, r, c] * frames[i, 2 + axis] if exists else 0.0
     W, share = np.empty((4, 4)), np.empty(len(curve.X))
-    for i in range(first, stop):
+    for i in range(1 - closed, k):
         delta = 1e-4 * min(h[i + 1], h[i + 2])
         for v in range(len(share)):
             share[v] = knots_per_step(curve, v, i)
@@ -139,12 +152,11 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
 @compiled
 def shift_knot(curve: Curve, i: int, delta: float) -> None:
     """Move knot i of the intervals, and of their repetition around a closed curve."""
-    k, closed, h = curve.size[0], curve.size[1], curve.h
-    for s, change in ((i - 1, delta), (i, -delta)):
-        for lap in range(-1, 2):
-            n = s + 2 + lap * k
-            if lap == 0 or (closed and 0 <= n < k + 4):
-                h[n] += change
+    k, h = curve.size[0], curve.h
+    h[(i - 1) % k + 2] += delta
+    h[i + 2] -= delta
+    if curve.size[1]:
+        h[:2], h[k + 2 : k + 4] = h[k : k + 2], h[2:4]
 
 
 @compiled
@@ -152,8 +164,7 @@ def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
     """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny); of the matrix its lower half."""
-    for u in range(8):
-        J[u] = 0.0
+    J[:] = 0.0
     for r in range(4):
         x, y = B[r] * nx, B[r] * ny
         for u in range(8):
@@ -167,44 +178,33 @@ def _add_row(
 
 
 @compiled
-def add_all(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
+def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
     """The equations of all rows by spans, in units of ``scale``: matrices (8, 8), and right sides in their row 8."""
+    rows, k, B, J = fit.rows, fit.curve.size[0], np.empty(4), np.empty(8)
     for v in range(len(fit.gram)):
-        _add_master(fit, v, scale, minimax, wobble)
-
-
-@compiled
-def _add_master(fit: Fit, v: int, scale: float, minimax: bool, wobble: float) -> None:
-    """The same of one master."""
-    curve, rows, gram, moves, b = fit.curve, rows_of(fit.rows, v), fit.gram[v], fit.moves[v], fit.curve.b[v]
-    k = curve.size[0]
-    for s in range(k):
-        for u in range(9):
-            for v in range(8):
-                gram[s, u, v] = 0.0
-    B, J = np.empty(4), np.empty(8)
-    for r in range(rows.used[0]):
-        x = rows.x[r]
-        y = 1 - x
-        B[0], B[1], B[2], B[3] = y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x
-        square = (rows.e[r] / scale) ** 2
-        weight = (2 * square + 0.02 if minimax else 1.0) / scale**2
-        s = rows.span[r] % k
-        _add_row(gram[s], J, moves[s], B, rows.nx[r], rows.ny[r], rows.e[r], weight)
-        if r < len(rows.slip):
-            square = (rows.lever[r] * rows.slip[r] / scale) ** 2
-            weight = (2 * square + 0.02 if minimax else 1.0) * (rows.lever[r] / scale) ** 2
-            _add_row(gram[s], J, moves[s], B, rows.ny[r], -rows.nx[r], rows.slip[r], weight)
-    if wobble > 0.0:
+        gram, moves, b, lever = fit.gram[v], fit.moves[v], fit.curve.b[v], rows.lever[v]
+        span, xs, e, nx, ny, slip = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v]
+        gram[:k] = 0.0
+        for r in range(rows.used[v, 0]):
+            s, x = span[r] % k, xs[r]
+            y = 1 - x
+            B[0], B[1], B[2], B[3] = y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x
+            square = (e[r] / scale) ** 2
+            weight = (2 * square + 0.02 if minimax else 1.0) / scale**2
+            _add_row(gram[s], J, moves[s], B, nx[r], ny[r], e[r], weight)
+            if r < len(slip):
+                square = (lever[r] * slip[r] / scale) ** 2
+                weight = (2 * square + 0.02 if minimax else 1.0) * (lever[r] / scale) ** 2
+                _add_row(gram[s], J, moves[s], B, ny[r], -nx[r], slip[r], weight)
         B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
         for s in range(k):
-            nx, ny = middle_normal(b[s])
-            wanted = -third_along(b, s, nx, ny)
-            _add_row(gram[s], J, moves[s], B, nx, ny, wanted, wobble / curve.h[s + 2] ** 5)
-    for s in range(k):
-        for u in range(8):
-            for v in range(u):
-                gram[s, v, u] = gram[s, u, v]
+            x, y = middle_normal(b[s])
+            wanted = -third_along(b, s, x, y)
+            _add_row(gram[s], J, moves[s], B, x, y, wanted, wobble / fit.curve.h[s + 2] ** 5)
+        for s in range(k):
+            for u in range(8):
+                for w in range(u):
+                    gram[s, w, u] = gram[s, u, w]
 
 
 @compiled
@@ -216,7 +216,11 @@ def ratio_excess(curve: Curve, s: int) -> float:
 
 @compiled
 def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: float) -> float:
-    """What a step has to lower: squares (``minimax``: fourth powers) of the distances, ratios and wobble."""
+    """What a step has to lower: squares (``minimax``: fourth powers) of the distances, ratios of chords and wobble.
+
+    Args:
+        scale: unit of the distances. wobble: weight of the integral of (dκ/ds)², as knots run by arc length.
+    """
     total = 0.0
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
@@ -225,24 +229,15 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
         for r in range(rows.slip.shape[1]):
             square = (rows.lever[v, r] * rows.slip[v, r] / scale) ** 2
             total += square * square + 0.02 * square if minimax else square
-    first, stop = inner_vertices(curve)
-    for s in range(first, stop):
+    for s in range(1 - curve.size[1], curve.size[0]):
         total += rows.e.size / (1 + EXTRA) * ratio_excess(curve, s) ** 2
-    if wobble > 0.0:
-        total += wobble * third_derivatives(curve)
-    return total
-
-
-@compiled
-def third_derivatives(curve: Curve) -> float:
-    """The integral of the squared third derivative across the curve: of (dκ/ds)², as knots run by arc length."""
-    total = 0.0
+    thirds = 0.0  # the integral of the squared third derivative across the curve
     for v in range(len(curve.b)):
         b = curve.b[v]
         for s in range(curve.size[0]):
             nx, ny = middle_normal(b[s])
-            total += third_along(b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
-    return total
+            thirds += third_along(b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
+    return total + wobble * thirds
 
 
 @compiled
@@ -263,60 +258,68 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
 
 
 @compiled
-def equations(fit: Fit, samples: Samples, v: int, damping: float, start: int, width: int) -> None:
-    """The equations in master v of one step of ``width`` slots from ``start`` on: of the rows, of ratios, damping."""
-    curve, A, g, first = fit.curve, fit.A, fit.step[v], fit.first
+def choose_slots(fit: Fit, i: int, reach: int) -> int:
+    """Let the slots move that are up to ``reach`` on either side of vertex i; their number."""
+    k, closed, place = fit.curve.size[0], fit.curve.size[1], fit.place
+    slots, width, start = k + 1 - closed, 2 * reach, 0
+    if width >= slots:
+        width = slots
+    else:
+        start = i - reach if closed else min(max(i - reach, 0), slots - width)
+    place[: k + 3] = -1
+    for n in range(width):
+        place[(start + n) % slots + 1] = n
+    if closed:
+        place[0], place[k + 1], place[k + 2] = place[k], place[1], place[2]
+    return width
+
+
+@compiled
+def equations(fit: Fit, v: int, damping: float, width: int) -> None:
+    """The equations in master v of one step of ``width`` slots: of the rows, of ratios, damping."""
+    curve, A, g, first, place = fit.curve, fit.A, fit.step[v], fit.first, fit.place
     k, closed = curve.size[0], curve.size[1]
     n = 2 * width
     for r in range(n):
         g[r], first[r] = 0.0, r
-        for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
-            A[r, c] = 0.0
+        A[r, 0 if closed and r >= n - BAND else max(r - BAND, 0) : r + 1] = 0.0
     index = np.empty(8, dtype=np.int64)
     for s in range(k):
         for c in range(4):
-            place = place_of(s - 1 + c, start, width, k, closed)
-            index[2 * c], index[2 * c + 1] = 2 * place, 2 * place + 1
+            index[2 * c], index[2 * c + 1] = 2 * place[s + c], 2 * place[s + c] + 1
         _scatter(fit, v, index, fit.gram[v, s], 8)
-    _hold_ratios(fit, v, len(samples.places), start, width)
+    _hold_ratios(fit, v)
     mean = 0.0
     for r in range(n):
         mean += A[r, r] / n
     for r in range(n):
         A[r, r] += damping * mean * (1.0 if r % 2 else 0.01) + 1e-12 * mean
-    for i in (0, k):
-        if not closed and start <= i < start + width:
-            r = 2 * (i - start)
-            A[r, r] += damping * mean + (0.0 if samples.free[min(i, 1)] == FREE else 1e9 * max(mean, 1.0))
-            longer = fit.longer[v, min(i, 1)]
-            if not np.isnan(longer):
+    for end, i in ((0, 0), (1, k)):
+        r = 2 * place[i + 1]
+        if not closed and r >= 0:
+            A[r, r] += damping * mean + (0.0 if fit.samples.free[end] == FREE else 1e9 * max(mean, 1.0))
+            if not np.isnan(fit.longer[v, end]):
                 A[r + 1, r + 1] += 1e6 * max(mean, 1.0)
-                g[r + 1] += 1e6 * max(mean, 1.0) * longer
+                g[r + 1] += 1e6 * max(mean, 1.0) * fit.longer[v, end]
 
 
 @compiled
-def agree_on_handles(fit: Fit, samples: Samples, start: int, width: int) -> bool:
+def agree_on_handles(fit: Fit) -> bool:
     """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
-    k, closed, tied = fit.curve.size[0], fit.curve.size[1], False
+    samples, k, tied = fit.samples, fit.curve.size[0], False
     for end, i in ((0, 0), (1, k)):
-        if closed or samples.free[end] != TIED or not start <= i < start + width:
+        r = 2 * fit.place[i + 1]
+        if fit.curve.size[1] or samples.free[end] != TIED or r < 0:
             continue
         tied, along, whole = True, 0.0, 0.0
         for v in range(len(fit.step)):
             size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
-            along += fit.step[v, 2 * (i - start) + 1] * size
+            along += fit.step[v, r + 1] * size
             whole += size * size
         for v in range(len(fit.step)):
             size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
             fit.longer[v, end] = along / whole * size
     return tied
-
-
-@compiled
-def place_of(slot: int, start: int, width: int, k: int, closed: int) -> int:
-    """Where a slot stands among those that move; negative if it does not."""
-    place = (slot - start) % k if closed else slot - start
-    return place if 0 <= place < width and (closed or 0 <= slot <= k) else -1
 
 
 @compiled
@@ -336,20 +339,19 @@ def _scatter(fit: Fit, v: int, index: IntArray, gram: FloatArray, n: int) -> Non
 
 
 @compiled
-def _hold_ratios(fit: Fit, v: int, n: int, start: int, width: int) -> None:
-    """Equations that bring ratios of adjacent chords back to what is allowed; ``n`` is their weight."""
-    curve = fit.curve
+def _hold_ratios(fit: Fit, v: int) -> None:
+    """Equations that bring ratios of adjacent chords back to what is allowed; their weight is the number of samples."""
+    curve, n = fit.curve, len(fit.samples.places)
     k, closed, h = curve.size[0], curve.size[1], curve.h
-    first, stop = inner_vertices(curve)
     index, slope, gram = np.empty(3, dtype=np.int64), np.empty(3), np.empty((4, 3))
-    for s in range(first, stop):
+    for s in range(1 - closed, k):
         excess = ratio_excess(curve, s)
         if excess == 0.0:
             continue
         J = (1 / h[s + 1], -1 / h[s + 1] - 1 / h[s + 2], 1 / h[s + 2])
         for c in range(3):
             i = (s - 1 + c) % k if closed else s - 1 + c
-            place = place_of(i, start, width, k, closed) if first <= i < stop else -1
+            place = fit.place[s + c] if closed or 0 < i < k else -1
             index[c] = 2 * place + 1
             slope[c] = J[c] * knots_per_step(curve, v, i) if place >= 0 else J[c]
         for c in range(3):

@@ -2,6 +2,9 @@
 
 A first guess comes from the density of vertices that the curvature asks for. Spans that stay too far off are cut in
 two, vertices that seem unnecessary are taken out, and after every change the vertices move to where they serve best.
+
+After each step of these a few warm passes of variant 2 put the curve through the moved vertices again. What counts is a
+cold run from the vertices alone, as the interpolation that is written makes it.
 """
 
 from __future__ import annotations
@@ -9,226 +12,341 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import length
 from ...intrinsics import borrowed, keep_alive
-from ...types import FloatArray
-from ..ladders import Search
-from .cubic_fit import fit_cubic
-from .feet import Samples, find_places, measure_afresh
-from .laying import lay_on_outline, measure_laid
-from .pieces import Pieces, add_piece, add_pieces, empty_pieces, part, row_of, used
-from .spline_curve import FREE, end_tangents, hold_tied, interpolate_cold
-from .spline_equations import empty_fit
-from .spline_fit import improve
-from .stretches import Stretches, samples_of
-from .trial import (
-    Trial,
-    begin_from,
-    cheapest,
-    insert_vertices,
-    keep,
-    mark_tried,
-    mean_chord,
-    place_vertices,
-    remove_vertex,
-    slots_beside,
+from ..ladders import STARTS
+from .corners import Joints
+from .cubics import fit_cubic, limited, solve
+from .feet import copy_rows, find_places, measure, measure_afresh
+from .pieces import Pieces
+from .settings import Settings
+from .spline_curve import (
+    FREE,
+    LONGEST_HANDLE,
+    SHORTEST_HANDLE,
+    copy_curve,
+    hold_tied,
+    interpolate_cold,
+    iterate,
+    set_handles,
+    set_knots,
 )
+from .spline_equations import (
+    LARGEST_RATIO,
+    Fit,
+    add_rows,
+    agree_on_handles,
+    choose_slots,
+    differentiate,
+    empty_fit,
+    equations,
+    knots_per_step,
+    objective,
+)
+from .vertices import FAR, fix_on_outline, insert_vertices, keep, measure_fixed, place_vertices, resize, samples_between
+
+MOST_SPANS = 1000
+"""Spans of one spline at most: what needs more stays as the source has it."""
+
+SOME_MORE = 30.0
+"""A cubic that misses the tolerance by less than this factor is followed by a try with two spans: this saves 483
+segments with "fast"; without a limit 289 more, for 1.4 times the time."""
+
+PATIENCE = 12
+"""Insertions after a first guess from which on all spans that miss the tolerance are cut.
+
+On long stretches of fine detail very many miss it by little, and would get two or three vertices at a time. It saves 13
+of 35,142 segments.
+"""
+
+FEW = 3
+"""Insertions into a closed curve that may go round corners, before its vertices are fixed on the outline."""
+
+WARM_PASSES, WARM = 12, 0.02
+"""Passes of variant 2 after a step, and the share of the tolerance below which its error is small enough."""
+
+DAMPING = 1e-2
+"""Damping of the first step, as a share of the mean of the diagonal."""
+
+FAIRNESS = 1e-2
+"""Weight of the curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord."""
+
+MOST_SLIDE = 0.3
+"""A vertex moves along the curve by this share of its shorter chord at most."""
+
+FAILURES = 4
+"""Steps that fail in a row before a fit is given up."""
 
 
 @compiled
-def fit_splines(pieces: Pieces, stretches: Stretches, near: float, search: Search, given: bool) -> Pieces:
-    """The pieces with splines in the place of those that stretches are for; infinite errors where none was found.
+def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pieces: Pieces, q: int) -> None:
+    """Put one spline in the place of piece q, the last, of as few spans as the search finds.
+
+    The piece gets an infinite error if there is none.
 
     Args:
-        near: how near all samples have to be. given: begin from the pieces' own vertices and tangents.
+        near: how near all samples have to be. given: begin from the piece's own vertices and tangents.
     """
-    P, S, masters = len(pieces.where), len(stretches.piece), len(pieces.vertices)
-    room = len(pieces.places) + len(stretches.places) + S
-    found, count, s = empty_pieces(masters, P, room), 0, 0
-    for q in range(P):
-        if s == S or stretches.piece[s] != q:
-            count = add_pieces(found, count, part(pieces, q, q + 1))
-            continue
-        c, i, j, k, closed, choice = row_of(pieces, q)
-        samples = samples_of(stretches, s, closed)
-        n, tangents = len(samples.places), pieces.tangents[:, q].copy()
-        p, places = np.empty((masters, n + 1, 2)), np.empty(n + 1)
-        for r in range(k + 1 - closed):
-            at = pieces.starts[q] + r
-            places[r] = pieces.places[at]
-            for v in range(masters):
-                p[v, r, 0], p[v, r, 1] = pieces.vertices[v, at, 0], pieces.vertices[v, at, 1]
-        fit = empty_fit(masters, n, most_spans(samples, search, k if given else 0, closed), closed)
-        room = fit.curve.p.shape[1]
-        trial = Trial(samples, near, search, fit, np.empty(room), np.empty(room), np.empty(room, dtype=np.bool_))
-        missed = pieces.errors[q] if k == 1 else np.inf
-        k, error = find_spline(borrowed(trial), k if given else 0, missed, p, places, tangents)
-        keep_alive(trial)
-        count = add_piece(found, count, (c, i, j, max(k, 1), closed, choice), p, places, tangents, error)
-        s += 1
-    return used(found, count)
-
-
-@compiled
-def most_spans(samples: Samples, search: Search, given: int, closed: int) -> int:
-    """Spans for which a fit has room, begun with so many; 0 for a first guess."""
-    return min(
-        (8 if search.lays > 0 and closed else 2) * max(spans_wanted(samples, search), 4, given) + 16,
-        len(samples.places) - 1,
-    )
-
-
-@compiled
-def spans_wanted(samples: Samples, search: Search) -> int:
-    """Spans of a first guess, by the density of vertices."""
-    return int(np.rint(search.guess * min(samples.D[len(samples.D) - 1], float(len(samples.places)))))
-
-
-@compiled
-def find_spline(
-    trial: Trial, given: int, missed: float, p: FloatArray, places: FloatArray, tangents: FloatArray
-) -> tuple[int, float]:
-    """Fit one spline to a stretch, of as few spans as the search finds.
-
-    Args:
-        given: spans to begin with, whose vertices and tangents are in p and ``tangents``; 0 for a first guess.
-        missed: by how much a single cubic misses the samples.
-        p: (K, n + 1, 2) receives the vertices, and places: (n + 1,) theirs. tangents: (K, 2, 2) receives the end
-            tangents of an arc, derivatives by chord length.
-
-    Returns:
-        The number of spans and the largest distance of a sample; 0 and infinity if there is none.
-    """
-    samples, near, search, fit = trial.samples, trial.near, trial.search, trial.fit
-    closed, alone = fit.curve.size[1], len(samples.Q) == 1
-    if given == 1 and alone:
+    k, closed = pieces.spans[q], pieces.closed[q]
+    missed, begun = pieces.errors[q] if k == 1 else np.inf, k if given else 0
+    samples = samples_between(joints, pieces.joints[q, 0], pieces.joints[q, 1], closed)
+    alone, most = len(samples.Q) == 1, len(samples.places) - 1
+    if begun == 1 and alone:
+        free = (samples.free[0] == FREE, samples.free[1] == FREE)
         missed = fit_cubic(
-            samples.Q[0], samples.directions[0, 0], samples.free[0] == FREE, samples.directions[0, 1],
-            samples.free[1] == FREE, near, search.cubic_rounds, tangents[0, 0], tangents[0, 1],
-        )  # fmt: skip
+            samples.Q[0], samples.directions[0], free, near, settings.cubic_rounds, pieces.tangents[q, 0]
+        )
+        pieces.errors[q] = missed
         if missed <= near:
-            return 1, missed
-        given = 0
-    least, wanted = 4 if closed else (2 if alone else 1), spans_wanted(samples, search)
-    guess = 2 if not closed and missed < search.some_more * near else max(least, wanted)
-    if max(guess, given) > min(search.most, len(samples.places) - 1):
-        return 0, np.inf
-    if given > 0:
-        begin_from(fit.curve, given, p, tangents)
-    lays, laid = search.lays if closed else 0, 0
-    good = lays < 2 and grow(trial, given, guess, wanted, lays > 0)
-    if not good and lays > 0:
-        laid = lay_on_outline(trial)
-    if not good and laid == 0:
-        return 0, np.inf
-    if given == 0 and (laid == 0 or search.passes > 1):
-        remove_vertices(trial, least)
-    return take_result(trial, laid, p, places, tangents)
+            return
+        begun = 0
+    pieces.errors[q] = np.inf
+    wanted = int(np.rint(settings.guess * min(samples.D[-1], len(samples.places))))
+    least = 4 if closed else (2 if alone else 1)
+    guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
+    if max(guess, begun) > min(MOST_SPANS if settings.c2 else 1, most):
+        return
+    may_fix = settings.round_corners and closed > 0
+    owned = empty_fit(samples, near, settings, min((8 if may_fix else 2) * max(wanted, 4, begun) + 16, most), closed)
+    fit = borrowed(owned)
+    if begun > 0:
+        at, n = pieces.starts[q], begun + 1 - closed
+        fit.curve.size[0] = begun
+        for v in range(len(samples.Q)):
+            fit.curve.p[v, :n] = pieces.vertices[at : at + n, v]
+        set_handles(fit.curve, pieces.tangents[q])
+    good, fixed = grow(fit, begun, guess, wanted, may_fix), 0
+    if not good and may_fix:
+        fixed = fix_on_outline(fit)
+    if good or fixed > 0:
+        if begun == 0 and (good or settings.passes > 1):
+            remove_vertices(fit, least)
+        write_best(fit, fixed, pieces, q)
+    keep_alive(owned)
 
 
 @compiled
-def grow(trial: Trial, given: int, guess: int, wanted: int, lays: bool) -> bool:
+def write_best(fit: Fit, fixed: int, pieces: Pieces, q: int) -> None:
+    """Write the best curve into piece q, the last; ``fixed``: the vertices of a curve that has them on the outline."""
+    best, k, closed, at = fit.best, fit.best.size[0], fit.best.size[1], pieces.starts[q]
+    n = k + 1 - closed
+    pieces.errors[q] = measure_fixed(fit, best) if k == fixed else measure_afresh(fit.samples, best, fit.near, fit.rows)
+    pieces.spans[q], pieces.starts[q + 1] = k, at + n
+    find_places(fit.samples, best, fit.rows, pieces.places[at : at + n])
+    for v in range(len(best.p)):
+        pieces.vertices[at : at + n, v] = best.p[v, :n]
+        if not closed:
+            X, tangents = best.X[v], pieces.tangents[q, v]
+            for axis in range(2):
+                tangents[0, axis] = 3 * (X[1, axis] - X[0, axis]) / best.h[2]
+                tangents[1, axis] = 3 * (X[k + 2, axis] - X[k + 1, axis]) / best.h[k + 1]
+
+
+@compiled
+def grow(fit: Fit, begun: int, guess: int, wanted: int, may_fix: bool) -> bool:
     """Move the vertices, and add more where they miss the tolerance, until a curve passes; whether one does.
 
     Args:
-        given: spans of the curve to begin with; 0 to begin with ``guess`` spans, and then with more.
-        wanted: spans by the density. lays: give up soon, as vertices can be laid on the outline.
+        begun: spans of the curve to begin with; 0 to begin with ``guess`` spans, and then with more.
+        wanted: spans by the density. may_fix: give up soon, as vertices can be fixed on the outline.
     """
-    fit, search, near = trial.fit, trial.search, trial.near
+    settings, near = fit.settings, fit.near
     last = np.inf
-    for start in range(1 if given > 0 or lays else search.starts):
+    for start in range(1 if begun > 0 or may_fix else STARTS):
         if start > 0:
             guess = max(wanted, guess + 2) + start - 1
-        possible = given > 0 or place_vertices(fit.curve, trial.samples, guess)
+        possible = begun > 0 or place_vertices(fit, guess)
         slow = insertions = 0
         while possible:
             k = fit.curve.size[0]
-            error = move(trial, search.rounds, k, k)
+            error = move(fit, settings.rounds, k, k)
             if error <= near:
-                keep(trial)
+                keep(fit)
                 return True
-            if lays and (error > search.far * near or insertions >= search.few):
+            if may_fix and (error > FAR * near or insertions >= FEW):
                 return False
             slow = slow + 1 if error > 4 * near and error > 0.7 * last else 0
             last = error
             if error == np.inf or slow == 3:
                 break
             insertions += 1
-            possible = insert_vertices(fit, near, search.growth if insertions <= search.patience else np.inf)
+            possible = insert_vertices(fit, settings.growth if insertions <= PATIENCE else np.inf)
         if not possible:
             last = np.inf
     return False
 
 
 @compiled
-def move(trial: Trial, rounds: int, i: int, reach: int) -> float:
+def move(fit: Fit, rounds: int, i: int, reach: int) -> float:
     """Interpolate the vertices, and move those up to ``reach`` on either side of vertex i, in ``rounds`` steps at most.
 
     Returns:
-        The largest distance of a sample: see :func:`.spline_fit.improve`.
+        The largest distance of a sample: see :func:`improve`.
     """
-    fit, samples, search = trial.fit, trial.samples, trial.search
-    hold_tied(fit.curve, samples.directions, samples.free)
-    if not interpolate_cold(fit.curve, search.margin, search.residual) < np.inf:
+    curve, settings = fit.curve, fit.settings
+    hold_tied(curve, fit.samples.directions, fit.samples.free)
+    if not interpolate_cold(curve, settings.margin, settings.residual) < np.inf:
         return np.inf
-    if fit.curve.size[0] <= 3:
-        rounds = search.few_rounds
-    start, width = slots_beside(fit.curve, i, reach)
-    wobble = search.fairness * mean_chord(fit.curve) ** 3
-    return improve(fit, samples, trial.near, search.margin, search.residual, rounds, start, width, wobble)
+    return improve(fit, settings.few_rounds if curve.size[0] <= 3 else rounds, choose_slots(fit, i, reach))
 
 
 @compiled
-def remove_vertices(trial: Trial, least: int) -> None:
+def remove_vertices(fit: Fit, least: int) -> None:
     """Take vertices out of the best curve, the cheapest first, as long as what is left passes.
 
-    After a pass that took any out another one follows. Where none can be taken out, a new guess has one less.
+    In a pass a share of them is tried, each once. After a pass that took any out another one follows. Where none can be
+    taken out, a new guess has one less.
     """
-    fit, search = trial.fit, trial.search
-    best = fit.best
-    for n in range(search.passes):
-        if best.size[0] <= least:
-            return
-        before = best.size[0]
-        if remove_cheapest(trial, least):
-            if best.size[0] <= least or n == search.passes - 1:
-                return
-            if best.size[0] < before:
-                continue
+    curve, best, costs, left, settings = fit.curve, fit.best, fit.costs, fit.left, fit.settings
+    for n in range(settings.passes):
+        before, tried = best.size[0], 0
+        most = max(int(np.ceil(settings.removals * before)), 1)
+        left[:] = True
+        while tried < most and best.size[0] > least:
+            k, i = best.size[0], -1
+            for j in range(1 - best.size[1], k):
+                if left[j] and costs[j] <= settings.dear * fit.near and (i < 0 or costs[j] < costs[i]):
+                    i = j
+            if i < 0:
+                break
+            tried += 1
+            curve.p[:, :i], curve.p[:, i : k - 1] = best.p[:, :i], best.p[:, i + 1 : k]
+            resize(curve, best, k - 1)
+            left[i] = False
+            if move(fit, settings.removal_rounds, i, settings.reach) <= fit.near:
+                keep(fit)
+                for j in range(i, k - 1):
+                    left[j] = left[j + 1]
         k = best.size[0] - 1
-        if not place_vertices(fit.curve, trial.samples, k) or not move(trial, search.rounds, k, k) <= trial.near:
+        if k < least or (tried > 0 and n == settings.passes - 1):
             return
-        keep(trial)
+        if tried == 0 or k + 1 == before:
+            if not place_vertices(fit, k) or not move(fit, settings.rounds, k, k) <= fit.near:
+                return
+            keep(fit)
 
 
 @compiled
-def remove_cheapest(trial: Trial, least: int) -> bool:
-    """One pass: try to take out a share of the vertices, each of them once; False if all are too dear to be tried."""
-    fit, search, tried = trial.fit, trial.search, trial.tried
-    curve, best = fit.curve, fit.best
-    tried[:] = False
-    for n in range(max(int(np.ceil(search.removals * best.size[0])), 1)):
-        i = cheapest(best, trial.costs, tried, search.dear * trial.near)
-        if i < 0:
-            return n > 0
-        remove_vertex(curve, best, i)
-        good = move(trial, search.removal_rounds, i, search.reach) <= trial.near
-        if good:
-            keep(trial)
-        mark_tried(tried, i, good, best.size[0])
-        if best.size[0] <= least:
+def improve(fit: Fit, rounds: int, width: int) -> float:
+    """Move those slots of ``fit.curve`` that are chosen until all rows are near enough on a cold run of variant 2.
+
+    Args:
+        rounds: most steps. width: the number of slots.
+
+    Returns:
+        The largest distance of a cold run that passed, of which ``fit.curve`` and ``fit.rows`` are then; else the least
+        one seen, of a warm run.
+    """
+    samples, near, margin, residual = fit.samples, fit.near, fit.settings.margin, fit.settings.residual
+    curve, trial, rows, tried = fit.curve, fit.trial, fit.rows, fit.tried
+    error, k = measure_afresh(samples, curve, near, rows), curve.size[0]
+    wobble = 0.0
+    for s in range(k):
+        wobble += curve.h[s + 2]
+    wobble = FAIRNESS * (wobble / k) ** 3
+    damping, failures = DAMPING, 0
+    for n in range(rounds + 1):
+        graded = error <= near
+        for s in range(1 - curve.size[1], k if graded else 0):
+            a, b = curve.h[s + 1], curve.h[s + 2]
+            graded = graded and a <= LARGEST_RATIO * b and b <= LARGEST_RATIO * a
+        if graded:
+            copy_curve(curve, trial)
+            if interpolate_cold(trial, margin, residual) < residual:
+                copy_curve(trial, curve)
+                error = measure_afresh(samples, curve, near, rows)
+                if error <= near:
+                    return error
+        if n == rounds:
             break
+        minimax = n >= 2
+        differentiate(fit)
+        add_rows(fit, error, minimax, wobble)
+        old = objective(curve, rows, error, minimax, wobble)
+        while True:
+            agreed = tied = True
+            while agreed:
+                for v in range(len(fit.step)):
+                    equations(fit, v, damping, width)
+                    solve(fit.A, fit.step[v], fit.first, 2 * width)
+                agreed = tied and agree_on_handles(fit)
+                tied = False
+            fit.longer[:] = np.nan
+            better = False
+            if _advance(fit, 0.5 if minimax else 1.0):
+                iterate(trial, WARM * near, WARM_PASSES)
+                new = measure(samples, trial, near, rows, tried)
+                better = objective(trial, tried, error, minimax, wobble) < old
+            if better:
+                break
+            failures += 1
+            damping *= 10
+            if failures >= FAILURES:
+                return max(error, np.nextafter(near, np.inf))
+        failures, damping = 0, damping / 4
+        copy_curve(trial, curve)
+        copy_rows(tried, rows)
+        error = new
+    return max(error, np.nextafter(near, np.inf))
+
+
+@compiled
+def _advance(fit: Fit, share: float) -> bool:
+    """The trial: the curve with vertices, knots and control points moved by a share of the step.
+
+    A vertex moves across the curve as the curve does at its footpoint. False if chords vanish.
+    """
+    curve, trial = fit.curve, fit.trial
+    copy_curve(curve, trial)
+    k, closed, h = curve.size[0], curve.size[1], curve.h
+    for v in range(len(fit.step)):
+        X, p, step, frames = trial.X[v], trial.p[v], fit.step[v], fit.frames[v]
+        for i in range(k + 1 - closed):
+            r = 2 * fit.place[i + 1]
+            if r < 0:
+                continue
+            nu, sigma = share * step[r], share * step[r + 1]
+            if closed or 0 < i < k:
+                most = MOST_SLIDE * min(h[i + 1], h[i + 2]) / knots_per_step(curve, v, i)
+                sigma = min(max(sigma, -most), most)
+            step[r], step[r + 1] = nu, sigma
+            for axis in range(2):
+                X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
+        for i in range(1 - closed, k):
+            r = 2 * fit.place[i + 1]
+            across, along = _change_across(fit, v, i), step[r + 1] if r >= 0 else 0.0
+            for axis in range(2):
+                p[i, axis] += across * frames[i, axis] + along * frames[i, 2 + axis]
+    if not set_knots(trial):
+        return False
+    for v in range(0 if closed else len(fit.step)):
+        p, X, old = trial.p[v], trial.X[v], curve.X[v]
+        for end, tip, i in ((0, 1, 0), (k + 2, k + 1, k - 1)):
+            own = length(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
+            if own > 0.0:
+                x, y, size = limited(
+                    old[tip, 0] - old[end, 0], old[tip, 1] - old[end, 1], X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1],
+                    SHORTEST_HANDLE * own, LONGEST_HANDLE * own,
+                )  # fmt: skip
+                X[tip, 0], X[tip, 1] = X[end, 0] + x * size, X[end, 1] + y * size
+    hold_tied(trial, fit.samples.directions, fit.samples.free)
     return True
 
 
 @compiled
-def take_result(trial: Trial, laid: int, p: FloatArray, places: FloatArray, tangents: FloatArray) -> tuple[int, float]:
-    """Write the best curve, of which ``laid`` vertices are laid; arguments and result as of :func:`find_spline`."""
-    samples, fit, best = trial.samples, trial.fit, trial.fit.best
-    k = best.size[0]
-    error = measure_laid(trial, best) if k == laid else measure_afresh(samples, best, trial.near, fit.rows)
-    find_places(samples, best, fit.rows, places)
-    for v in range(len(p)):
-        for i in range(k + 1 - best.size[1]):
-            p[v, i, 0], p[v, i, 1] = best.p[v, i, 0], best.p[v, i, 1]
-    end_tangents(best, tangents)
-    return k, error
+def _change_across(fit: Fit, v: int, i: int) -> float:
+    """How far a step moves the curve across itself at the footpoint of vertex i in master v."""
+    curve, moves, step, frames = fit.curve, fit.moves[v], fit.step[v], fit.frames[v]
+    s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % curve.size[0], curve.t[i] + 1)
+    y = 1 - x
+    nx, ny = frames[i, 0], frames[i, 1]
+    across = 0.0
+    for c in range(4):
+        r = 2 * fit.place[s + c]
+        for u in range(2 if r >= 0 else 0):
+            m, column = moves[s], 2 * c + u
+            for axis, normal in ((0, nx), (1, ny)):
+                d = y * y * (y * m[axis, column] + 3 * x * m[2 + axis, column])
+                d += x * x * (3 * y * m[4 + axis, column] + x * m[6 + axis, column])
+                across += step[r + u] * d * normal
+    return across

@@ -1,0 +1,60 @@
+"""How contours are cut and fitted in the sharp mode."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """How contours are cut and fitted.
+
+    Attributes:
+        near: how near samples have to be. angle: turn in radians from which a joint is a corner.
+        line: length from which lines stay lines.
+        c2: whether one spline runs between hard joints; or else cubics.
+        round_corners: whether closed curves go round corners: vertices that do not get near enough by moving are then
+            fixed on the outline.
+        margin, residual: of the interpolation.
+        chain_rounds: most Gauss-Newton steps of a cubic among others. stride: these end at corners and at every so many
+            joints. cubic_rounds: most steps of a cubic by itself.
+        rounds: most steps of a spline's first guess. few_rounds: of one with up to three spans.
+        guess: spans of the first guess, as a share of what the density asks for.
+        growth: power of a span's error with which vertices are added.
+        removals: share of the vertices that are tried to take out in a pass. passes: of removal.
+        dear: estimated cost of a vertex, in tolerances, from which it is not tried.
+        removal_rounds: most steps after a removal. reach: vertices on either side of it that move.
+    """
+
+    near: float
+    angle: float
+    line: float
+    c2: bool
+    round_corners: bool
+    margin: float
+    residual: float
+    chain_rounds: int
+    stride: int
+    cubic_rounds: int
+    rounds: int
+    few_rounds: int
+    guess: float
+    growth: float
+    removals: float
+    passes: int
+    dear: float
+    removal_rounds: int
+    reach: int
+
+
+EFFORTS = {
+    "fast": partial(
+        Settings, chain_rounds=4, stride=2, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
+        removals=0.3, passes=1, dear=0.5, removal_rounds=2, reach=3,
+    ),
+    "best": partial(
+        Settings, chain_rounds=6, stride=1, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
+        removals=0.7, passes=2, dear=1.5, removal_rounds=8, reach=4,
+    ),
+}  # fmt: skip
+"""The settings of each effort, but for what the options say."""
