@@ -110,8 +110,8 @@ def farthest_joint(joints: FloatArray) -> int:
 
 
 @compiled
-def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
-    """A closed chain of cubics (m, 4, 2) in the direction in which it is fitted, and whether it was reversed.
+def is_backward(cubics: FloatArray) -> bool:
+    """Whether a closed chain of cubics (m, 4, 2) runs against the direction in which it is fitted.
 
     The sign of a sum over the segments' chords decides. It changes with the direction, but not with the start point,
     nor with shift, rotation or reflection of the contour: the fit does not depend on how the font stores it.
@@ -123,12 +123,4 @@ def directed(cubics: FloatArray) -> tuple[FloatArray, bool]:
         after = np.hypot(cubics[k, 3, 0] - cubics[k, 0, 0], cubics[k, 3, 1] - cubics[k, 0, 1])
         total += before * after * (before - after)
         before = after
-    if not total < 0:
-        return cubics, False
-    return cubics[::-1, ::-1].copy(), True
-
-
-@compiled
-def begun_at(cubics: FloatArray, first: int) -> FloatArray:
-    """A closed chain of cubics (m, 4, 2) from joint ``first`` on."""
-    return np.concatenate((cubics[first:], cubics[:first]))
+    return total < 0

@@ -16,7 +16,7 @@ from ...compiled import compiled
 from ...curves.cubics import split
 from ...intrinsics import borrowed, keep_alive
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import begun_at, directed, farthest_joint, lasting
+from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
 from .cubics import add_chain, fit_between, is_straight
@@ -76,8 +76,7 @@ def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     Direction and that joint are those of the first master.
     """
     chain, kept = with_ends(cubics, degrees)
-    m = len(kept)
-    _, flipped = directed(chain[0])
+    m, flipped = len(kept), is_backward(chain[0])
     if flipped:
         chain, kept = chain[:, ::-1, ::-1].copy(), kept[::-1].copy()
     joints = find_joints(chain, kept, settings)
@@ -87,8 +86,7 @@ def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     if k == m:
         k = farthest_joint(chain[0, :, 0])
     if k > 0:
-        for v in range(len(chain)):
-            chain[v] = begun_at(chain[v], k)
+        chain = np.concatenate((chain[:, k:], chain[:, :k]), axis=1)
         kept = np.roll(kept, -k)
         joints = find_joints(chain, kept, settings)
     return chain, kept, flipped, joints

@@ -9,7 +9,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import begun_at, contour_cubics, directed, farthest_joint, lasting
+from ...outlines.segments import contour_cubics, farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
 
 TABLE = 16
@@ -52,8 +52,11 @@ def canonical_contours(contours: ContourArrays) -> CanonicalContours:
         for j in range(m):
             for c in range(4):
                 given[j, c, 0], given[j, c, 1] = given[kept[j], c, 0], given[kept[j], c, 1]
-        chain, flipped[k] = directed(given[:m])
-        own = begun_at(chain, farthest_joint(chain[:, 0]))
+        chain, flipped[k] = given[:m], is_backward(given[:m])
+        if flipped[k]:
+            chain = chain[::-1, ::-1].copy()
+        first = farthest_joint(chain[:, 0])
+        own = np.concatenate((chain[first:], chain[:first]))
         cubics[at : at + m] = own
         turned, table = turns(own, 0.0), length_table(own, WEIGHTS)
         for j in range(m):
