@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 
@@ -91,16 +91,22 @@ def unfitted(outlines: Sequence[Outline], options: Options = DEFAULTS) -> list[G
     """
     if not options.remove_overlaps:
         return list(as_glyphs(outlines, options))
-    from ..outlines.overlaps import remove_overlaps
-
     found: list[GlyphResult | GlyphsplineError] = []
     for outline in outlines:
         try:
-            united, note = remove_overlaps(outline)
-            found += [replace(result, notes=(note,) if note else ()) for result in as_glyphs([united], options)]
+            united, notes = _united(outline)
+            found += [replace(result, notes=tuple(notes)) for result in as_glyphs([united], options)]
         except GlyphsplineError as error:
             found.append(error)
     return found
+
+
+def _united(outline: Outline) -> tuple[Outline, list[str]]:
+    """The outline without overlaps, and what there is to say of them."""
+    from ..outlines.overlaps import remove_overlaps
+
+    united, note = remove_overlaps(outline)
+    return united, [note] if note else []
 
 
 def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineError:
@@ -112,28 +118,21 @@ def _attempt(outline: Outline, options: Options) -> GlyphResult | GlyphsplineErr
 
 def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]:
     """Convert glyphs of one tolerance at a time: it depends on the em, and on what the reader took of it."""
-    notes: list[list[str]] = [[] for _ in glyphs]
-    if options.remove_overlaps:
-        from ..outlines.overlaps import remove_overlaps
-
-        united = [remove_overlaps(outline) for outline in glyphs]
-        glyphs, notes = [outline for outline, _ in united], [[note] if note else [] for _, note in united]
+    given = [_united(outline) if options.remove_overlaps else (outline, []) for outline in glyphs]
+    alike: dict[tuple[float, float], list[int]] = {}
+    for k, (outline, _) in enumerate(given):
+        # What is set aside of the tolerance is the same for most outlines that were snapped.
+        reserve = max(outline.snapped, SNAPPED) if outline.snapped else 0.0
+        alike.setdefault((outline.metrics.units_per_em, reserve), []).append(k)
     results: dict[int, GlyphResult] = {}
-    kinds = [(outline.metrics.units_per_em, _reserve(outline.snapped)) for outline in glyphs]
-    for em, reserve in dict.fromkeys(kinds):
-        those = [k for k, kind in enumerate(kinds) if kind == (em, reserve)]
-        found = _convert_alike([glyphs[k] for k in those], [notes[k] for k in those], options, em, reserve)
-        results |= zip(those, found, strict=True)
+    for (em, reserve), those in alike.items():
+        outlines, notes = zip(*(given[k] for k in those), strict=True)
+        results |= zip(those, _convert_alike(outlines, notes, options, em, reserve), strict=True)
     return [results[k] for k in range(len(glyphs))]
 
 
-def _reserve(snapped: float) -> float:
-    """What is set aside of the tolerance: the same for most outlines that were snapped, which are fitted together."""
-    return max(snapped, SNAPPED) if snapped else 0.0
-
-
 def _convert_alike(
-    glyphs: list[Outline], notes: list[list[str]], options: Options, em: float, reserve: float
+    glyphs: Sequence[Outline], notes: Sequence[list[str]], options: Options, em: float, reserve: float
 ) -> list[GlyphResult]:
     """Convert glyphs whose em is ``em``, all contours end to end; so much of the tolerance is set aside."""
     tolerance = options.tolerance_for(em)
@@ -215,18 +214,22 @@ def enclosing(contours: ContourArrays) -> BoolArray:
 
 def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -> Iterator[str]:
     """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance, or enclose something else."""
-    for index, within in enumerate(measures.get("within_tolerance", ())[first:last]):
+
+    def column(name: str) -> Iterator[tuple[str, Any]]:
+        values = measures.get(name, ())[first:last]
+        return ((f"result contour {index}", value) for index, value in enumerate(values))
+
+    for (contour, within), (_, bound) in zip(column("within_tolerance"), column("deviation_bound"), strict=True):
         if within is False:
-            bound = rounded_up(measures["deviation_bound"][first + index], 3)
-            yield f"result contour {index} is certified to {bound:.3g} units, not to {tolerance:g}"
-    for index, crossings in enumerate(measures.get("new_crossings", ())[first:last]):
+            yield f"{contour} is certified to {rounded_up(bound, 3):.3g} units, not to {tolerance:g}"
+    for contour, crossings in column("new_crossings"):
         if crossings:
-            yield f"result contour {index} crosses itself or others, {crossings} times more than its source"
+            yield f"{contour} crosses itself or others, {crossings} times more than its source"
         elif crossings is None:
-            yield f"crossings of result contour {index} are not counted: too many strands lie on each other"
-    for index, collapsed in enumerate(measures.get("collapsed", ())[first:last]):
+            yield f"crossings of {contour} are not counted: too many strands lie on each other"
+    for contour, collapsed in column("collapsed"):
         if collapsed:
-            yield f"result contour {index} has lost its area, or runs the other way round than its source"
-    for index, kept in enumerate(measures.get("source_kept", ())[first:last]):
+            yield f"{contour} has lost its area, or runs the other way round than its source"
+    for contour, kept in column("source_kept"):
         if kept:
-            yield f"result contour {index} is the source's own: its fits cross or lose their area"
+            yield f"{contour} is the source's own: its fits cross or lose their area"

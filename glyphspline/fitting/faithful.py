@@ -115,91 +115,70 @@ def faithful(
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
-    first = fits.fit(contours, 0)
 
     def compare(a: int, b: int, results: Sequence[Part]) -> Changes:
         written = assembled(results).curves.rounded(options.precision)
         return changes(contours.part(a, b), written, np.unique(glyphs.clip(a, b)) - a)
 
-    search = Search(glyphs, [(first, c) for c in range(len(first))], compare, _is_outside)
-    kept = np.zeros(len(first), dtype=np.bool_)
+    def is_outside(result: Part) -> bool:
+        return result[0].measures["within_tolerance"][result[1]] is False
+
+    def fitted(given: ContourArrays, which: list[int], turn: int) -> ConvertedContours:
+        """A fit of contours that are those numbered ``which``, or stand for them."""
+        try:
+            return fits.fit(given, turn)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else which[error.contour]
+            raise
+
+    def closer(turn: int, which: list[int]) -> list[Part]:
+        return _parts(fitted(contours.chosen(which), which, turn))
+
+    def apart(near: Sequence[Part], share: float, which: list[int]) -> list[Part]:
+        """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
+        shift, moved = share * tolerance, []
+        for a, b in search.ranges(which):
+            written = assembled(near[a:b]).curves.rounded(options.precision)
+            drawn = drawn_apart(contours.part(a, b), written, shift, tolerance)
+            moved.append(drawn.chosen([c - a for c in which if a <= c < b]))
+        found = fitted(joined(moved), which, fits.apart)
+        bounds = [bound + shift for bound in found.measures["deviation_bound"]]
+        measures = {**found.measures, **distance_columns([None] * len(bounds), bounds, tolerance)}
+        return _parts(replace(found, source=contours.chosen(which), measures=measures))
+
+    search = Search(glyphs, _parts(fits.fit(contours, 0)), compare, is_outside)
     if search.found.number:
-        _Tries(contours, fits, options, tolerance, search).run()
-        fitted = list(search.best)
-        wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
-        search.go_back()
-        search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
-        kept = np.array([new is not old for new, old in zip(search.best, fitted, strict=True)])
-    crossings = [None if count < 0 else count for count in search.kept.new_crossings.tolist()]
-    columns = {
-        "new_crossings": crossings,
-        "collapsed": search.kept.collapsed.tolist(),
-        "source_kept": kept.tolist(),
-    }
+        touching = _touching(contours, search) if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
+        for turn in range(1, fits.tries):
+            search.attempt(search.found.any & ~touching, partial(closer, turn))
+            near = list(search.tried)
+            for share in APART if turn == fits.apart else ():
+                search.attempt(search.found.crosses, partial(apart, near, share))
+    fits_best = list(search.best)
+    wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
+    search.go_back()
+    search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
     result = assembled(search.best)
+    columns = {
+        "new_crossings": [None if count < 0 else count for count in search.kept.new_crossings.tolist()],
+        "collapsed": search.kept.collapsed.tolist(),
+        "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
+    }
     return with_geometry(replace(result, measures={**result.measures, **columns}), options.precision)
-
-
-def _is_outside(result: Part) -> bool:
-    found, k = result
-    return found.measures["within_tolerance"][k] is False
 
 
 def _parts(found: ConvertedContours) -> list[Part]:
     return [(found, k) for k in range(len(found))]
 
 
-class _Tries(NamedTuple):
-    """What is tried for contours with changes."""
-
-    contours: ContourArrays
-    fits: Fits
-    options: Options
-    tolerance: float
-    search: Search[Part]
-
-    def run(self) -> None:
-        """Try what the mode has, as long as there are changes."""
-        search, fits = self.search, self.fits
-        touching = self.touching() if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
-        for turn in range(1, fits.tries):
-            search.attempt(search.found.any & ~touching, partial(self.fit_closer, turn))
-            near = list(search.tried)
-            for share in APART if turn == fits.apart else ():
-                search.attempt(search.found.crosses, partial(self.fit_apart, near, share))
-
-    def touching(self) -> BoolArray:
-        """(C,) whether a contour that crosses touches itself or others in the source."""
-        found = np.zeros(len(self.search.tried), dtype=np.bool_)
-        for a, b in self.search.ranges(np.flatnonzero(self.search.found.crosses).tolist()):
-            source = self.contours.part(a, b)
-            met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
-            found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True
-        return found
-
-    def fit_closer(self, turn: int, which: list[int]) -> list[Part]:
-        """Contours by a later fit."""
-        return _parts(self.fit(self.contours.chosen(which), which, turn))
-
-    def fit(self, contours: ContourArrays, which: list[int], turn: int) -> ConvertedContours:
-        """A fit of contours that are those numbered ``which``, or stand for them."""
-        try:
-            return self.fits.fit(contours, turn)
-        except GlyphsplineError as error:
-            error.contour = None if error.contour is None else which[error.contour]
-            raise
-
-    def fit_apart(self, near: Sequence[Part], share: float, which: list[int]) -> list[Part]:
-        """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
-        shift, moved = share * self.tolerance, []
-        for a, b in self.search.ranges(which):
-            written = assembled(near[a:b]).curves.rounded(self.options.precision)
-            apart = drawn_apart(self.contours.part(a, b), written, shift, self.tolerance)
-            moved.append(apart.chosen([c - a for c in which if a <= c < b]))
-        found, source = self.fit(joined(moved), which, self.fits.apart), self.contours.chosen(which)
-        bounds = [bound + shift for bound in found.measures["deviation_bound"]]
-        measures = {**found.measures, **distance_columns([None] * len(bounds), bounds, self.tolerance)}
-        return _parts(replace(found, source=source, measures=measures))
+def _touching(contours: ContourArrays, search: Search[Part]) -> BoolArray:
+    """(C,) whether a contour that crosses touches itself or others in the source."""
+    found = np.zeros(len(search.tried), dtype=np.bool_)
+    for a, b in search.ranges(np.flatnonzero(search.found.crosses).tolist()):
+        source = contours.part(a, b)
+        met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
+        found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True
+    return found
 
 
 def as_source(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:

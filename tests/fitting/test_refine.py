@@ -63,7 +63,7 @@ def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
         parts += [np.array([c[0], a[0], b[0], cut]), np.array([cut, b[1], a[2], c[3]])]
     outline = np.array(parts, dtype=np.float64)
     ends, none = np.array([0, 8]), np.zeros(8)
-    canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros((8, 17)))
+    canonical = CanonicalContours(outline, ends, np.zeros(1, dtype=np.bool_), none, np.zeros(8 * 16 + 1))
     places = np.array([1.02, 3.02, 5.02, 7.02])  # in the second part of each quarter; the spans begin with the first
     which, near = np.zeros(1, dtype=np.int64), 0.01
     trial = steps.measured(canonical, which, places, np.array([0, 4]), outline[::2, 0].copy(), pieces, near)

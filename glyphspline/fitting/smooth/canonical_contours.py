@@ -27,7 +27,7 @@ class CanonicalContours(NamedTuple):
         cubics: (S, 4, 2) the segments of all contours; offsets: (K + 1,) where each contour begins, and S.
         flipped: (K,) whether a contour is run against its given direction.
         turns: (S,) angle between the tangents at the start of each segment, in radians.
-        lengths: (S, TABLE + 1) length along the contour, from its start, at even parameters of each segment.
+        lengths: (S TABLE + K,) length along each contour, from start to end, at even parameters of each segment.
     """
 
     cubics: FloatArray
@@ -40,15 +40,13 @@ class CanonicalContours(NamedTuple):
 @compiled
 def canonical_contours(contours: ContourArrays) -> CanonicalContours:
     """Contours end to end as the smooth mode fits them; segments of no length are left out."""
-    count = len(contours.offsets) - 1
-    most = len(contours.degrees)
-    cubics, angles, lengths = np.empty((most, 4, 2)), np.empty(most), np.empty((most, TABLE + 1))
-    offsets, flipped = np.empty(count + 1, dtype=np.int64), np.empty(count, dtype=np.bool_)
-    at = offsets[0] = 0
+    count, most = len(contours.offsets) - 1, len(contours.degrees)
+    cubics, angles, lengths = np.empty((most, 4, 2)), np.empty(most), np.empty(most * TABLE + count)
+    offsets, flipped = np.zeros(count + 1, dtype=np.int64), np.empty(count, dtype=np.bool_)
     for k in range(count):
         given = contour_cubics(contours, k)
         kept = lasting(given)
-        m = len(kept)
+        at, m = offsets[k], len(kept)
         for j in range(m):
             for c in range(4):
                 given[j, c, 0], given[j, c, 1] = given[kept[j], c, 0], given[kept[j], c, 1]
@@ -57,46 +55,37 @@ def canonical_contours(contours: ContourArrays) -> CanonicalContours:
             chain = chain[::-1, ::-1].copy()
         first = farthest_joint(chain[:, 0])
         own = np.concatenate((chain[first:], chain[:first]))
-        cubics[at : at + m] = own
-        turned, table = turns(own, 0.0), length_table(own, WEIGHTS)
-        for j in range(m):
-            angles[at + j] = abs(turned[j])
-            for c in range(TABLE + 1):
-                lengths[at + j, c] = table[j * TABLE + c]
-        at += m
-        offsets[k + 1] = at
-    return CanonicalContours(cubics[:at], offsets, flipped, angles[:at], lengths[:at])
+        offsets[k + 1] = at + m
+        cubics[at : at + m], angles[at : at + m] = own, np.abs(turns(own, 0.0))
+        table_of(lengths, offsets, k)[:] = length_table(own, WEIGHTS)
+    at = offsets[count]
+    return CanonicalContours(cubics[:at], offsets, flipped, angles[:at], lengths[: at * TABLE + count])
+
+
+@compiled
+def table_of(values: FloatArray, offsets: IntArray, k: int) -> FloatArray:
+    """The values of contour k: ``TABLE`` a segment, and one more."""
+    return values[offsets[k] * TABLE + k : offsets[k + 1] * TABLE + k + 1]
 
 
 @compiled
 def length_at(lengths: FloatArray, place: float) -> float:
     """Distance along a contour from its first point; ``place`` may be laps ahead."""
-    m = len(lengths)
-    j = int(np.floor(place))
+    m, j = len(lengths) // TABLE, int(np.floor(place))
     x = (place - j) * TABLE
-    k = int(x)
-    row = lengths[j % m]
-    return j // m * lengths[m - 1, TABLE] + row[k] + (x - k) * (row[min(k + 1, TABLE)] - row[k])
+    i = j % m * TABLE + int(x)
+    return j // m * lengths[-1] + lengths[i] + (x - int(x)) * (lengths[i + 1] - lengths[i])
 
 
 @compiled
 def place_at(lengths: FloatArray, distance: float) -> float:
     """The inverse of :func:`length_at`."""
-    m = len(lengths)
-    total = lengths[m - 1, TABLE]
-    lap = np.floor(distance / total)
-    d = distance - lap * total
-    low, high = 0, m * TABLE - 1
-    while low < high:  # the last of all entries that are not beyond d, but for the very last
-        middle = (low + high + 1) // 2
-        if lengths[middle // TABLE, middle % TABLE] <= d:
-            low = middle
-        else:
-            high = middle - 1
-    j, k = low // TABLE, low % TABLE
-    step = lengths[j, k + 1] - lengths[j, k]
-    x = (k + (min(max((d - lengths[j, k]) / step, 0.0), 1.0) if step > 0 else 0.0)) / TABLE
-    return lap * m + j + x
+    lap = np.floor(distance / lengths[-1])
+    d = distance - lap * lengths[-1]
+    i = np.searchsorted(lengths[:-1], d, side="right") - 1
+    step = lengths[i + 1] - lengths[i]
+    x = i % TABLE + (min(max((d - lengths[i]) / step, 0.0), 1.0) if step > 0 else 0.0)
+    return lap * (len(lengths) // TABLE) + i // TABLE + x / TABLE
 
 
 @compiled

@@ -75,11 +75,45 @@ def first_field(
     """
     factor, at_corner = growth_of(ratio, variant), AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
-    write_bounds(cubics, lengths, turns, first / at_corner, near, field)
-    total, corners = lengths[-1, TABLE], at_corners(np.arange(len(turns)).astype(np.float64), turns, corner_angle)
+    m = len(cubics)
+    curvature = np.empty((m, TABLE + 1))
+    field[:] = lengths[-1] / FEWEST
+    for j in range(m):
+        kappa, s = curvature[j], lengths[j * TABLE : (j + 1) * TABLE + 1]
+        ax, ay = cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1]
+        off = 0.0
+        for k in range(1, 3):
+            off = max(off, abs(ax * (cubics[j, k, 1] - cubics[j, 0, 1]) - ay * (cubics[j, k, 0] - cubics[j, 0, 0])))
+        straight = off <= 1e-9 * (ax * ax + ay * ay)
+        for k in range(TABLE + 1):
+            kappa[k] = 0.0
+            if not straight:
+                _, _, dx, dy, bx, by = jet(cubics, j, k / TABLE)
+                speed = np.sqrt(dx * dx + dy * dy)
+                kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
+        for k in range(0 if straight else TABLE + 1):
+            c = min(max(k, 1), TABLE - 1)
+            before, after = s[c] - s[c - 1], s[c + 1] - s[c]
+            change = 0.0
+            if before > 0 and after > 0:
+                slope = (kappa[c + 1] - kappa[c]) / after - (kappa[c] - kappa[c - 1]) / before
+                change = 2 * abs(slope) / (before + after)
+            bend = abs(kappa[k])
+            h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
+            if bend > 0:
+                h = min(h, BEND / bend)
+            at = j * TABLE + k
+            field[at] = min(field[at], max(h, near))
+    for j in range(m):
+        h = first / at_corner * near / max(np.sin(turns[j]), FLATTEST) if turns[j] > 0.01 else np.inf
+        jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
+        if jump > 0:
+            h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
+        field[j * TABLE] = min(field[j * TABLE], h)
+    corners = at_corners(np.arange(m).astype(np.float64), turns, corner_angle)
     for k in range(len(corners)):
         a, b = corners[k], corners[(k + 1) % len(corners)]
-        reach = lengths[b, 0] - lengths[a, 0] + (total if b <= a else 0.0)
+        reach = lengths[b * TABLE] - lengths[a * TABLE] + (lengths[-1] if b <= a else 0.0)
         for j in (a, b):
             field[j * TABLE] = min(field[j * TABLE], first * reach)
     limit_growth(field, lengths, np.log(factor))
@@ -112,56 +146,11 @@ def limit_growth(field: FloatArray, lengths: FloatArray, growth: float) -> None:
     field[n] = field[0] = min(field[0], field[n])
     for _ in range(2):
         for i in range(n):
-            j, k = i // TABLE, i % TABLE
-            field[i + 1] = min(field[i + 1], field[i] + growth * (lengths[j, k + 1] - lengths[j, k]))
+            field[i + 1] = min(field[i + 1], field[i] + growth * (lengths[i + 1] - lengths[i]))
         field[0] = field[n]
         for i in range(n - 1, -1, -1):
-            j, k = i // TABLE, i % TABLE
-            field[i] = min(field[i], field[i + 1] + growth * (lengths[j, k + 1] - lengths[j, k]))
+            field[i] = min(field[i], field[i + 1] + growth * (lengths[i + 1] - lengths[i]))
         field[n] = field[0]
-
-
-@compiled
-def write_bounds(
-    cubics: FloatArray, lengths: FloatArray, turns: FloatArray, at_corner: float, near: float, field: FloatArray
-) -> None:
-    """Write a field as it is before its growth is limited."""
-    m = len(cubics)
-    curvature = np.empty((m, TABLE + 1))
-    for i in range(m * TABLE + 1):
-        field[i] = lengths[-1, TABLE] / FEWEST
-    for j in range(m):
-        kappa, s = curvature[j], lengths[j]
-        ax, ay = cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1]
-        off = 0.0
-        for k in range(1, 3):
-            off = max(off, abs(ax * (cubics[j, k, 1] - cubics[j, 0, 1]) - ay * (cubics[j, k, 0] - cubics[j, 0, 0])))
-        straight = off <= 1e-9 * (ax * ax + ay * ay)
-        for k in range(TABLE + 1):
-            kappa[k] = 0.0
-            if not straight:
-                _, _, dx, dy, bx, by = jet(cubics, j, k / TABLE)
-                speed = np.sqrt(dx * dx + dy * dy)
-                kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
-        for k in range(0 if straight else TABLE + 1):
-            c = min(max(k, 1), TABLE - 1)
-            before, after = s[c] - s[c - 1], s[c + 1] - s[c]
-            change = 0.0
-            if before > 0 and after > 0:
-                slope = (kappa[c + 1] - kappa[c]) / after - (kappa[c] - kappa[c - 1]) / before
-                change = 2 * abs(slope) / (before + after)
-            bend = abs(kappa[k])
-            h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
-            if bend > 0:
-                h = min(h, BEND / bend)
-            at = j * TABLE + k
-            field[at] = min(field[at], max(h, near))
-    for j in range(m):
-        h = at_corner * near / max(np.sin(turns[j]), FLATTEST) if turns[j] > 0.01 else np.inf
-        jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
-        if jump > 0:
-            h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
-        field[j * TABLE] = min(field[j * TABLE], h)
 
 
 @compiled
@@ -185,8 +174,7 @@ def steps_of(field: FloatArray, lengths: FloatArray) -> FloatArray:
     """(m TABLE,) the integral of 1/field, which goes linearly from one entry to the next, over each step."""
     steps = np.empty(len(field) - 1)
     for i in range(len(steps)):
-        j, k = i // TABLE, i % TABLE
-        a, b, h = field[i], field[i + 1], lengths[j, k + 1] - lengths[j, k]
+        a, b, h = field[i], field[i + 1], lengths[i + 1] - lengths[i]
         steps[i] = h * np.log(b / a) / (b - a) if abs(b - a) > 1e-6 * a else h / a
     return steps
 
@@ -289,7 +277,7 @@ def spans_of(lengths: FloatArray, places: FloatArray) -> tuple[FloatArray, Float
         at[i] = length_at(lengths, places[i])
     for i in range(n - 1):
         h[i] = at[i + 1] - at[i]
-    h[n - 1] = at[0] + lengths[-1, TABLE] - at[n - 1]
+    h[n - 1] = at[0] + lengths[-1] - at[n - 1]
     return at, h
 
 
@@ -345,11 +333,11 @@ def divided(
     Args:
         at, h: see :func:`spans_of`.
     """
-    new, count, m = np.empty(parts.sum()), 0, len(lengths)
+    new, count, m = np.empty(parts.sum()), 0, len(lengths) // TABLE
     for i in range(len(places)):
         new[count] = places[i]
         count += 1
-        for part in range(1, parts[i] if h[i] > SHORTEST * lengths[-1, TABLE] else 1):
+        for part in range(1, parts[i] if h[i] > SHORTEST * lengths[-1] else 1):
             share = shares[i] if parts[i] == 2 else part / parts[i]
             new[count] = place_at(lengths, at[i] + share * h[i]) % m
             count += 1

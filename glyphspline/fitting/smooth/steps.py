@@ -15,7 +15,7 @@ from ...curves.cubics import extent
 from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...types import BoolArray, FloatArray, IntArray
-from .canonical_contours import TABLE, CanonicalContours, points_at
+from .canonical_contours import TABLE, CanonicalContours, points_at, table_of
 from .spacing import MOST, at_corners, failed, first_field, graded, growth_of, laid, lowered, spans_after, with_more
 
 ROUGHLY = 0.1
@@ -32,8 +32,12 @@ def first_places(
     offsets, values = np.zeros(count + 1, dtype=np.int64), np.empty(1024)
     for k in range(count):
         a, b = contours.offsets[k], contours.offsets[k + 1]
-        cubics, lengths, turns = contours.cubics[a:b], contours.lengths[a:b], contours.turns[a:b]
-        field, joints = field_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
+        cubics, lengths, turns = (
+            contours.cubics[a:b],
+            table_of(contours.lengths, contours.offsets, k),
+            contours.turns[a:b],
+        )
+        field, joints = table_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
         first_field(cubics, lengths, turns, corner_angle, ratio, near, variant, field)
         corners = at_corners(joints, turns, corner_angle)
         even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
@@ -41,12 +45,6 @@ def first_places(
         values = appended(values, offsets[k], part)
         offsets[k + 1] = offsets[k] + len(part)
     return fields, values[: offsets[-1]], offsets
-
-
-@compiled
-def field_of(fields: FloatArray, offsets: IntArray, k: int) -> FloatArray:
-    """The field of contour k."""
-    return fields[offsets[k] * TABLE + k : offsets[k + 1] * TABLE + k + 1]
 
 
 @compiled
@@ -167,7 +165,11 @@ def changed(
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
         s, t = contours.offsets[k], contours.offsets[k + 1]
-        cubics, lengths, turns = contours.cubics[s:t], contours.lengths[s:t], contours.turns[s:t]
+        cubics, lengths, turns = (
+            contours.cubics[s:t],
+            table_of(contours.lengths, contours.offsets, k),
+            contours.turns[s:t],
+        )
         here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
         if fewer[k]:
             needed = np.zeros(b - a, dtype=np.bool_)
@@ -182,7 +184,7 @@ def changed(
         if more[k]:
             corners = at_corners(here, turns, corner_angle)
             if anew and len(corners) > 0:
-                field, fails = field_of(fields, contours.offsets, k), failed(corners, bound, near)
+                field, fails = table_of(fields, contours.offsets, k), failed(corners, bound, near)
                 lowered(field, lengths, here, corners, fails, bound, near, growth)
                 here = laid(field, lengths, here, corners, fails)
             else:
