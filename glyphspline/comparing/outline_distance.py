@@ -24,7 +24,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import extent, length, nearest, section
-from ..curves.pairing import ROUNDING, points_apart
+from ..curves.pairing import ROUNDING, apart
 from ..types import FloatArray, IntArray
 
 SHARP = 0.01
@@ -245,7 +245,7 @@ def outline_distances(
 @compiled
 def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
     """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distances`."""
-    places, sections, marks = np.empty((STACK, 2)), np.empty((2, 4, 2)), np.empty((DEEPEST + 2, 7))
+    places, sections, marks = np.empty((STACK, 2)), np.empty((2, 1, 4, 2)), np.empty((DEEPEST + 2, 7))
     m, n = len(old.cubics), len(new.cubics)
     # Of every segment: the bound; and the segment of the other outline, and parameter on it, nearest to both its ends.
     bounds, ends = np.empty(m + n), np.empty((m + n, 4))
@@ -329,7 +329,7 @@ def section_bound(
         cubic: (4, 2), between parameters ``low`` and ``high``.
         s0, z0, s1, z1: segments of the outline, and parameters, nearest to the section's ends.
         limit: bounds up to this are small enough: no smaller one is sought.
-        sections: (2, 4, 2) scratch array.
+        sections: (2, 1, 4, 2) scratch array.
     """
     best, n = np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
     ahead = (s1 - s0) % n
@@ -366,6 +366,9 @@ def paired(
 ) -> float:
     """Bound of the distance of a section of a cubic from the section of another between two parameters, any of which
     may be the larger one."""
-    section(cubic, low, high, sections[0])
-    section(other, z0, z1, sections[1])
-    return points_apart(sections[0], sections[1])
+    section(cubic, low, high, sections[0, 0])
+    section(other, z0, z1, sections[1, 0])
+    most = 0.0
+    for k in range(4):
+        most = max(most, apart(sections, 0, k))
+    return most

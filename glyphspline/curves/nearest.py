@@ -71,10 +71,8 @@ def search_place(
 
 
 @compiled
-def near_place(
-    V: int, chain: FloatArray, place: float, low: float, high: float, points: FloatArray, p: int, k: int
-) -> float:
-    """The place in [low, high] of a closed chain near which a point has its nearest one, from one in between."""
+def near_place(V: int, chain: FloatArray, place: float, low: float, high: float, other: FloatArray, p: int) -> float:
+    """The place in [low, high] of a closed chain nearest to where segment p of another begins, from one in between."""
     n, best, at = len(chain) // V, np.inf, place
     for step in range(2):
         here = place
@@ -85,8 +83,8 @@ def near_place(
             a, b = max(low, float(s)), min(high, s + 1.0)
             if b <= a:
                 break
-            z = nearest_together(V, chain, s % n, a - s, b - s, here - s, points, p, k)
-            d = square_to(V, chain, s % n, z, points, p, k)
+            z = nearest_together(V, chain, s % n, a - s, b - s, here - s, other, p, 0)
+            d = square_to(V, chain, s % n, z, other, p, 0)
             if d < best:
                 best, at = d, s + z
             end = b if step == 0 else a
@@ -115,5 +113,5 @@ def near_places(
     before = last - m if closed else low
     for i in range(n):
         hint, after = hints[i], hints[i + 1] if i + 1 < n else first + m if closed else high
-        places[i] = near_place(V, chain, hint, (before + hint) / 2, (hint + after) / 2, other, i, 0)
+        places[i] = near_place(V, chain, hint, (before + hint) / 2, (hint + after) / 2, other, i)
         before = hint

@@ -205,15 +205,6 @@ def pair_span(
 
 
 @compiled
-def apart(work: FloatArray, row: int, k: int) -> float:
-    """Distance of Bézier points k of a pair."""
-    return length(work[0, row, k, 0] - work[1, row, k, 0], work[0, row, k, 1] - work[1, row, k, 1])
-
-
-@compiled
-def points_apart(A: FloatArray, B: FloatArray) -> float:
-    """Largest distance of the Bézier points (4, 2) of two cubics: the bound of their distance."""
-    most = 0.0
-    for k in range(4):
-        most = max(most, length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1]))
-    return most
+def apart(pairs: FloatArray, row: int, k: int) -> float:
+    """Distance of Bézier points k of pair ``row`` in an array (2, n, 4, 2)."""
+    return length(pairs[0, row, k, 0] - pairs[1, row, k, 0], pairs[0, row, k, 1] - pairs[1, row, k, 1])

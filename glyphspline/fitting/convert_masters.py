@@ -136,6 +136,8 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
             the glyph.
         OptionError: options that are for single outlines.
     """
+    from .measures import check_coordinates
+
     check_options(options)
     every = [masters.master(k).arrays for k in range(len(masters))]
     encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
@@ -147,7 +149,12 @@ def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult
         return MastersResult(masters, options, (), left_out)
     outlines = [arrays.chosen(kept) for arrays in every]
     try:
-        _check(outlines, kept)
+        for k, arrays in enumerate(outlines):
+            try:
+                check_coordinates(arrays)
+            except GlyphsplineError as error:
+                where = None if error.contour is None else kept[error.contour]
+                raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None
         corners = masters.grid()
         mixes, which = np.unique(masters.weights_at(corners).round(12), axis=0, return_index=True)
         fits = _Fits(masters, kept, outlines, mixes, corners[which], options)
@@ -290,18 +297,6 @@ def _contour_result(
         kept=int(((spans == 1 if sharp else spans <= 1) & (fit.pieces.errors[own] == 0.0)).sum()),
         regular=bool(fit.regular[own].all()),
     )
-
-
-def _check(outlines: Sequence[ContourArrays], numbers: Sequence[int]) -> None:
-    """Refuse coordinates in any master that are not finite, or too large; the contours have these numbers."""
-    from .measures import check_coordinates
-
-    for k, arrays in enumerate(outlines):
-        try:
-            check_coordinates(arrays)
-        except GlyphsplineError as error:
-            where = None if error.contour is None else numbers[error.contour]
-            raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None
 
 
 def _energy(contour: Contour) -> float:

@@ -128,15 +128,9 @@ def growth_of(ratio: float, variant: int) -> float:
 @compiled
 def at_corners(places: FloatArray, turns: FloatArray, corner_angle: float) -> IntArray:
     """Which of a contour's places are at corners; without one, that at the first joint, if there is one."""
-    at, count = np.empty(len(places), dtype=np.int64), 0
-    for i in range(len(places)):
-        j = int(places[i])
-        if places[i] == j and turns[j] >= corner_angle:
-            at[count] = i
-            count += 1
-    if count == 0 and places[0] == 0.0:
-        at[0], count = 0, 1
-    return at[:count]
+    joints = places.astype(np.int64)
+    at = np.flatnonzero((joints == places) & (turns[joints] >= corner_angle))
+    return at if len(at) > 0 or places[0] != 0.0 else np.zeros(1, dtype=np.int64)
 
 
 @compiled

@@ -50,13 +50,10 @@ def first_places(
 @compiled
 def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
     """An array of which the first ``count`` values are in use, or a larger one, with more after these."""
-    if count + len(part) > len(values):
-        larger = np.empty(2 * (count + len(part)))
-        for i in range(count):
-            larger[i] = values[i]
-        values = larger
-    for i in range(len(part)):
-        values[count + i] = part[i]
+    stop = count + len(part)
+    if stop > len(values):
+        values = np.concatenate((values[:count], np.empty(2 * stop)))
+    values[count:stop] = part
     return values
 
 
