@@ -62,7 +62,7 @@ def found(place: Path) -> Any:
     done = subprocess.run(
         [sys.executable, "-c", RUN, json.dumps([missing, commands])],
         cwd=place, env=os.environ | {"NUMBA_CACHE_DIR": str(place / "cache"), "PYTHONPATH": str(ROOT)},
-        capture_output=True, text=True, timeout=60, check=True,
+        capture_output=True, text=True, timeout=600, check=True,
     )  # fmt: skip
     return json.loads(done.stdout)
 

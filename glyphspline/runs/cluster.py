@@ -29,9 +29,6 @@ from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
 from .spec import Limits
 
-PATIENCE = "10s"
-"""Time limit for a scheduler to answer."""
-
 KEPT = 8
 """Fonts kept in the memory of the cluster, and on each worker's disk, beside those of calls in flight."""
 
@@ -54,15 +51,18 @@ class ClusterExecutor(Executor):
         address: of the scheduler, as in ``tcp://10.0.0.1:8786``.
         seconds: time limit between signs of life, after which a call is ended.
         preload: what to load before the first call, see :func:`.pool.load`.
+        patience: time limit for the scheduler to answer.
 
     Raises:
         GlyphsplineError: distributed is not installed, or nothing answers at the address.
     """
 
-    def __init__(self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] = ()) -> None:
+    def __init__(
+        self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] = (), patience: str = "10s"
+    ) -> None:
         distributed = need("cluster")
         try:
-            self._client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+            self._client = distributed.Client(address, timeout=patience, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
         self._processes: Processes = seconds, tuple(preload)

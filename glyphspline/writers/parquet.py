@@ -42,9 +42,6 @@ from ..types import FloatArray, IntArray
 
 SCHEMA_VERSION = 1
 
-ROWS = 512
-"""Contours in a row group: those held in memory while writing, and the rest of a glyph."""
-
 POWERS = {
     "residual": 1, "deviation": 1, "deviation_bound": 1, "overshoot": 1, "length": 1, "area_change": 2,
     "bending_energy": -1, "max_curvature": -1,
@@ -69,8 +66,11 @@ def schema() -> Any:
     return pa.schema(columns, metadata={"glyphspline.schema": str(SCHEMA_VERSION)})
 
 
-def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any) -> int:
+def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any, group: int = 512) -> int:
     """Write the table to a path or a binary file; returns the number of rows.
+
+    Args:
+        group: contours in a row group: held in memory while writing, with the rest of a glyph.
 
     Raises:
         GlyphsplineError: pyarrow, of the extra ``parquet``, is not installed.
@@ -83,11 +83,11 @@ def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any) -> int
         for glyph in glyphs:
             waiting.append(glyph)
             held += len(glyph.contours)
-            if held >= ROWS:
-                writer.write_table(rows(source, waiting), row_group_size=ROWS)
+            if held >= group:
+                writer.write_table(rows(source, waiting), row_group_size=group)
                 count, waiting, held = count + held, [], 0
         if held:
-            writer.write_table(rows(source, waiting), row_group_size=ROWS)
+            writer.write_table(rows(source, waiting), row_group_size=group)
     return count + held
 
 

@@ -23,8 +23,6 @@ Constraint = Literal["box", "adjacent"]
 SLACK = 1e-11
 """Rounding allowance on every bound: some 50 additions and products of numbers in [0, 1] err by less than 1e-13."""
 
-MAX_BOXES = 4_000_000
-
 AT_TARGET = 1e-9
 """How near a corner's peak has to be to the target for its box to be examined as the worst one."""
 
@@ -224,7 +222,12 @@ def _slopes(f: Family, y: FloatArray) -> FloatArray:
 
 
 def certify(
-    degree: int, ratio: float, constraint: Constraint, target: float = 0.5, corners: bool = False
+    degree: int,
+    ratio: float,
+    constraint: Constraint,
+    target: float = 0.5,
+    corners: bool = False,
+    most: int = 4_000_000,
 ) -> int | None:
     """Prove that every basis function allowed by the ratio peaks above ``target``.
 
@@ -232,16 +235,17 @@ def certify(
         corners: settle also the boxes at whose worst corner the peak is the target within ``AT_TARGET``, if the value
             of the basis function grows strictly from there along every direction. What is proven then: no peak is
             lower than that of such a corner, and a peak as low is found at the corner only.
+        most: number of boxes after which it gives up.
 
     Returns:
-        The number of boxes it took, or None if no proof was found with ``MAX_BOXES``.
+        The number of boxes it took, or None if no proof was found with ``most``.
     """
     f = family(degree, ratio, constraint)
     low, high = f.low[None], f.high[None]
     count = 0
     while len(low):
         count += len(low)
-        if count > MAX_BOXES:
+        if count > most:
             return None
         bound, direction = lower_bounds(f, low, high)
         left = ~(bound > target)

@@ -194,7 +194,7 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
 
 
 def call(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    return subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=600)
 
 
 def test_a_process_of_its_own_with_workers(tmp_path: Path) -> None:

@@ -166,7 +166,7 @@ def test_the_example_notebook_runs_and_keeps_no_outputs() -> None:
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not any(cell.outputs or cell.execution_count for cell in code)
     os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
-    nbclient.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(ROOT)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(ROOT)}}).execute()
     shown = [kind for cell in code for output in cell.outputs for kind in output.get("data", {})]
     assert shown.count("image/svg+xml") >= 3
     assert "text/html" in shown

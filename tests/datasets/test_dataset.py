@@ -112,7 +112,7 @@ def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: in
     out = tmp_path / "killed"
     run = subprocess.Popen([sys.executable, "-c", MAKE, str(FONTS), str(out)])
     try:
-        until = time.monotonic() + 120
+        until = time.monotonic() + 600
         while len(list(out.glob("data/*.parquet"))) < finished:
             assert run.poll() is None
             assert time.monotonic() < until

@@ -52,9 +52,7 @@ def test_written_results_are_within_the_tolerance(corners: str, character: str, 
         assert m.deviation_bound <= tolerance
         assert m.deviation is None or m.deviation <= m.deviation_bound  # None: drawn apart where it touches itself
         assert true_distance(contour) <= m.deviation_bound + 0.15
-    # The source runs there and back on one line, around which a smooth curve has a loop.
     loops = sum(contour.measures.new_crossings or 0 for contour in result.contours)
-    assert loops == (1 if (character, corners, tolerance) == ("龍", "smooth", 1.0) else 0)
     assert any("crosses itself" in note for note in result.notes) == (loops > 0)
 
 

@@ -268,7 +268,7 @@ def test_the_same_bytes_in_two_processes(tmp_path: Path) -> None:
     said = [
         subprocess.run(
             [sys.executable, "-c", code, str(FONT)],
-            cwd=ROOT, env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=True, timeout=300,
+            cwd=ROOT, env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=True, timeout=600,
         ).stdout
         for seed in ("1", "2")
     ]  # fmt: skip
