@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.cubics import jet, turns
 from ..types import BoolArray, FloatArray, IntArray
-from .contour_arrays import ContourArrays, offsets_of
+from .contour_arrays import ContourArrays
 from .segments import contour_cubics
 
 CHORDS = 4
@@ -69,12 +69,20 @@ def _winding(polygon: FloatArray, x: float, y: float) -> int:
     return found
 
 
+@compiled
 def corner_points(contours: ContourArrays, angle: float) -> tuple[FloatArray, IntArray]:
     """(k, 2) where the tangents turn by ``angle``, in radians, or more; (C + 1,) where those of each contour begin."""
-    corner = [np.abs(turns(contour_cubics(contours, c), 0.0)) >= angle for c in range(contours.num_contours)]
-    joints = np.cumsum(contours.degrees) - contours.degrees
-    chosen = joints[np.concatenate([np.empty(0, dtype=np.bool_), *corner])]
-    return contours.points[chosen], offsets_of([int(own.sum()) for own in corner])
+    found, count = np.empty((len(contours.degrees), 2)), 0
+    offsets = np.zeros(len(contours.offsets), dtype=np.int64)
+    for c in range(len(contours.offsets) - 1):
+        cubics = contour_cubics(contours, c)
+        turned = turns(cubics, 0.0)
+        for j in range(len(cubics)):
+            if abs(turned[j]) >= angle:
+                found[count, 0], found[count, 1] = cubics[j, 0, 0], cubics[j, 0, 1]
+                count += 1
+        offsets[c + 1] = count
+    return found[:count], offsets
 
 
 @compiled

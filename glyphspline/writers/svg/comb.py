@@ -63,19 +63,15 @@ def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
     return next(filter(None, found), 0.0)
 
 
-def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result", flat: float = 0.0) -> list[Comb]:
-    """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large.
-
-    Args:
-        flat: even pieces of less curvature, in 1/unit, are sampled at their ends only.
-    """
+def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> list[Comb]:
+    """One comb a contour. By default it is twice as dense as in maps, from which the scale can be 15% too large."""
     from ...curves.comb import control_length, sampled  # here and not above: the package opens without a compiler
     from ...outlines.segments import all_cubics
 
     curves = curves_of(glyph, whose)
     cubics = all_cubics(curves)
     spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
-    samples, starts = sampled(cubics, spacing, ANGLE, flat)
+    samples, starts = sampled(cubics, spacing, ANGLE, 0.0)
     found = []
     for c in np.flatnonzero(np.diff(curves.offsets)).tolist():
         at = starts[curves.offsets[c] : curves.offsets[c + 1] + 1]
@@ -90,23 +86,31 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
     return glyph.arrays.curves if whose == "result" else glyph.arrays.source
 
 
-def teeth(
-    glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False, flat: float = 0.0
-) -> list[Teeth]:
-    """Feet and tips of each contour's comb. Teeth point away from the centre of curvature.
+def sides_and_corners(
+    glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """(C,) sides of the ink, (k, 2) corners in whose turn teeth have no length, (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
-    curvatures. Without ``in_corners`` a result's teeth in the turn of a corner have no length.
+    curvatures.
     """
     from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
 
-    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
     turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
     corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
-    sides, drawn = ink_sides(curves), np.flatnonzero(np.diff(curves.offsets)).tolist()
+    return ink_sides(curves_of(glyph, whose)), corners, offsets
+
+
+def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
+    """Feet and tips of each contour's comb. Teeth point away from the centre of curvature.
+
+    Without ``in_corners`` a result's teeth in the turn of a corner have no length.
+    """
+    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
+    sides, corners, offsets = sides_and_corners(glyph, whose, in_corners=in_corners)
     return [
         teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
-        for item, c in zip(combs(glyph, 1.0, whose, flat), drawn, strict=True)
+        for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True)
     ]
 
 

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ...outlines.contour_arrays import offsets_of
-from ...types import BoolArray, FloatArray, IntArray
 from ..settings import Settings, Whose
-from . import path_data
-from .comb import LONGEST, SIDES, TOOTH, Teeth, colour_classes, curvature_scale, curves_of, palette, teeth
+from .comb import LONGEST, SIDES, TOOTH, colour_classes, curvature_scale, curves_of, palette, sides_and_corners
 from .document import data_attributes, document, em_box, head, id_prefix, number, title, union, view_box_value
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
@@ -86,9 +82,7 @@ def map_document(
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
-    found = teeth(glyph, scale, whose, in_corners=in_corners, flat=scale * least)
-    layers, box = _comb(found, em, least, precision)
+    layers, box = _comb(glyph, scale, whose, in_corners, precision)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
     layers.append(
@@ -123,66 +117,27 @@ def map_document(
     return document([head(view_box_value(box, precision), name, words, attributes), *layers])
 
 
-def _comb(drawn: Sequence[Teeth], em: float, least: float, precision: int) -> tuple[list[str], Box | None]:
-    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb.
+def _comb(
+    glyph: GlyphResult, scale: float, whose: Whose, in_corners: bool, precision: int
+) -> tuple[list[str], Box | None]:
+    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
+    from .path_text import LARGEST, comb_teeth, comb_text, dots_text  # here: the package opens without a compiler
 
-    Args:
-        least: teeth of less curvature, in units of the scale, are left out.
-    """
+    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
+    least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
+    marks = sides_and_corners(glyph, whose, in_corners=in_corners)
+    ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
     layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
-    every = [_distinct(each, precision) for each in drawn]
-    if sum(len(each[0]) for each in every):
-        ends, relative, cut = map(np.concatenate, zip(*every, strict=True))
-        if np.abs(ends).max() < path_data.EXACT / 2:
-            x, y, tip_x, tip_y = ends.T
-            shown = (np.minimum(np.abs(relative), LONGEST) > least) & ((x != tip_x) | (y != tip_y))
-            points, commands, offsets = _strokes(ends[shown], colour_classes(relative[shown]))
-            line, of_line = _tip_line(ends[:, 2:], shown, offsets_of([len(each[0]) for each in every]))
-            marks = ends[shown & cut, 2:]
-            commands = np.concatenate([commands, of_line, np.full(len(marks), path_data.MOVE_BY)])
-            offsets = np.append(offsets, offsets[-1] + np.array([len(line), len(line) + len(marks)]))
-            text, at = path_data.path_text(np.concatenate([points, line, marks]), commands, offsets, precision)
-            parts = [text[at[a] : at[b]] for a, b in pairwise(offsets.tolist())]
-            parts[-1] = path_data.dots(text, at[offsets[-2] :])
-            layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
-            low, high = ends.min(axis=0) / 10.0**precision, ends.max(axis=0) / 10.0**precision
-            box = (*np.minimum(low[:2], low[2:]).tolist(), *np.maximum(high[:2], high[2:]).tolist())
+    if len(ends):
+        low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
+        if max(*high, -min(low)) < LARGEST:
+            data, at = comb_text(ends, classes, offsets, precision)
+            parts = [data.tobytes()[a:b] for a, b in pairwise(at.tolist())]
+            parts.append(dots_text(ends[cut & (classes >= 0), 2:], precision).tobytes())
+            layers += [f'{begin}{part.decode()}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
+            unit = 10.0**precision
+            box = min(low[::2]) / unit, min(low[1::2]) / unit, max(high[::2]) / unit, max(high[1::2]) / unit
     return [*layers, "</g>\n"], box
-
-
-def _distinct(each: Teeth, precision: int) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """(k, 4) feet and tips, rounded, in units of the last decimal; (k,) ``relative`` and ``cut``.
-
-    Pieces share their ends, and the contour is closed: what is where the one before it was is left out.
-    """
-    ends = path_data.to_whole(np.concatenate([each.feet, each.tips], axis=1), precision)
-    new = np.ones(len(ends), dtype=np.bool_)
-    new[1:] = (ends[1:] != ends[:-1]).any(axis=1)
-    kept = np.flatnonzero(new)
-    if len(kept) > 1 and (ends[-1] == ends[0]).all():
-        kept = kept[:-1]
-    return ends[kept], each.relative[kept], each.cut[kept]
-
-
-def _strokes(ends: FloatArray, classes: IntArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """The strokes from foot to tip, (k, 4), as a path for each colour class: points, commands and offsets."""
-    order = np.argsort(classes, kind="stable")
-    first = np.searchsorted(classes[order], np.arange(-SIDES, SIDES + 2))
-    return ends[order].reshape(-1, 2), np.tile([path_data.MOVE_BY, path_data.LINE_BY], len(order)), 2 * first
-
-
-def _tip_line(tips: FloatArray, shown: BoolArray, offsets: IntArray) -> tuple[FloatArray, IntArray]:
-    """The line through the tips, except where it would lie on the outline: between two places with no tooth."""
-    after = np.arange(1, len(tips) + 1)
-    after[offsets[1:] - 1] = offsets[:-1]
-    drawn = shown | shown[after]
-    # Each line as its two ends, the first left out where the line before it ends there.
-    kept = np.stack([drawn, drawn], axis=1)
-    kept[1:, 0] &= ~drawn[:-1]
-    kept[offsets[:-1], 0] = drawn[offsets[:-1]]
-    which = np.flatnonzero(kept)
-    points = np.concatenate([tips, tips[after]], axis=1).reshape(-1, 2)[which]
-    return points, np.where(which % 2, path_data.LINE_BY, path_data.MOVE_BY)
 
 
 @cache
@@ -201,14 +156,17 @@ def _legend(em: float, scale: float, precision: int, whose: Whose) -> tuple[str,
 
     Its origin is at the left end of the axis; also its width, and its extent below the axis.
     """
+    from .path_text import comb_text  # here and not above: the package opens without a compiler
+
     letters, width, reach = 0.034 * em, 0.56 * em, scale * em
     strength = np.linspace(-1, 1, 8 * SIDES + 1)
     feet = np.stack([(strength + 1) / 2 * width, 0 * strength], axis=1)
     tips = feet + np.stack([0 * strength, np.abs(strength) * TOOTH * em], axis=1)
     ends = np.rint(np.concatenate([feet, tips], axis=1) * 10**precision)
-    points, commands, offsets = _strokes(ends, colour_classes(strength))
-    data, at = path_data.path_text(points, commands, offsets, precision)
-    strokes = zip(palette(), [data[at[a] : at[b]] for a, b in pairwise(offsets.tolist())], strict=True)
+    data, at = comb_text(ends, colour_classes(strength) + SIDES, np.array([0, len(ends)]), precision)
+    strokes = [
+        (colour, data[a:b].tobytes().decode()) for colour, (a, b) in zip(palette(), pairwise(at.tolist()), strict=False)
+    ]
     words = f"κ of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}"
     labels = [
         (0.0, -1.35, "start", f"\N{MINUS SIGN}{reach:.3g}"), (width / 2, -1.35, "middle", "0"),

@@ -6,30 +6,19 @@ the rounded coordinates: these take two thirds of the bytes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from ...curves.bezier import evaluate
-from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
-from ...outlines.extrema import stationary
+from ...outlines.contour_arrays import ContourArrays, Polylines
 from ...outlines.outline import Contour, Contours
 from ...types import BoolArray, FloatArray, IntArray
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top in font units, y up."""
-
-COMMANDS = b" lqcmLQCM"
-"""By degree, relative and absolute."""
-
-LINE_BY, MOVE_BY, MOVE = 1, 4, 8
-
-EXACT = 2.0**50
-"""Differences of coordinates, in units of the last decimal, are whole numbers below this. A glyph that has larger ones
-is written with absolute numbers of 15 digits."""
 
 
 class PathData(NamedTuple):
@@ -69,14 +58,9 @@ def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -
 
 def dots_data(points: FloatArray, precision: int) -> str:
     """Path data of a dot on each of the points (n, 2), to be stroked with round caps; huge coordinates are left out."""
-    whole = to_whole(points, precision)
-    whole = whole[(np.abs(whole) < EXACT / 2).all(axis=1)]
-    return dots(*path_text(whole, np.full(len(whole), MOVE_BY), np.array([0, len(whole)]), precision))
+    from .path_text import TIE, dots_text  # here and not above: the package opens without a compiler
 
-
-def dots(moves: str, starts: Sequence[int]) -> str:
-    """A dot, a stroke of no length, after each move; ``starts`` are where the moves begin, and the last one ends."""
-    return "".join([moves[a:b] + "h0" for a, b in pairwise(starts)])
+    return dots_text(np.floor(points * 10.0**precision + (0.5 + TIE)), precision).tobytes().decode("ascii")
 
 
 @cache
@@ -85,84 +69,30 @@ def comb_precision(em: float) -> int:
     return max(0, 4 - round(float(np.log10(em))))
 
 
-def to_whole(points: FloatArray, precision: int) -> FloatArray:
-    """Coordinates rounded, in units of the last decimal. Rounding errors do not decide which way a half goes: up."""
-    return np.asarray(np.floor(points * 10.0**precision + (0.5 + 1e-6)))
-
-
-def path_text(points: FloatArray, commands: IntArray, offsets: IntArray, precision: int) -> tuple[str, list[int]]:
-    """Paths end to end, of relative moves and lines, as :func:`moves_text`; each then begins with an absolute one.
-
-    Args:
-        points: (n, 2) in units of the last decimal. offsets: where each path begins, and n.
-    """
-    first = offsets[:-1][np.diff(offsets) > 0]
-    steps = np.diff(points, axis=0, prepend=[[0.0, 0.0]])
-    steps[first], commands[first] = points[first], MOVE
-    return moves_text(steps, commands, precision)
-
-
-def moves_text(moves: FloatArray, commands: IntArray, precision: int) -> tuple[str, list[int]]:
-    """Path data, and where each point of it begins, with its command, and the last one ends.
-
-    Args:
-        moves: (n, 2) in units of the last decimal, y up.
-        commands: (n,) indices of ``COMMANDS``; of equal ones in a row that are no moves the first is written.
-        precision: decimals.
-    """
-    from .path_numbers import path_numbers  # here and not above: the package opens without a compiler
-
-    shown = (np.diff(commands, prepend=0) != 0) | (commands % MOVE_BY == 0)
-    letters = np.where(shown, np.frombuffer(COMMANDS, dtype=np.uint8)[commands], 0).astype(np.int64)
-    if not len(moves) or np.abs(moves).max() < EXACT:
-        text, starts = path_numbers(moves, letters, precision)
-        return text.tobytes().decode("ascii"), starts.tolist()
-    pairs = zip(letters.tolist(), (moves * (1, -1) / 10.0**precision + 0.0).tolist(), strict=True)
-    parts = [f"{chr(letter) if letter else ' '}{x:.15g} {y:.15g}" for letter, (x, y) in pairs]
-    return "".join(parts), offsets_of([len(part) for part in parts]).tolist()
-
-
 def _written(curves: ContourArrays, closed: BoolArray, precision: int, glyphs: IntArray | None) -> list[PathData]:
-    points, degrees, offsets, starts = curves
-    bounds = [0, curves.num_contours] if glyphs is None else glyphs.tolist()
-    whole = np.rint(points * 10.0**precision)
-    huge = not np.abs(whole).max(initial=0.0) < EXACT / 2
-    if huge and len(bounds) > 2:
-        return [_written(curves.part(a, b), closed[a:b], precision, None)[0] for a, b in pairwise(bounds)]
-    full = np.flatnonzero(np.diff(offsets))
-    first, number = offsets[full], np.arange(len(full))
-    last = offsets[full + 1] + number
-    # The commands of a contour: a move, then its segments. Z draws a last line. A last curve is absolute: it ends where
-    # the contour begins also for a reader that adds up binary fractions.
-    kinds, counts = np.insert(degrees, first, MOVE_BY), np.insert(degrees, first, 1)
-    begin = np.insert(np.cumsum(degrees) - degrees, first, 0)
-    curved = kinds[last] > 1
-    counts[last] *= curved
-    absolute = np.full(len(kinds), huge)
-    absolute[first + number] = absolute[last] = True
-    of = np.repeat(np.arange(len(kinds)), counts)
-    commands = (kinds + MOVE_BY * absolute)[of]
-    again = full[curved]  # their first points are written once more
-    order = np.insert(np.arange(len(points)), starts[again + 1], starts[again])
-    moves = whole[order] - np.where(absolute[of], 0.0, whole[begin[of]].T).T
-    (text, at), sizes = moves_text(moves, commands, precision), np.diff(starts)
-    sizes[again] += 1
-    ends = pairwise(np.array(at)[offsets_of(sizes)].tolist())
-    drawn = [text[a:b] + "Z" * (shut and a < b) for (a, b), shut in zip(ends, closed.tolist(), strict=True)]
-    boxes = _boxes(curves._replace(points=whole / 10.0**precision), [int(offsets[c]) for c in bounds])
-    return [PathData("".join(drawn[a:b]), box) for (a, b), box in zip(pairwise(bounds), boxes, strict=True)]
+    from .path_text import curves_text  # here and not above: the package opens without a compiler
+
+    bounds = np.array([0, curves.num_contours]) if glyphs is None else glyphs
+    text, ends, boxes = curves_text(curves, closed, bounds, precision)
+    drawn, found = text.tobytes().decode("ascii"), []
+    for g, ((a, b), box) in enumerate(zip(pairwise(ends.tolist()), boxes.tolist(), strict=True)):
+        inked = box[0] <= box[2]
+        data = drawn[a:b] if a < b or not inked else _of_any_size(curves, closed, bounds[g], bounds[g + 1], precision)
+        found.append(PathData(data, tuple(box) if inked else None))
+    return found
 
 
-def _boxes(curves: ContourArrays, bounds: list[int]) -> Iterator[Box | None]:
-    """The boxes of groups of segments; ``bounds`` are the first segment of each, and the number of all."""
-    from ...outlines.segments import all_cubics  # here and not above: the package opens without a compiler
-
-    cubics = all_cubics(curves)
-    low, high = cubics[:, ::3].min(axis=1), cubics[:, ::3].max(axis=1)
-    out = np.nonzero((cubics.min(axis=1) < low) | (cubics.max(axis=1) > high))
-    values = cubics[out[0], :, out[1]]
-    for t in np.nan_to_num(stationary(np.diff(values, axis=1))).T:
-        found = evaluate(values[..., None], np.clip(t, 0.0, 1.0))[:, 0]
-        low[out], high[out] = np.minimum(low[out], found), np.maximum(high[out], found)
-    for a, b in pairwise(bounds):
-        yield (*low[a:b].min(axis=0).tolist(), *high[a:b].max(axis=0).tolist()) if a < b else None
+def _of_any_size(curves: ContourArrays, closed: BoolArray, first: int, stop: int, precision: int) -> str:
+    """Path data of one glyph with absolute numbers of 15 digits."""
+    texts = []
+    for c in range(first, stop):
+        own = curves.part(c, c + 1)
+        values, degrees = np.round(own.points * (1, -1), precision) + 0.0, own.degrees.tolist()
+        if degrees:
+            pairs = [f"{x:.15g} {y:.15g}" for x, y in [*values.tolist(), values[0].tolist()]]
+            ends = np.cumsum([1, *(degrees if degrees[-1] > 1 else degrees[:-1])]).tolist()  # Z draws a last line
+            lines = [
+                " LQC"[degree] + " ".join(pairs[a:b]) for degree, (a, b) in zip(degrees, pairwise(ends), strict=False)
+            ]
+            texts.append("".join(["M", pairs[0], *lines, "Z" * bool(closed[c])]))
+    return "".join(texts)
