@@ -53,7 +53,7 @@ PLACE = "NUMBA_CACHE_DIR"
 """Environment variable: the folder for code compiled here."""
 
 QUIET = "GLYPHSPLINE_QUIET"
-"""Environment variable: set where nobody wants to read that code is being compiled."""
+"""Environment variable: set to hide the message that code is being compiled."""
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 

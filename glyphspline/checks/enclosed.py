@@ -36,10 +36,10 @@ HALVINGS = 20
 """Of a chord, for the place where the sides of a spur part."""
 
 LOOKED_AT = 0.41
-"""Parameter of the point of a segment whose two sides are looked at: contours may share ends and middles of theirs."""
+"""Parameter of the point of a segment whose two sides are examined: contours may share ends and middles."""
 
 MOST_HALVINGS = 128
-"""Most halvings of a segment for a ray: those around the ray's beginning cannot be told from a point by then."""
+"""Most halvings of a segment for a ray: those around the ray's beginning are points by then."""
 
 
 def enclosed_findings(
@@ -47,9 +47,9 @@ def enclosed_findings(
 ) -> FloatArray:
     """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.segments`.
 
-    Two contours that cross are told once, of the first, where it first crosses; the value is the number of places. The
-    value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
-    :func:`..curves.crossings.meetings` gives up, only spurs and directions are told.
+    Two contours that cross are reported once, of the first, where it first crosses; the value is the number of places.
+    The value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
+    :func:`..curves.crossings.meetings` gives up, only spurs and directions are reported.
 
     Args:
         cubics: (m, 4, 2) the segments. glyphs: (G + 1,) where the contours of each glyph begin.
@@ -92,8 +92,8 @@ def _doubled(
 ) -> FloatArray:
     """Contours that lie on themselves or on others, from (k, 6) contacts.
 
-    Of two contours that run in one direction where they lie on each other, one is told only if nearly all of it does:
-    parts that overlap may share an edge. They may also abut where a third one covers both.
+    Of two contours that run in one direction where they lie on each other, one is reported only if nearly all of it
+    does: parts that overlap may share an edge. They may also abut where a third one covers both.
 
     Args:
         crosses: (C,) whether a contour crosses another one.

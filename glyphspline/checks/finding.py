@@ -12,7 +12,7 @@ from ..types import FloatArray, IntArray
 from .kinds import KINDS, LEVELS, Level
 
 SMALLER_IS_WORSE = frozenset({"short", "straight"})
-"""Kinds of which the smaller value is the worse."""
+"""Kinds whose smaller value is worse."""
 
 _ORDER = {kind.name: k for k, kind in enumerate(KINDS)}
 
@@ -77,7 +77,7 @@ class Measured(NamedTuple):
 
     @classmethod
     def joined(cls, parts: Iterable[Measured], axes: int = 0) -> Measured:
-        """The rows of all parts, whose locations have so many ``axes``."""
+        """The rows of all parts; ``axes``: number of axes of their locations."""
         none = np.zeros(0, dtype=np.int64)
         empty = cls(none, none, none, none, np.zeros((0, 4)), np.zeros((0, 2)), np.zeros((0, axes)), np.zeros((0, 2)))
         return cls._make([np.concatenate(columns) for columns in zip(*(list(parts) or [empty]), strict=True)])

@@ -21,10 +21,10 @@ from .segments import rounding_turn
 from .turns import joint_controls, turns_of
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
-"""Kinds that are told once a contour, wherever on it."""
+"""Kinds that are reported once a contour."""
 
 ALIKE = 9
-"""Decimals of values up to which two places are equally bad; the first is told then."""
+"""Decimals of values up to which two places are equally bad; then the first is reported."""
 
 
 def on_axes(
@@ -38,7 +38,7 @@ def on_axes(
         tags: of the axes along which they are looked at. steps: of an axis. outer: see :attr:`.Source.outer`.
 
     Raises:
-        GlyphsplineError: masters of a glyph cannot be told apart.
+        GlyphsplineError: masters of a glyph cannot be distinguished.
     """
     axes, em = glyphs[0].axes, glyphs[0].metrics.units_per_em
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]

@@ -50,7 +50,7 @@ class Segments(NamedTuple):
 
     @classmethod
     def of(cls, cubics: FloatArray, contours: ContourArrays) -> Segments:
-        """The segments of contours, of which ``cubics`` (m, 4, 2) are all."""
+        """The segments of contours; ``cubics`` (m, 4, 2): all of them."""
         points = cubics.view(np.complex128)[..., 0]
         return cls(points, contours.degrees, contours.offsets, *arranged(points, contours.degrees, contours.offsets))
 
@@ -97,7 +97,7 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
 
     A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
     turns by more than the limit, and, where both handles are in whole units, by more than rounding may make. Curvature
-    jumps are told where both sides are cubics: a chain of quadratics has them everywhere.
+    jumps are reported where both sides are cubics: a chain of quadratics has them everywhere.
     """
     points, degrees, offsets, before, _, first, last = segments
     table, count = np.empty((len(points), 6)), 0
@@ -123,8 +123,8 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
 def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
     """(n, 6) what may be wrong with single segments; see ``WHAT``. What concerns a segment as a whole is at its middle.
 
-    A very short segment has no other finding, and a segment whose handles reach too far is not said to bend back: that
-    is what such handles do.
+    A very short segment has no other finding, and a segment whose handles reach too far does not count as bending back:
+    that is what such handles do.
     """
     degrees, offsets = segments.degrees, segments.offsets
     table, count = np.empty((5 * len(degrees), 6)), 0  # four extrema, and one more
@@ -235,7 +235,7 @@ def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
 
 @compiled
 def off_chord(cubic: ComplexArray, way: complex) -> float:
-    """How far a cubic leaves its chord, of which ``way`` is the direction."""
+    """How far a cubic leaves its chord; ``way``: the chord's direction."""
     first, second = (way.conjugate() * (cubic[1] - cubic[0])).imag, (way.conjugate() * (cubic[2] - cubic[0])).imag
     most = 0.0
     for t in quadratic_roots(3 * (first - second), 2 * second - 4 * first, first):

@@ -167,5 +167,5 @@ def _plain(text: str) -> str:
 
 
 def _code(text: str) -> str:
-    """A name from a font or a path; as code it mentions nobody."""
+    """A name from a font or a path; as code, in which ``@`` mentions no user."""
     return f"<code>{_plain(text)}</code>"

@@ -63,7 +63,7 @@ def text(
 ) -> int:
     """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
-    Each glyph is fitted once, however often it stands there. The exit status is 1 if the fonts lack characters of the
+    Each glyph is fitted once, however often it occurs. The exit status is 1 if the fonts lack characters of the
     text, or glyphs cannot be read.
     """
     from ..runs.schedule import kinds_for, workers

@@ -1,7 +1,7 @@
 """A certified bound of the two-sided (Hausdorff) distance of two outlines.
 
 The bound is for the outlines as sets of points: no point of either is farther from the other than that. Contours need
-not correspond. Every segment of one outline is cut into sections, each of which is bounded by pairing it with a section
+not correspond. Every segment of one outline is cut into sections, each bounded by pairing it with a section
 of the other (:mod:`..curves.pairing`): the one between the points nearest to its ends, or, where these are on different
 segments, with the stretch between them cut at the joints, or with a section of either segment by itself. Any pairing
 gives a bound, so the least of these is taken.
@@ -364,7 +364,7 @@ def section_bound(
 def paired(
     cubic: FloatArray, low: float, high: float, other: FloatArray, z0: float, z1: float, sections: FloatArray
 ) -> float:
-    """Bound of the distance of a section of a cubic from the section of another between two parameters, any of which
+    """Bound of the distance of a section of a cubic from the section of another between two parameters, either of which
     may be the larger one."""
     section(cubic, low, high, sections[0, 0])
     section(other, z0, z1, sections[1, 0])

@@ -3,5 +3,5 @@
 DEGREES = range(2, 7)
 """Degrees of splines whose uniform basis functions rise above 1/2, as the method needs (end of the paper's Section 1).
 
-They stand here, as a command checks its options before it imports NumPy.
+They are here because a command checks its options before it imports NumPy.
 """

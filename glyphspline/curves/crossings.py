@@ -27,7 +27,7 @@ EXACT = 1e-12
 """For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent."""
 
 TOUCH = 4.0
-"""An end of a chord within so many chord errors of another chord lies on it."""
+"""An end of a chord lies on another chord within this many chord errors of it."""
 
 DEEPEST = 24
 """Most halvings of a piece: from an extent of 1, its chords are nearer than ``FLAT`` after 15."""

@@ -187,7 +187,7 @@ def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
     """(m steps + 1,) chord lengths summed along a chain, at even parameters of each segment.
 
     Args:
-        weights: :func:`bernstein` of so many steps.
+        weights: from :func:`bernstein`.
     """
     m, steps = len(cubics), weights.shape[1] - 1
     table, xs, ys, chords = np.empty(m * steps + 1), np.empty(steps + 1), np.empty(steps + 1), np.empty(steps)

@@ -51,7 +51,7 @@ def curvature_extrema(cubics: FloatArray, length: float, corner: float) -> int:
     neither on start, direction, place and scale nor on how the contour is cut into pieces. Lines have curvature 0,
     joints without a corner have the two values of their sides, and a cusp that of the curve beside it.
 
-    Corners have no curvature. They separate stretches, of which the two outermost places do not count: curvature does
+    Corners have no curvature. They separate stretches, whose two outermost places do not count: curvature does
     not return beyond them. A polygon has none.
 
     Args:

@@ -1,4 +1,4 @@
-"""What can be said of a closed chain of cubics: its length, area and curvature."""
+"""Length, area and curvature of a closed chain of cubics."""
 
 from __future__ import annotations
 

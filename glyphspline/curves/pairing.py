@@ -135,7 +135,7 @@ def pair_span(
     """Distance of a section of one segment from a stretch of another chain.
 
     Args:
-        chain: (n V, 4, 2), of which segment i, counted on past the last, is measured from parameter x to x_end.
+        chain: (n V, 4, 2); segment i, counted on past the last, is measured from parameter x to x_end.
         other: (m V, 4, 2); y, y_end: places on it.
         arc: empty, or (4,); see :func:`pair_instances`.
         coarse: search the segment for the points nearest to the other's joints; or else begin from a proportional

@@ -102,7 +102,7 @@ class Summary:
         return asdict(self) | {"rows": self.rows, "glyphs": self.glyphs, "bytes": self.bytes}
 
     def lines(self) -> Iterator[str]:
-        """What is said of it."""
+        """Its summary, in lines."""
         rest = [f"{count} {status}" for status, count in sorted(self.fonts.items()) if count and status != "taken"]
         more = f" ({', '.join(rest)})" if rest else ""
         size = f"{self.bytes / 1e6:.1f} MB"

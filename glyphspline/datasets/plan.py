@@ -92,7 +92,7 @@ class Plan:
 
     @cached_property
     def record(self) -> dict[str, Any]:
-        """The content of ``dataset.json``, from which a run with other options or fonts is told apart."""
+        """The content of ``dataset.json``, which differs for other options or fonts."""
         options = None if self.spec.options is None else asdict(self.spec.options)
         fonts = [[*f.key, f.file, f.status] for f in self.fonts]
         return {

@@ -21,7 +21,7 @@ NAMED = 3
 """Glyphs of a font that failed and are named, in each shard."""
 
 FACTS, MARK = b"glyphspline.shard", b"glyphspline.run"
-"""Keys of the metadata in a shard's footer: what it holds, and of which run it is."""
+"""Keys of the metadata in a shard's footer: its content, and the mark of its run."""
 
 Held: TypeAlias = "dict[int, OfFont]"
 """What a finished shard holds of each font, by the font's number in the plan."""

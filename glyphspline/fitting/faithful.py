@@ -26,7 +26,7 @@ class Fits(NamedTuple):
 
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
-        fit: from contours, and the number of a fit, to their results, of which the geometry is not yet measured.
+        fit: from contours, and the number of a fit, to their results, before their geometry is measured.
         apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
             Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in

@@ -46,7 +46,7 @@ the source's at a tolerance of 0.2 units.
 """
 
 RESPACINGS = 4
-"""How often vertices that are laid on the outline are spaced anew, before spans that miss the tolerance are cut.
+"""How often vertices on the outline are respaced, before spans that miss the tolerance are cut.
 
 Of 169 contours of two masters, with 9,117 segments, 206 segments stay the source's; without respacing 221, with one
 respacing 74, of 9,279 segments in 0.74 of the time.

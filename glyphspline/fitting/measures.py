@@ -75,7 +75,7 @@ def distance_columns(gaps: Sequence[float | None], bounds: Sequence[float], tole
 
 
 def with_geometry(result: ConvertedContours, precision: int) -> ConvertedContours:
-    """Results with length, area and curvature, as they are written with so many decimals, beside their sources'."""
+    """Results with length, area and curvature, as written with ``precision`` decimals, beside their sources'."""
     curves, polygons = result.curves, result.polygons
     found = geometry(curves, curves.rounded(precision), result.source, polygons.points, polygons.offsets)
     columns = {name: values.tolist() for name, values in found._asdict().items()}

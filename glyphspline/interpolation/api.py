@@ -268,7 +268,7 @@ def interpolate_batch(
     residual_tolerances: FloatArray | None = None,
     threads: int | None = None,
 ) -> BatchedInterpolation:
-    """Interpolation of many polygons laid end to end. A bad polygon has a status and raises no exception.
+    """Interpolation of many polygons in shared arrays. A bad polygon has a status and raises no exception.
 
     Args:
         points: (N, d) float64, contiguous, d ≥ 2; offsets: (K + 1,) int64, where each polygon begins, and N.

@@ -1,4 +1,4 @@
-"""Many cubic polygons in one compiled call, over threads: arrays laid end to end go in and come out."""
+"""Many cubic polygons in one compiled call, over threads: concatenated arrays go in and come out."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run_batch(
     end_tangents: FloatArray | None,
     threads: int | None = 1,
 ) -> BatchedInterpolation:
-    """Run the compiled driver over polygons laid end to end; arguments as :func:`.api.interpolate_batch` has them.
+    """Run the compiled driver over concatenated polygons; arguments as :func:`.api.interpolate_batch` has them.
 
     Args:
         method: of degree 3, variant 1 to 3. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.

@@ -1,4 +1,4 @@
-"""The result of an interpolation, and those of many as arrays laid end to end."""
+"""The result of an interpolation, and those of many as concatenated arrays."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Interpolation:
 
 @dataclass(frozen=True, eq=False)
 class BatchedInterpolation:
-    """Results for K polygons as arrays laid end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+    """Results for K polygons as concatenated arrays; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
 
     Where duplicates were merged, or a polygon was refused, the rest of its part is undefined.
 

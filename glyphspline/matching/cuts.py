@@ -84,7 +84,7 @@ def _strong_pairs(one: Landmarks, other: Landmarks, costs: FloatArray) -> tuple[
 
 
 def _surest(gains: FloatArray, pairs: IntArray) -> tuple[int, int]:
-    """The pair of which no landmark has another partner that is nearly as good."""
+    """The pair in which neither landmark has another partner nearly as good."""
     rows, columns = pairs.T
     own = gains[rows, columns]
     gains[rows, columns] = 0.0
@@ -120,7 +120,7 @@ def in_box(landmarks: Landmarks, points: FloatArray) -> FloatArray:
 
 
 def _starts(allowed: FloatArray, bars: FloatArray) -> IntArray:
-    """(k, 2) pairs of which one is surely right: of landmarks whose best partner is far better than the next."""
+    """(k, 2) pairs, one of them surely right: of landmarks whose best partner is far better than the next."""
     if not allowed.size:
         return np.empty((0, 2), dtype=np.int64)
     gains = np.sort(np.where(allowed < np.inf, bars - allowed, 0.0), axis=1)[:, ::-1]

@@ -57,7 +57,7 @@ ROUNDING = 0.7
 
 NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
-tangent is within so many degrees of that at the extremum."""
+tangent is within ``TILT`` degrees of that at the extremum."""
 
 
 class Landmarks:

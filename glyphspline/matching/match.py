@@ -166,7 +166,7 @@ def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contou
 
 
 def _together(parts: Sequence[Contour]) -> MasterContour:
-    """One contour in all masters, of which the same segments are lines."""
+    """One contour in all masters, with the same segments as lines."""
     lines = np.all([contour.degrees == 1 for contour in parts], axis=0)
     kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
     return MasterContour(np.stack([contour.cubics()[kept] for contour in parts]), np.where(lines, 1, 3))

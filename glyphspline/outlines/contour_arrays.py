@@ -30,7 +30,7 @@ class ContourArrays(NamedTuple):
         return len(self.offsets) - 1
 
     def rounded(self, precision: int) -> ContourArrays:
-        """The contours as they are written with so many decimals."""
+        """The contours as written with ``precision`` decimals."""
         return self._replace(points=np.round(self.points, precision) + 0.0)
 
     def part(self, first: int, last: int) -> ContourArrays:

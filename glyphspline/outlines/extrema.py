@@ -98,7 +98,7 @@ def peaks(values: Sequence[float], height: float) -> list[int]:
 
 
 def stationary(steps: FloatArray) -> FloatArray:
-    """(r, 2) the parameters where cubics turn in one coordinate, of which (r, 3) are the steps between Bézier points.
+    """(r, 2) the parameters where cubics turn in one coordinate, from (r, 3) steps between Bézier points.
 
     NaN where there are fewer. At a double root a curve has an inflection, not an extremum.
     """

@@ -21,7 +21,7 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
     Curvature times this is positive where the ink is convex, whichever way a font draws its outer contours: TrueType
     clockwise, PostScript counter-clockwise. A contour that runs counter-clockwise has its ink to the left, unless it is
     the counter of a clockwise one, where the others wind the other way round it. That is looked at in the middle of one
-    segment, whichever point the contour begins at: contours may share the ends of theirs.
+    segment, whichever point the contour begins at: contours may share ends of segments.
     """
     count = len(contours.offsets) - 1
     chords, starts = np.empty((CHORDS * len(contours.degrees), 2)), CHORDS * contours.offsets

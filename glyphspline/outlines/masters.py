@@ -228,7 +228,7 @@ def region_scalars(regions: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def distinct_regions(regions: Iterable[Region]) -> list[Region]:
-    """Regions with a peak of their own each, of which the scalars of the given ones are linear combinations.
+    """Regions of distinct peaks, whose scalars combine linearly to those of the given regions.
 
     Where components of a glyph have unlike intermediate masters, regions of one peak differ in their extents: from 0
     to 1 peaking at 1, and from 0.6 to 1. Such are cut at the ticks of all regions on an axis: into one from 0 to 1

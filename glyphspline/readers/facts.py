@@ -92,7 +92,7 @@ def overlaps(outline: Outline) -> bool:
     """Whether any part of a glyph is filled twice or inside out: its area then differs from the sum over contours."""
     import pathops
 
-    from ..curves.integrals import area  # imports the compiler, which what is said at once does not need
+    from ..curves.integrals import area  # imports the compiler, which the quick facts do not need
     from ..outlines.overlaps import contours_of
 
     if not outline.contours:

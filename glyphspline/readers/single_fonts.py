@@ -30,7 +30,7 @@ class Unmatched:
 
 
 def axis_of(words: str, count: int) -> tuple[DesignAxis, list[float]]:
-    """An axis and the fonts' values on it from "wght=300:700": of which the first is the default's.
+    """An axis and the fonts' values on it from "wght=300:700"; the first is the default's.
 
     Raises:
         FontError: the words are no such axis, or not one for ``count`` fonts.

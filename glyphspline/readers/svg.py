@@ -230,7 +230,7 @@ def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None
 
 
 def arc_cubics(arc: Any, degrees: float) -> Iterator[list[complex]]:
-    """The three points that each cubic of an elliptic arc adds, one for so many degrees."""
+    """The three points that each cubic of an elliptic arc adds; a cubic spans at most ``degrees``."""
     pieces = max(1, int(np.ceil(abs(arc.delta) / degrees)))
     handle = 4 / 3 * np.tan(np.radians(arc.delta) / pieces / 4) / np.radians(arc.delta)
     for k in range(pieces):

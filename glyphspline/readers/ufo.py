@@ -87,7 +87,7 @@ class Ufo(Source):
         return self._glyph_set(name)
 
     def _glyph_set(self, layer: str | None) -> GlyphSet:
-        """The glyphs of a layer, all of which are inside the UFO."""
+        """The glyphs of a layer, all inside the UFO."""
         glyphs = self._reader.getGlyphSet(layer)
         glyphs.glyphClass = _Glyph
         outside = [name for name, file in glyphs.contents.items() if Path(file).name != file]

@@ -75,7 +75,7 @@ def glyph_text(drawing: Mapping[str, str], files: Mapping[str, str], contours: S
 
 
 def plain(value: Any, digits: int = DECIMALS) -> Any:
-    """A value as JSON has it: a float of so many significant digits, an integer if it is whole, None if not finite."""
+    """A value as JSON has it: rounded to ``digits`` digits, an integer without a fraction; None if not finite."""
     if not isinstance(value, float):
         return value
     near = float(f"{value:.{digits}g}")

@@ -87,7 +87,7 @@ def _uni(code: int) -> str:
 
 
 def _char(code: int) -> str:
-    """The character, or the name of its code point if no file can be called so or nobody can see it."""
+    """The character, or the name of its code point if file names cannot have it or it is invisible."""
     character = chr(code)
     return character if _is_seen(character) and character not in '."*/:<>?[\\]|' else _uni(code)
 

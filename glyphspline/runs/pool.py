@@ -224,7 +224,7 @@ class WorkerPool(Executor):
             self.is_closed = True
             self._wake.send_bytes(b"")
         if wait:
-            if not self._begun:  # what workers import may be compiled for minutes yet, which nobody waits for now
+            if not self._begun:  # what workers import may be compiled for minutes yet, which no call waits for now
                 kill_server()
             self._thread.join()
 

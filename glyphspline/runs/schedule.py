@@ -50,7 +50,7 @@ def side_of(source: Source) -> Side:
 
 @lru_cache(maxsize=1)
 def sources(*places: Place) -> list[Source]:
-    """The sources of a job, opened once; only those of one job are kept, each of which may take 100 MB."""
+    """The sources of a job, opened once; only one job's are kept, as each may take 100 MB."""
     from ..readers import open_source
 
     return [open_source(path, face_index, dict(location)) for path, face_index, location in places]

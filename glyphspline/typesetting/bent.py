@@ -32,7 +32,7 @@ ENOUGH = 0.5
 """Share of the tolerance below which a cubic's handles are not fitted any more."""
 
 ROUNDING_RADIUS = 4.0
-"""Small kinks of the path are rounded by a radius of so many heights of the text."""
+"""Small kinks of the path are rounded by this radius, in heights of the text."""
 
 VISIBLE = 1e-4
 """Radians by which a jump of the path's curvature may turn a line of the text without being kept as a joint."""

@@ -1,4 +1,4 @@
-"""Contours of glyphs, each as often as it stands in a text, moved into place; glyphs that touch as one outline."""
+"""Contours of glyphs, each as often as it occurs in a text, moved into place; glyphs that touch as one outline."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def _one(outlines: Sequence[Outline], motion: Motion) -> Outline:
 
 
 def _boxes(parts: Parts) -> FloatArray:
-    """(n, 4) left, bottom, right and top of the control points of what stands in each place; NaN if there are none."""
+    """(n, 4) left, bottom, right and top of the control points at each place; NaN if there are none."""
     corners = np.full((len(parts.outlines), 4, 2), np.nan)
     for corner, outline in zip(corners, parts.outlines, strict=True):
         points = outline.arrays.points

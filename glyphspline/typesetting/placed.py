@@ -1,4 +1,4 @@
-"""A text laid out: which glyphs stand where, and their results and outlines put there."""
+"""A text laid out: which glyphs are where, and their results and outlines moved there."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Layout:
     """A text laid out: n glyphs in visual order, line by line. Lengths are in font units of the first font, y is up.
 
     Attributes:
-        text: what is laid out. fonts: the first, and those that stand in for glyphs it lacks.
+        text: what is laid out. fonts: the first, and those for glyphs that it lacks.
         font: (n,) which of the fonts a glyph is of. gid: (n,) its index in that font.
         cluster: (n,) number of the first character of the text that the glyph stands for.
         line: (n,) which line it is on.
@@ -83,7 +83,7 @@ class Layout:
         return self._pairs[1]
 
     def distinct(self) -> list[tuple[int, int]]:
-        """Font and glyph index of each glyph, once however often it stands in the text, in ascending order."""
+        """Font and glyph index of each glyph, once, however often it occurs in the text, in ascending order."""
         return [(font, gid) for font, gid in self._pairs[0].tolist()]
 
     def outlines(self) -> list[Outline | GlyphsplineError]:
@@ -197,13 +197,13 @@ class Layout:
 
 
 def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:
-    """Which contours stand in the text, and how each is moved; ``ends``: where those of each part begin."""
+    """Which contours the text has, and how each is moved; ``ends``: where those of each part begin."""
     counts = np.diff(ends)[parts.which]
     return ranges(ends[:-1][parts.which], counts), Motion.by(parts.origin, parts.angle).repeated(counts)
 
 
 def _rounded_anew(parts: Parts, precision: int) -> bool:
-    """Whether coordinates with so many decimals are not such any more where the parts are put."""
+    """Whether moving the parts gives coordinates more than ``precision`` decimals."""
     steps = parts.origin * 10.0**precision
     quarters = parts.angle * (2.0 / np.pi)
     return any(bool(np.abs(values - np.round(values)).max(initial=0.0) > 1e-6) for values in (steps, quarters))

@@ -1,4 +1,4 @@
-"""Scripts of characters as runs need them (UAX #24), and how characters stand in vertical lines (UAX #50)."""
+"""Scripts of characters as runs need them (UAX #24), and which are upright in vertical lines (UAX #50)."""
 
 from __future__ import annotations
 
@@ -67,9 +67,9 @@ def scripts_of(text: str) -> list[str]:
 
 
 def upright_in_columns(text: str, clusters: Sequence[int]) -> list[bool]:
-    """Whether each character stands upright in a vertical line; others are turned with their line, clockwise.
+    """Whether each character is upright in a vertical line; others are turned with their line, clockwise.
 
-    A grapheme cluster stands as its first character does.
+    A grapheme cluster is set as its first character.
     """
     stands = {character: _stands(character) for character in set(text)}
     found = [False] * len(text)

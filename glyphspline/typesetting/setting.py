@@ -15,7 +15,7 @@ PathAlign: TypeAlias = Literal["start", "center", "end"]
 Align: TypeAlias = Literal[PathAlign, "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
 Side: TypeAlias = Literal["left", "right"]
-"""Of a path, on which letters stand."""
+"""The side of a path that letters are on."""
 
 LANGUAGE = re.compile(r"(?:[A-Za-z]{2,3}|[A-Za-z]{5,8}|x)(?:-[A-Za-z0-9]{1,8})*")
 """Language tags (BCP 47), and HarfBuzz's private ones, as in "x-hbot-ABCD"."""

@@ -48,7 +48,7 @@ class Run(NamedTuple):
 
 
 class Shaped(NamedTuple):
-    """n glyphs in visual order, in units of the first font's em, as they stand on the page.
+    """n glyphs in visual order, in units of the first font's em, as on the page.
 
     Attributes:
         gid: (n,). cluster: (n,) number in the paragraph of the first character that a glyph stands for.

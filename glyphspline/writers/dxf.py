@@ -71,7 +71,7 @@ def to_dxf(
     Args:
         result: of :func:`convert`.
         size: height from descender to ascender with its unit, as in "20mm", "2cm" or "1in"; DXF has no pt, pc and px:
-            these become millimetres. None: a unit of the drawing is a font unit, and no unit of length is said.
+            these become millimetres. None: a unit of the drawing is a font unit, and the drawing has no unit of length.
         dxf: "spline" writes the curves as they are: within ``deviation_bound`` of the source, and the rounding to
             ``precision`` that this bound counts and the file does not have, at most 0.71 of the last decimal.
             "polyline" writes closed LWPOLYLINEs, within ``flatness`` of these curves.

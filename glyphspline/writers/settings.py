@@ -55,7 +55,7 @@ class Appearance:
 
     Attributes:
         view_box: the region shown; see :func:`.svg.document.to_svg`.
-        size: height of the drawing with its unit (mm, cm, in, pt, pc, px), its width in proportion; None: none is said.
+        size: height of the drawing with its unit (mm, cm, in, pt, pc, px), its width in proportion; None: no size.
         fill: colour of the ink: "currentColor", "none", #rgb, #rrggbb or a name of CSS.
         stroke: colour of a line of 1/1000 em along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit, which is the size that type has.
@@ -80,14 +80,14 @@ class Appearance:
             require(is_colour(getattr(self, name)), rule, getattr(self, name))
 
     def scale(self, height: float, units_per_em: float) -> tuple[float, str] | None:
-        """Length of a font unit in a drawing so many of them high, and its unit; None where no size is said."""
+        """Length of a font unit in a drawing, by its height in font units, and its unit; None without ``size``."""
         size, em = _length_of("size", self.size), _length_of("em", self.em)
         if size:
             return size[0] / height, size[1]
         return em and (em[0] / units_per_em, em[1])
 
     def inches(self, height: float, units_per_em: float, default: float) -> float:
-        """Height in inches of a drawing so many font units high, ``default`` where no size is said."""
+        """Height in inches of a drawing, by its height in font units; ``default`` without ``size``."""
         found = self.scale(height, units_per_em)
         return default if found is None else height * found[0] * INCHES[found[1]]
 

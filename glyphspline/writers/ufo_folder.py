@@ -5,8 +5,8 @@ layer ``public.background`` contains the polygon of each contour; each glyph's `
 ``org.glyphspline.contours``, the splines' knots, footpoint parameters and measures.
 
 Glyphs drawn anew in all masters: a designspace, a folder with one UFO for each master, and how they are placed. Glyphs
-with fewer masters than others are in the UFOs of theirs; glyphs with masters of their own, which not all share, are at
-these in layers of the default's UFO. Components are decomposed.
+with fewer masters than others are only in the UFOs of those masters; glyphs with masters of their own, which not all
+share, are at these in layers of the default's UFO. Components are decomposed.
 """
 
 from __future__ import annotations

@@ -242,7 +242,7 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
 
 
 REACH, HEIGHT = 6.0, 2.0
-"""How far a corner is looked at to either side, and how far it has to stand out from the chord, in tolerances.
+"""How far a corner is examined to either side, and how far it has to stand out from the chord, in tolerances.
 
 At this reach a corner between straight sides shows from a turn of 39 degrees. Others may be rounded, if that saves
 something and stays within the tolerance; but never between lines that stay lines.
@@ -253,7 +253,7 @@ something and stays within the tolerance; but never between lines that stay line
 def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     """Whether a corner is one at the scale of the tolerance too, and not the zigzag of a ragged outline.
 
-    The outline is looked at from a few tolerances before the corner to as many after it: the corner has to stand out
+    The outline is examined from a few tolerances before the corner to as many after it: the corner has to stand out
     from their chord, and its two sides have to turn by the corner angle.
     """
     N = len(samples) - 1

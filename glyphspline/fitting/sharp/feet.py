@@ -70,7 +70,7 @@ class Rows(NamedTuple):
 
 @compiled
 def empty_rows(masters: int, samples: int) -> Rows:
-    """Arrays for the rows of so many samples."""
+    """Arrays for the rows of ``samples`` samples."""
     room, apart = (masters, (1 + EXTRA) * samples), (masters, samples if masters > 1 else 0)
     return Rows(
         np.zeros((masters, 1), dtype=np.int64), np.empty(room, dtype=np.int64), np.empty(room), np.empty(room),

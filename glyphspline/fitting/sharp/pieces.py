@@ -15,7 +15,7 @@ class Pieces(NamedTuple):
     """Lines, arcs and closed curves, contour after contour, in order.
 
     Attributes:
-        contour: (P,) of which each is a piece. joints: (P, 2) of it between which the piece runs.
+        contour: (P,) the contour of each. joints: (P, 2) of it between which the piece runs.
         spans: (P,) 0 for a line. closed: (P,) 1 for a closed curve, which runs once round its contour, or else 0.
         starts: (P + 1,) where in ``vertices`` each begins.
         vertices: (V, K, 2) of each piece in each master, both ends of a line or an arc among them. places: (V,) of

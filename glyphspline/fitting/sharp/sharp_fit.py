@@ -144,7 +144,7 @@ def fit_sharp(
     the options, masters in the whole design space.
 
     Pieces that miss it although their samples were near enough are fitted again more closely, and in the end become
-    the source's own segments, of which each is an arc of one span.
+    the source's own segments, each an arc of one span.
 
     Args:
         source: the contours' degrees and offsets. cubics: (K, m, 4, 2) their segments in each of K masters.
@@ -176,7 +176,7 @@ def _certified(
     """The pieces with curves put through them, measured against the source.
 
     Args:
-        before: a fit of which some of the pieces are. same: (P,) which; -1 for the others.
+        before: a fit that has some of the pieces. same: (P,) their numbers in it; -1 for the others.
     """
     count, masters = len(chains.flipped), len(chains.cubics)
     known = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}

@@ -1,6 +1,6 @@
 """Small cubic splines of variant 2 that a fit moves: arcs clamped at both ends, and closed curves.
 
-A spline follows K *masters* of one outline at once: it is a curve in R^{2K}, of which master v has the coordinates 2v
+A spline follows K *masters* of one outline at once: it is a curve in R^{2K}; master v has the coordinates 2v
 and 2v + 1. Lengths there are the root mean squares of those in the masters. An outline by itself is its only master.
 
 Arcs and closed curves have the same form. Knot interval ``s`` runs from vertex s to vertex s + 1; outside of an arc
@@ -159,7 +159,7 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
 
 @compiled
 def iterate(curve: Curve, tolerance: float, most: int) -> float:
-    """Variant 2 (Algorithm 2) from the control points at hand, for at most so many passes; the largest error left."""
+    """Variant 2 (Algorithm 2) from the present control points, in at most ``most`` passes; the largest error left."""
     k, closed, X, e, masters = curve.size[0], curve.size[1], curve.X, curve.e, len(curve.X)
     error = 0.0
     for n in range(most + 1):

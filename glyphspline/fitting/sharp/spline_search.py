@@ -234,7 +234,7 @@ def improve(fit: Fit, rounds: int, width: int) -> float:
         rounds: most steps. width: the number of slots.
 
     Returns:
-        The largest distance of a cold run that passed, of which ``fit.curve`` and ``fit.rows`` are then; else the least
+        The largest distance of a cold run that passed, whose results ``fit.curve`` and ``fit.rows`` are; else the least
         one seen, of a warm run.
     """
     samples, near, margin, residual = fit.samples, fit.near, fit.settings.margin, fit.settings.residual

@@ -1,4 +1,4 @@
-"""Where the vertices of a contour lie along it: even at first, laid anew where the curve fails, put in, and graded.
+"""Where the vertices of a contour lie along it: even at first, respaced where the curve fails, inserted, and graded.
 
 A *field* says at every point how long a chord may be there. Three things bound it, each measured on the curve of a
 model outline:
@@ -9,10 +9,10 @@ model outline:
 - a jump Δκ of curvature: off by up to 0.03 Δκ h², h the chord;
 - curvature κ itself: off by some 0.004 (κ³ + |κ''|) h⁴.
 
-Away from its bounds the field grows by ``log(growth)`` a unit of length: chords laid end to end along such a field grow
+Away from its bounds the field grows by ``log(growth)`` a unit of length: consecutive chords along such a field grow
 by the factor ``growth``. Vertices lie at all corners and, between two, where the integral of 1/field is whole.
 
-Where spans fail the field is lowered, and the stretches between corners in which one does are laid again. A vertex put
+Where spans fail the field is lowered, and the stretches between corners in which one does are respaced. A vertex put
 into a span would leave chords of half the length beside whole ones, which the curve answers with a wobble, which fails
 in turn: a round letter took twice the vertices, with a curvature extremum at each.
 """
@@ -192,7 +192,7 @@ def lowered(
     """Lower a field over the spans that fail, and over those beside them less and less.
 
     Args:
-        field: (m TABLE + 1,), which changes. places: (n,) of the vertices, of which ``corners`` are at corners.
+        field: (m TABLE + 1,), which changes. places: (n,) of the vertices; ``corners``: those at corners.
         again: the stretches between corners in which spans fail. errors: (n,) of the span after each vertex.
         near: distance allowed. growth: logarithm of the factor by which chords grow at most.
     """
@@ -223,7 +223,7 @@ def lowered(
 
 @compiled
 def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, again: BoolArray) -> FloatArray:
-    """The places, increasing, with those of some stretches between corners laid evenly by the field."""
+    """The places, increasing, with those of some stretches between corners spaced evenly by the field."""
     n, count, steps, total = len(places), len(corners), steps_of(field, lengths), 0
     parts, wholes = np.empty(count, dtype=np.int64), np.empty(count)
     for k in range(count):

@@ -1,7 +1,7 @@
 """The steps of a smooth fit for all contours of a glyph that are not done yet, on ragged arrays.
 
-Vertices are laid, the curves through them measured, and vertices put in and taken out. Part i of a ragged array belongs
-to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
+Vertices are placed, the curves through them measured, and vertices inserted and removed. Part i of a ragged array
+belongs to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def first_places(
 
 @compiled
 def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
-    """An array of which the first ``count`` values are in use, or a larger one, with more after these."""
+    """An array whose first ``count`` values are in use, or a larger one, with more after these."""
     stop = count + len(part)
     if stop > len(values):
         values = np.concatenate((values[:count], np.empty(2 * stop)))
@@ -148,12 +148,12 @@ def changed(
     """The contours of a trial that change, and their ragged places.
 
     Args:
-        fields: of all contours, see :func:`first_places`; lowered where vertices are laid anew.
+        fields: of all contours, see :func:`first_places`; lowered where vertices are respaced.
         more: (K,) whether to have more vertices where a contour misses the tolerance. fewer: (K,) whether to remove
             vertices that seem unnecessary. Both are indexed by contour.
         variant: of the method.
         power: the error of a span is assumed to grow with this power of its length.
-        anew: whether more vertices are laid anew, evenly, or put into the spans that miss the tolerance.
+        anew: whether more vertices are respaced, evenly, or inserted into the spans that miss the tolerance.
     """
     which, places, offsets, points, bounds, gaps, worst, _ = trial
     those, new = np.empty(len(which), dtype=np.int64), np.zeros(len(which) + 1, dtype=np.int64)
@@ -200,7 +200,7 @@ class Good(NamedTuple):
     """Polygons that passed, and the next vertices to try; all ragged, and of each part only the first values count.
 
     Attributes:
-        which: (k,) numbers of the contours. counts: (k,) vertices of the polygons, of which there were more at first.
+        which: (k,) numbers of the contours. counts: (k,) vertices of the polygons, which had more at first.
         places, points, gaps: of the polygons and their spans.
         keep: vertices of the next trial. needed: vertices that every further trial keeps.
     """

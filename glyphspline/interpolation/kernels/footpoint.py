@@ -14,7 +14,7 @@ coefficients are e_1 + (j/m) L Q_{j-1} over a length L (m its degree), has the s
 Counting sign changes of e_1's own Bernstein form looks simpler, but fails where the method spends its time: near
 convergence D is almost 0 at y0, a nearly double zero, which D' then has almost twice in a row.
 
-**Search.** An interval of which that cannot be shown is halved. Of all parts the one with the least lower bound, the
+**Search.** An interval for which that cannot be shown is halved. Of all parts the one with the least lower bound, the
 smallest Bernstein coefficient of D, comes next. A part is dropped if its lower bound exceeds the best distance found,
 if the certificate holds for its own local minimum, or if its lower bound is below the best distance by less than
 ``SLACK`` and ``tie``: then no point of it is nearer but for rounding. This is what ends the search where Q vanishes at

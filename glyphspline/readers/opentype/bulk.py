@@ -302,7 +302,7 @@ class BulkReader:
             places.append(used[USED])
         expected = expected[: len(places) - 1]
         if not self._hb.has_records:
-            extents = self._hb.font.get_glyph_extents  # none of a char string with a fault, of which a part is drawn
+            extents = self._hb.font.get_glyph_extents  # none of a faulty char string, which is drawn in part
             expected[[extents(gid) is None for gid in gids[: len(expected)]]] = UNUSUAL
         return np.array(places, dtype=np.int64), expected
 

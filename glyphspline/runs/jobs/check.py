@@ -51,7 +51,7 @@ class Checked(NamedTuple):
 
     Attributes:
         rows: of the tasks that were done together. axes: kinks of each along each axis, in numbers.
-        shapes: (n,) of the row's contour, wherever it stands. kinks: along each axis, if they are asked for.
+        shapes: (n,) of the row's contour, in whichever glyph. kinks: along each axis, if they are asked for.
         error: why the only task could not be checked, or None.
     """
 
@@ -139,7 +139,7 @@ class AxesJob(CheckJob):
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
-    """(n,) a number for the shape of each row's contour, the same wherever it stands; and of the other one, if any."""
+    """(n,) a number for the shape of each row's contour, the same in all glyphs; and of the other one, if any."""
     found = np.zeros(len(rows.glyphs), dtype=np.int64)
     known: dict[tuple[int, int, int], int] = {}
     others = rows.numbers[:, 3].astype(np.int64).tolist()
@@ -196,7 +196,7 @@ def check_font(
         steps: of each axis, at whose ends glyphs are checked besides the masters.
         executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
         observer: called after each chunk of glyphs.
-        once: a contour that stands in several glyphs, as components do, is reported in the first one only, and so are
+        once: a contour that occurs in several glyphs, as components do, is reported in the first one only, and so are
             two that touch or cross. Directions, which depend on all contours of a glyph, are reported in each.
         kinks: gets the smooth joints of each batch of glyphs along each axis.
 
@@ -240,7 +240,7 @@ class _Reported:
         self._shapes = np.zeros(0, dtype=np.int64)
 
     def fresh(self, shapes: IntArray, glyphs: IntArray) -> BoolArray:
-        """(n,) whether the shape of a row's contour stands in no glyph before the row's glyph; adds them."""
+        """(n,) whether the shape of a row's contour occurs in no glyph before the row's glyph; adds them."""
         unique, rows = np.unique(shapes, return_inverse=True)
         first = np.full(len(unique), np.iinfo(np.int64).max)
         np.minimum.at(first, rows, glyphs)
@@ -349,7 +349,7 @@ def check_fonts(
         face_index: the only face of each file; without it, all. location: of variable fonts.
         jobs: worker processes; None takes all cores if there are many glyphs, 0 does everything in this process.
         watch: opened for each face; yields its observer, see :data:`.engine.Observer`.
-        alone: there is one font, of which one face is checked; its errors are raised.
+        alone: one face of one font is checked; its errors are raised.
     """
     if alone:
         face_index = face_index or 0

@@ -59,7 +59,7 @@ def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, obser
 
 
 def _together(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Counts are added, lists put end to end; overlaps are null if nobody could look for them."""
+    """Counts are added, lists joined; overlaps are null if the search needs a missing library."""
     names = ("contours", "segments", "broken_glyphs")
     found: dict[str, Any] = {name: sum(part[name] for part in parts) for name in names}
     found |= {name: [glyph for part in parts for glyph in part[name]] for name in ("broken", "degenerate")}

@@ -160,7 +160,7 @@ def pairs_of(
     indices.
 
     Args:
-        chosen_old, chosen_new: only pairs of which one is chosen, and glyphs of one source that are; None: all.
+        chosen_old, chosen_new: only pairs with a chosen glyph, and chosen glyphs of one source; None: all.
     """
     mine, its = heads_of(old), heads_of(new)
     partners: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""The drawings of a text, made by a worker: a text is laid out by the command, and fitted where it can be killed."""
+"""The drawings of a text, made by a worker: the command lays the text out, a process that can be killed fits it."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ are inside an arc, the arc is a quadratic B-spline of uniform knots: it has no k
 instance, wherever its control points are rounded to.
 
 All masters are fitted by least squares at the same parameters, so that an instance of the font is the fit of the
-instance. Errors along the curve, which nobody sees, count little.
+instance. Errors along the curve, which are invisible, count little.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Arc:
     Attributes:
         cubics: (K, m, 4, 2) in the masters. closed: whether the arc is a whole contour without ends.
         ends: (K, 2, 2) where it begins and ends, already rounded; not read if closed.
-        straight: whether it is a line, of which there is nothing to fit.
+        straight: whether it is a line, which needs no fit.
         leaving, arriving: (K, 2) the lines before and after it, pointing into the arc, where it is to begin and end
             along them; else None.
     """
@@ -195,7 +195,7 @@ class _Fitting:
 
 
 def _solved(form: FloatArray, right: FloatArray, whole: FloatArray, known: BoolArray) -> FloatArray:
-    """The control points (K, n, 2) of least error, of which those ``known`` stay as they are."""
+    """The control points (K, n, 2) of least error; those ``known`` stay as they are."""
     found, free = whole.copy(), ~known
     if free.any():
         rest = right[:, free] - np.einsum("kacbd,kbd->kac", form[:, free][:, :, :, known], whole[:, known])

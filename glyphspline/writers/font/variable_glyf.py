@@ -36,7 +36,7 @@ BETWEEN = 16
 """Locations inside the design space, besides the corners of its grid, where the distance of quadratics is measured."""
 
 PHANTOMS = 4
-"""Points after those of the contours, which stand for the advance and the bearings."""
+"""Points after those of the contours, which encode the advance and the bearings."""
 
 
 class Quadratics:

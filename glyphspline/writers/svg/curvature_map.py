@@ -34,10 +34,10 @@ def to_curvature_svg(
 ) -> str:
     """The outline with its curvature comb, as an SVG document that is legible on light and dark.
 
-    A tooth stands on the curve along its normal, on the outer (convex) side, away from the centre of curvature. Its
-    length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot. Colour
-    is signed κ: blue and violet where the ink is convex, yellow and red where it is concave, whichever way the contours
-    run. The legend is in 1/em: curvature times units per em.
+    A tooth starts on the curve and follows its normal, on the outer (convex) side, away from the centre of curvature.
+    Its length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot.
+    Colour is signed κ: blue and violet where the ink is convex, yellow and red where it is concave, whichever way the
+    contours run. The legend is in 1/em: curvature times units per em.
 
     Args:
         glyph: a result of :func:`convert`.
@@ -78,7 +78,7 @@ def map_document(
     control_polygon: bool = False,
     in_corners: bool = False,
 ) -> bytes:
-    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves that the comb stands on."""
+    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves under the comb."""
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
