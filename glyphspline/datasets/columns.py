@@ -10,6 +10,7 @@ and the rows of a raster, have a fixed size in the schema too. A measure is null
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from ..fitting.results import QUANTITIES
@@ -98,6 +99,7 @@ def type_of(name: str) -> Any:
     return pa.list_(type_of(name[:-2])) if name.endswith("[]") else pa.type_for_alias(name)
 
 
+@cache  # each chunk of rows asks for it
 def schema(spec: DatasetSpec, of_fonts: bool = False) -> Any:
     """The columns of rows as an Arrow schema, with those of their fonts if asked for; fields have units as metadata."""
     pa = arrow()
