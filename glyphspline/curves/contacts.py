@@ -55,7 +55,7 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
             small = radius
             if c == d:  # the strands may be the two sides of a fold, or of a small loop
                 small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
-                if small < radius and abs(one.way(a, a_end)) > POINT * radius:
+                if small < radius and one.reach(a, a_end) > POINT * radius:
                     continue
             along = other.way(b, b_end) >= 0
             sides = _is_left(one, a, other, b, not along, small), _is_left(one, a_end, other, b_end, along, small)

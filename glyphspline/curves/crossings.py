@@ -35,7 +35,10 @@ DEEPEST = 24
 MOST_STEPS, MOST_MEETINGS = 20_000_000, 20_000
 """Pairs of a glyph that are looked at, a second's work, and those that meet. Real glyphs take thousands and tens."""
 
-STACK = 3 * 3 * DEEPEST
+DEEPER = 9
+"""Halvings more of pieces that share a joint and are not decided: loops at joints are smaller than chord errors."""
+
+STACK = 3 * 3 * (DEEPEST + DEEPER)
 """Pairs to do at a time: each halving adds two at most, to a piece's pair with itself and then to pairs of halves."""
 
 SELF, AFTER, BEFORE = 1, 2, 4
@@ -146,7 +149,8 @@ def glyph_meetings(
                 if decided(A[top], B[top], kind):
                     top -= 1
                     continue
-                ended, other_ended = marks[top, 0] >= deep[s], marks[top, 1] >= deep[t]
+                deepest = DEEPER if kind else 0
+                ended, other_ended = marks[top, 0] >= deep[s] + deepest, marks[top, 1] >= deep[t] + deepest
                 on_each_other = 0 if kind else same_points(A[top], B[top])
                 if kind & SELF:
                     top = top - 1 if ended else halve_itself(A, B, marks, begins, top)
@@ -156,7 +160,8 @@ def glyph_meetings(
                         x, x_end, y = 0.0, 1.0, 0.0 if on_each_other > 0 else 1.0
                         y_end = 1.0 - y
                     elif kind == 0:
-                        x, y, x_end, y_end = meeting(A[top], B[top], touch)
+                        finer = max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
+                        x, y, x_end, y_end = meeting(A[top], B[top], touch * 0.25**finer)
                     if x >= 0.0:
                         if count == len(found):
                             more = np.empty((2 * count, 6))

@@ -124,6 +124,16 @@ def test_a_small_loop_at_a_fold_is_found(handle: float, expected: int) -> None:
     assert len(crossings_of(np.array([there, back, cap]))) == expected
 
 
+def test_a_loop_at_a_joint_that_is_smaller_than_the_chords_there_is_found() -> None:
+    """Strands there and back, a quarter of a unit apart, whose ends at the joint point past each other."""
+    there = np.array([(696.42, 463.14), (696.84, 414.15), (704.99, 348.03), (705, 348)])
+    back = np.array([(705, 348), (705, 347.97), (696.85, 414.21), (696.43, 463.29)])
+    around = lines([(696.43, 463.29), (696.43, 800), (600, 800), (600, 463.14), (696.42, 463.14)])[:4]
+    ((_, places),) = crossings_of(np.concatenate([[there, back], around]))
+    assert np.allclose(places, (0.99937, 1.00108), atol=1e-4)
+    assert not crossings_of(np.concatenate([[there, back + [0.1, 0]], around]))
+
+
 def test_a_loop_within_a_segment_is_found() -> None:
     loop = np.array([[(0, 0), (30, 30), (-20, 30), (10, 0)], [(10, 0), (7, -5), (3, -5), (0, 0)]])
     ((pair, (x, y)),) = crossings_of(loop)
