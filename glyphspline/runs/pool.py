@@ -34,6 +34,12 @@ POLL = 0.25
 SMALL = 32_768
 """Bytes of a call that a pipe buffers: sending them does not block."""
 
+STARTS = 4
+"""Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it."""
+
+STARTING = 1800.0
+"""Seconds in which a process has to start: compiling everything takes two minutes of an idle core, more of a busy one."""
+
 Call = tuple[Future[Any], bytes]
 """The future of a call, and its function and arguments, pickled."""
 
@@ -47,7 +53,7 @@ class TimeLimitError(GlyphsplineError):
 
 
 class WorkerStartError(GlyphsplineError):
-    """A process died before its first call; others would too."""
+    """Several processes in a row died before their first call; others would too."""
 
 
 def pool_size(pool: Executor) -> int:
@@ -160,9 +166,15 @@ class _Worker:
         self.sign = context.RawValue("d", 0.0)
         self.calls, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
-        self.process.start()
-        theirs.close()
-        self.ready = False
+        self.ready, self.started = False, time.monotonic()
+        limit = threading.Timer(STARTING, kill_server)  # a start waits for the process from which workers are forked
+        limit.daemon = True
+        limit.start()
+        try:
+            self.process.start()
+        finally:
+            limit.cancel()
+            theirs.close()
         self.has: deque[Call] = deque()
 
     def give(self, call: Call) -> None:
@@ -204,13 +216,21 @@ class WorkerPool(Executor):
             start_forkserver(preload)
         self._queue: deque[Call] = deque()
         self._wake, self._woken = self._context.Pipe()
-        self.is_closed = self._begun = False
+        self.is_closed, self._starting = False, True
+        self._error: Exception | None = None
+        self._died = 0  # processes in a row that died while they started
         self._workers: list[_Worker] = []
         self._thread = threading.Thread(target=self._manage, daemon=True)
         self._thread.start()
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Queue a call of a function that can be pickled."""
+        """Queue a call of a function that can be pickled.
+
+        Raises:
+            WorkerStartError: no process could start.
+        """
+        if self._error is not None:
+            raise self._error
         if kwargs or self.is_closed:
             raise RuntimeError("the pool is closed, or was given keywords")
         future: Future[Any] = Future()
@@ -224,7 +244,7 @@ class WorkerPool(Executor):
             self.is_closed = True
             self._wake.send_bytes(b"")
         if wait:
-            if not self._begun:  # what workers import may be compiled for minutes yet, which no call waits for now
+            if self._starting:  # what workers import may be compiled for minutes yet, which no call waits for now
                 kill_server()
             self._thread.join()
 
@@ -233,7 +253,7 @@ class WorkerPool(Executor):
             while not self.is_closed:
                 self._start()
                 self._assign()
-                busy = any(worker.has for worker in self._workers)
+                busy = any(worker.has or not worker.ready for worker in self._workers)
                 awaited = [self._woken, *(worker.calls for worker in self._workers)]
                 for item in connection.wait(awaited, POLL if busy else None):
                     if item is self._woken:
@@ -242,7 +262,7 @@ class WorkerPool(Executor):
                         self._receive(next(worker for worker in self._workers if worker.calls is item))
                 self._end_hung()
         except Exception as error:
-            self.is_closed = True
+            self._error, self.is_closed = error, True
             self._fail_all(error)
         finally:
             for worker in self._workers:
@@ -270,18 +290,35 @@ class WorkerPool(Executor):
         """Start as many processes as there are calls, up to the size."""
         wanted = max(self._expected, len(self._queue) + sum(len(worker.has) for worker in self._workers))
         while len(self._workers) < min(self._max_workers, wanted):
-            self._workers.append(_Worker(self._context, self._seconds, self._preload))
+            self._workers.append(self._new_worker())
+
+    def _new_worker(self) -> _Worker:
+        """Start a process, and the one from which it is forked again if that has died.
+
+        Raises:
+            WorkerStartError: several in a row have died.
+        """
+        self._starting = True
+        while not self.is_closed and self._died < STARTS:
+            try:
+                return _Worker(self._context, self._seconds, self._preload)
+            except (EOFError, OSError):
+                self._died += 1
+                time.sleep(POLL * self._died)  # a process that was killed may not have ended yet
+                if os.name != "nt":
+                    start_forkserver(self._preload)
+        raise WorkerStartError("a worker process could not start")
 
     def _receive(self, worker: _Worker) -> None:
         try:
             answer = worker.calls.recv()
         except (EOFError, OSError):
-            if not worker.ready:
-                raise WorkerStartError("a worker process could not start") from None
+            self._died += not worker.ready
             self._replace(worker, WorkerLostError("the worker process died"))
             return
         if not worker.ready:
-            worker.ready = self._begun = True
+            worker.ready, self._died = True, 0
+            self._starting = not all(other.ready for other in self._workers)
             return
         future, _ = worker.has.popleft()
         good, value = answer
@@ -292,14 +329,18 @@ class WorkerPool(Executor):
         for worker in list(self._workers):
             if worker.has and now - worker.sign.value > self._seconds:
                 self._replace(worker, TimeLimitError(f"took longer than {self._seconds:g} s"))
+            elif not worker.ready and now - worker.started > STARTING:
+                self._died += 1
+                self._replace(worker, TimeLimitError("did not start in time"))
 
     def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
         """Replace a lost process: its running call gets the error, its next call is queued again."""
         worker.end()
-        self._workers[self._workers.index(worker)] = _Worker(self._context, self._seconds, self._preload)
         if worker.has:
             worker.has.popleft()[0].set_exception(error)
         self._queue.extendleft(reversed(worker.has))
+        worker.has.clear()
+        self._workers[self._workers.index(worker)] = self._new_worker()
 
     def _fail_all(self, error: Exception) -> None:
         left = [future for worker in self._workers for future, _ in worker.has if not future.done()]

@@ -14,7 +14,15 @@ from pathlib import Path
 import pytest
 
 from glyphspline.runs import pool as pools
-from glyphspline.runs.pool import POLL, TimeLimitError, WorkerLostError, WorkerPool, sign_of_life
+from glyphspline.runs.pool import (
+    POLL,
+    TimeLimitError,
+    WorkerLostError,
+    WorkerPool,
+    WorkerStartError,
+    kill_server,
+    sign_of_life,
+)
 from tests.places import ROOT
 
 LIMIT = 600.0
@@ -110,6 +118,41 @@ def test_a_worker_has_imported_what_it_needs_before_its_time_counts(
     monkeypatch.syspath_prepend(tmp_path)
     with WorkerPool(1, seconds=LIMIT, preload=["slow_to_import"]) as pool:  # the server of forks is there already
         assert pool.submit(has_imported, "slow_to_import").result(timeout=LIMIT) is True
+
+
+DIES = """
+import os, pathlib, signal
+starts = pathlib.Path(__file__).with_name("starts")
+starts.write_text(starts.read_text() + ".") if starts.exists() else starts.write_text(".")
+if len(starts.read_text()) <= {times}:
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.parametrize(("times", "works"), [(2, True), (100, False)])
+def test_a_process_that_dies_while_it_starts_is_replaced(
+    times: int, works: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = f"dies_{times}_times"
+    (tmp_path / f"{name}.py").write_text(DIES.format(times=times))
+    monkeypatch.syspath_prepend(tmp_path)
+    with WorkerPool(1, seconds=600, preload=[name]) as pool:
+        call = pool.submit(pow, 2, 5)
+        if works:
+            assert call.result(timeout=LIMIT) == 32
+            return
+        assert isinstance(call.exception(timeout=LIMIT), WorkerStartError)
+        with pytest.raises(WorkerStartError):
+            pool.submit(pow, 2, 5)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no process from which others are forked")
+def test_a_killed_server_of_forks_is_started_again() -> None:
+    with WorkerPool(2, seconds=600) as pool:
+        assert pool.submit(pow, 2, 3).result(timeout=LIMIT) == 8
+        kill_server()
+        assert isinstance(pool.submit(die).exception(timeout=LIMIT), WorkerLostError)
+        assert [pool.submit(pow, 2, k).result(timeout=LIMIT) for k in range(4)] == [1, 2, 4, 8]
 
 
 def test_workers_do_not_import_from_the_current_folder(tmp_path: Path) -> None:
