@@ -131,7 +131,7 @@ def test_a_loop_at_a_joint_that_is_smaller_than_the_chords_there_is_found() -> N
     around = lines([(696.43, 463.29), (696.43, 800), (600, 800), (600, 463.14), (696.42, 463.14)])[:4]
     ((_, places),) = crossings_of(np.concatenate([[there, back], around]))
     assert np.allclose(places, (0.99937, 1.00108), atol=1e-4)
-    assert not crossings_of(np.concatenate([[there, back + [0.1, 0]], around]))
+    assert not crossings_of(np.concatenate([[there, back + np.array([0.1, 0])], around]))
 
 
 def test_a_loop_within_a_segment_is_found() -> None:
