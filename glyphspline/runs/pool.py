@@ -38,7 +38,7 @@ STARTS = 4
 """Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it."""
 
 STARTING = 1800.0
-"""Seconds in which a process has to start: compiling everything takes two minutes of an idle core, more of a busy one."""
+"""Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
 
 Call = tuple[Future[Any], bytes]
 """The future of a call, and its function and arguments, pickled."""
