@@ -134,10 +134,8 @@ def set_knots(curve: Curve) -> bool:
         e = s + 1 if s + 1 < k or not closed else 0
         h[s + 2] = chord(p, s, e)
         least = min(least, h[s + 2])
-    if closed:
-        h[:2], h[k + 2 : k + 4] = h[k : k + 2], h[2:4]
-    else:
-        h[:2], h[k + 2 : k + 4] = 0.0, 0.0
+    for n in range(2):
+        h[n], h[k + 2 + n] = (h[k + n], h[2 + n]) if closed else (0.0, 0.0)
     for s in range(k):
         span_weights(h, s, curve.W[s])
     return least > 0.0
@@ -150,7 +148,9 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
     before, own, after = h0 + h1 + h2, h1 + h2 + h3, h2 + h3 + h4
     low, high = h2 / (h1 + h2), h2 / (h2 + h3)
     a, c, d, e = h1 / own, (h1 + h2) / own, (h0 + h1) / before, h2 / after
-    W[:] = 0.0
+    for r in range(4):
+        for j in range(4):
+            W[r, j] = 0.0
     W[0, 0], W[0, 1], W[0, 2] = low * (1 - d), low * d + (1 - low) * (1 - a), (1 - low) * a
     W[1, 1], W[1, 2] = 1 - a, a
     W[2, 1], W[2, 2] = 1 - c, c

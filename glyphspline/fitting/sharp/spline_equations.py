@@ -155,8 +155,8 @@ def shift_knot(curve: Curve, i: int, delta: float) -> None:
     k, h = curve.size[0], curve.h
     h[(i - 1) % k + 2] += delta
     h[i + 2] -= delta
-    if curve.size[1]:
-        h[:2], h[k + 2 : k + 4] = h[k : k + 2], h[2:4]
+    for n in range(2 if curve.size[1] else 0):
+        h[n], h[k + 2 + n] = h[k + n], h[2 + n]
 
 
 @compiled
@@ -164,7 +164,8 @@ def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
     """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny); of the matrix its lower half."""
-    J[:] = 0.0
+    for u in range(8):
+        J[u] = 0.0
     for r in range(4):
         x, y = B[r] * nx, B[r] * ny
         for u in range(8):

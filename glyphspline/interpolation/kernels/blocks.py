@@ -266,7 +266,7 @@ def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) ->
             to = first + (k if k < 2 else inside + k)
             i = b * LANES + to - first - HALO
             if given.closed:
-                i += n * ((i < 0) - (i >= n))
+                i += n * (int(i < 0) - int(i >= n))
             elif not 0 <= i <= n:
                 continue
             owner = min(i, n - 1)
