@@ -10,6 +10,7 @@ With Numba's ``NUMBA_DISABLE_JIT=1`` nothing is compiled: the functions run as P
 
 from __future__ import annotations
 
+import ctypes
 import json
 import logging
 import os
@@ -37,6 +38,7 @@ from numba.core.compiler import CompileResult
 from numba.core.runtime import nrt
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
+from numba.core.typing.ctypes_utils import to_ctypes
 from numba.extending import models, register_model
 
 JIT = not numba.config.DISABLE_JIT  # type: ignore[attr-defined, unused-ignore]
@@ -150,7 +152,13 @@ def callback(signature: Any) -> Callable[[Callable[..., Any]], Any]:
     """A decorator for functions of fixed types that C libraries call, at their attribute ``address``."""
 
     def decorate(function: Callable[..., Any]) -> Any:
-        made: Any = CFunc(function, normalize_signature(signature), locals={}, options={})
+        made: Any
+        if not JIT:
+            result, *arguments = map(to_ctypes, (signature.return_type, *signature.args))
+            made = ctypes.CFUNCTYPE(result, *arguments)(function)
+            made.address = ctypes.cast(made, ctypes.c_void_p).value
+            return made
+        made = CFunc(function, normalize_signature(signature), locals={}, options={})
         made._cache = _Files(function, "callback")
         made.compile()
         return made

@@ -184,6 +184,17 @@ def test_it_runs_as_plain_python_without_a_compiler(tmp_path: Path) -> None:
         np.testing.assert_allclose(slow, quick, rtol=0, atol=1e-9 * 100)  # of contours a hundred units wide
 
 
+@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+def test_the_command_runs_as_plain_python(corners: str, tmp_path: Path) -> None:
+    """Reading and fitting two letters, with no code kept from before."""
+    font, place = str(PACKAGE.parent / "fonts_test" / "edge-cases.ttf"), {"NUMBA_CACHE_DIR": str(tmp_path / "code")}
+    words = ["convert", font, "--text", "a8", "--corners", corners, "--tolerance", "3", "--jobs", "0"]
+    found = run("-m", "glyphspline", *words, "--out", str(tmp_path / "out"), NUMBA_DISABLE_JIT="1", **place)
+    assert found.returncode == 0, found.stderr
+    assert len(list((tmp_path / "out").rglob("*.svg"))) >= 2
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
 def test_a_processor_without_fused_multiplication_computes_the_same(tmp_path: Path) -> None:
     """To rounding: LLVM then calls the C library's ``fma``, and vectors are shorter."""
     code = (

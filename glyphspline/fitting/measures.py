@@ -70,7 +70,7 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
 
 def distance_columns(gaps: Sequence[float | None], bounds: Sequence[float], tolerance: float) -> Columns:
     """Measured distances and their certified bounds, compared with the tolerance, all in font units."""
-    within = [bound <= tolerance for bound in bounds]
+    within = [bool(bound <= tolerance) for bound in bounds]
     return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 

@@ -270,10 +270,11 @@ def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
     for v in range(len(source.used)):
         count = target.used[v, 0] = source.used[v, 0]
-        target.span[v, :count], target.x[v, :count] = source.span[v, :count], source.x[v, :count]
-        target.e[v, :count] = source.e[v, :count]
-        target.nx[v, :count], target.ny[v, :count] = source.nx[v, :count], source.ny[v, :count]
-    target.slip[:], target.lever[:] = source.slip, source.lever
+        for r in range(count):
+            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
+            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
+        for j in range(source.slip.shape[1]):
+            target.slip[v, j], target.lever[v, j] = source.slip[v, j], source.lever[v, j]
 
 
 @compiled

@@ -80,10 +80,21 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
 def copy_curve(source: Curve, target: Curve) -> None:
     """Copy what is in use of a curve into the arrays of another one of the same kind."""
     k = target.size[0] = source.size[0]
-    target.h[: k + 4], target.t[: k + 1] = source.h[: k + 4], source.t[: k + 1]
-    target.bounds[: k + 1] = source.bounds[: k + 1]
-    target.W[:k], target.b[:, :k] = source.W[:k], source.b[:, :k]
-    target.X[:, : k + 3], target.p[:, : k + 1] = source.X[:, : k + 3], source.p[:, : k + 1]
+    for i in range(k + 4):
+        target.h[i] = source.h[i]
+    for i in range(k + 1):
+        target.t[i], target.bounds[i, 0], target.bounds[i, 1] = source.t[i], source.bounds[i, 0], source.bounds[i, 1]
+        for r in range(4):
+            for c in range(4):
+                target.W[i, r, c] = source.W[i, r, c]
+    for v in range(len(source.X)):
+        for axis in range(2):
+            for i in range(k + 3):
+                target.X[v, i, axis] = source.X[v, i, axis]
+            for i in range(k + 1):
+                target.p[v, i, axis] = source.p[v, i, axis]
+                for r in range(4):
+                    target.b[v, i, r, axis] = source.b[v, i, r, axis]
 
 
 @compiled
@@ -165,8 +176,8 @@ def iterate(curve: Curve, tolerance: float, most: int) -> float:
     for n in range(most + 1):
         for v in range(masters):
             W, b, own = curve.W, curve.b[v], X[v]
-            if closed:
-                own[0], own[k + 1], own[k + 2] = own[k], own[1], own[2]
+            for axis in range(2 if closed else 0):
+                own[0, axis], own[k + 1, axis], own[k + 2, axis] = own[k, axis], own[1, axis], own[2, axis]
             for s in range(k):
                 for r in range(4):
                     for axis in range(2):
@@ -235,8 +246,11 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
     k, closed = curve.size[0], curve.size[1]
     before, after = np.empty(4), np.empty(4)
     for i in range(1 - closed, k):
-        curve.X[:, i + 1] = curve.p[:, i]
-        before[:], after[:] = curve.W[i - 1 if i > 0 else k - 1, :, 2], curve.W[i, :, 1]
+        for v in range(len(curve.X)):
+            curve.X[v, i + 1, 0], curve.X[v, i + 1, 1] = curve.p[v, i, 0], curve.p[v, i, 1]
+        last = i - 1 if i > 0 else k - 1
+        for r in range(4):
+            before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
         c = margin
         if not closed and near_end(i, k + 1):
             add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)

@@ -185,7 +185,10 @@ def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
     for v in range(len(fit.gram)):
         gram, moves, b, lever = fit.gram[v], fit.moves[v], fit.curve.b[v], rows.lever[v]
         span, xs, e, nx, ny, slip = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v]
-        gram[:k] = 0.0
+        for s in range(k):
+            for u in range(9):
+                for w in range(8):
+                    gram[s, u, w] = 0.0
         for r in range(rows.used[v, 0]):
             s, x = span[r] % k, xs[r]
             y = 1 - x
@@ -283,7 +286,8 @@ def equations(fit: Fit, v: int, damping: float, width: int) -> None:
     n = 2 * width
     for r in range(n):
         g[r], first[r] = 0.0, r
-        A[r, 0 if closed and r >= n - BAND else max(r - BAND, 0) : r + 1] = 0.0
+        for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
+            A[r, c] = 0.0
     index = np.empty(8, dtype=np.int64)
     for s in range(k):
         for c in range(4):
