@@ -155,8 +155,8 @@ def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
                     if beyond > limits.extremum:
                         count = put(table, count, EXTREMUM, c, j - offsets[c] + t, beyond)
             if size >= limits.straight_length:
-                off = off_chord(cubic, chord / size)
-                if off < limits.straight and line_would_do(segments, j, chord, limits):
+                off = off_line(segments, j, chord, limits)
+                if off < limits.straight:
                     count = put(table, count, STRAIGHT, c, place, off)
                     continue
             if degrees[j] == 3:
@@ -234,25 +234,22 @@ def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
 
 
 @compiled
-def off_chord(cubic: ComplexArray, way: complex) -> float:
-    """How far a cubic leaves its chord; ``way``: the chord's direction."""
+def off_line(segments: Segments, j: int, chord: complex, limits: Limits) -> float:
+    """How far a segment leaves its chord; infinite if a line in its place kinks where it joins smoothly."""
+    cubic, way = segments.points[j], chord / length(chord)
     first, second = (way.conjugate() * (cubic[1] - cubic[0])).imag, (way.conjugate() * (cubic[2] - cubic[0])).imag
     most = 0.0
     for t in quadratic_roots(3 * (first - second), 2 * second - 4 * first, first):
         if not np.isnan(t):
             most = max(most, abs(3 * t * (1 - t) * ((1 - t) * first + t * second)))
-    return most
-
-
-@compiled
-def line_would_do(segments: Segments, j: int, chord: complex, limits: Limits) -> bool:
-    """Whether a line in a segment's place makes no kink where the segment joins its neighbours smoothly."""
+    if most >= limits.straight:
+        return most
     arriving, leaving = segments.last[segments.before[j]], segments.first[segments.behind[j]]
     for other, own in ((arriving, segments.first[j]), (leaving, segments.last[j])):
         smooth = abs(turn_of(other, own)) < limits.corner_angle
         if smooth and abs(turn_of(other, chord)) >= least_kink(other, chord, limits.kink):
-            return False
-    return True
+            return np.inf
+    return most
 
 
 @compiled

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import grown
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet
@@ -59,12 +60,7 @@ def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tu
             wanted = measure(cubics, j, table, spacing, angle)
         n = max(int(np.ceil(wanted - TIE)), 1 if even else LEAST)
         stop = starts[j] + n + 1
-        if stop > len(samples):
-            larger = np.empty((2 * stop, 6))
-            for i in range(starts[j]):
-                for column in range(6):
-                    larger[i, column] = samples[i, column]
-            samples = larger
+        samples = grown(samples, stop)
         if even:
             sample_evenly(cubics, j, length, n, samples[starts[j] : stop])
         else:

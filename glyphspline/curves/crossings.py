@@ -13,8 +13,11 @@ Two chords cross if the ends of each lie on two sides of the other. If an end li
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
+from ..arrays import ascending, grown
 from ..compiled import compiled
 from ..types import BoolArray, FloatArray, IntArray
 from .contacts import crossing_contacts
@@ -68,7 +71,6 @@ def crossings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[
     return found[np.lexsort(found.T[::-1])], complete
 
 
-@compiled
 def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[FloatArray, BoolArray]:
     """Pairs of chords that cross or touch; arguments as for :func:`crossings`.
 
@@ -76,22 +78,15 @@ def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[F
         (K, 6): the two contours, and the places where contact begins and ends, by the first of them: (c, d, a, b, a',
         b'). Of a crossing the last two are NaN. And (G,) whether all of a glyph's were looked for.
     """
-    found, count = np.empty((16, 6)), 0
-    complete = np.ones(len(glyphs) - 1, dtype=np.bool_)
-    for g in range(len(glyphs) - 1):
-        before = count
-        found, count, complete[g] = glyph_meetings(cubics, offsets, glyphs[g], glyphs[g + 1], found, count)
-        if not complete[g]:
-            count = before
-    return found[:count], complete
+    every = [glyph_meetings(cubics, offsets, first, last) for first, last in pairwise(glyphs.tolist())]
+    complete = np.array([whole for _, whole in every], dtype=np.bool_)
+    return np.concatenate([np.empty((0, 6)), *(found for found, whole in every if whole)]), complete
 
 
 @compiled
-def glyph_meetings(
-    cubics: FloatArray, offsets: IntArray, first: int, last: int, found: FloatArray, count: int
-) -> tuple[FloatArray, int, bool]:
-    """Append the meetings of the contours from ``first`` up to ``last`` to ``found``; see :func:`meetings`."""
-    before = count
+def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int) -> tuple[FloatArray, bool]:
+    """The meetings of the contours from ``first`` up to ``last``; see :func:`meetings`."""
+    found, count = np.empty((16, 6)), 0
     most = offsets[last] - offsets[first]
     piece, contour, after = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     n = 0
@@ -118,7 +113,7 @@ def glyph_meetings(
             error /= 4
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
-    order, steps = np.argsort(left, kind="mergesort"), 0
+    order, steps = ascending(left), 0
     for oi in range(n):
         i = order[oi]
         for oj in range(oi, n):
@@ -142,8 +137,8 @@ def glyph_meetings(
             begins[0, 0], begins[0, 1] = 0.0, 0.0
             top = 0
             while top >= 0:
-                if steps > MOST_STEPS or count - before > MOST_MEETINGS:
-                    return found, count, False
+                if steps > MOST_STEPS or count > MOST_MEETINGS:
+                    return found[:0], False
                 steps += 1
                 kind = marks[top, 2]
                 if decided(A[top], B[top], kind):
@@ -163,11 +158,7 @@ def glyph_meetings(
                         finer = max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
                         x, y, x_end, y_end = meeting(A[top], B[top], touch * 0.25**finer)
                     if x >= 0.0:
-                        if count == len(found):
-                            more = np.empty((2 * count, 6))
-                            for k in range(6 * count):
-                                more[k // 6, k % 6] = found[k // 6, k % 6]
-                            found = more
+                        found = grown(found, count + 1)
                         found[count, 0], found[count, 1] = contour[s], contour[t]
                         for k in range(2):
                             which, one, other = (s, x, x_end) if k == 0 else (t, y, y_end)
@@ -181,7 +172,7 @@ def glyph_meetings(
                     top = halve(A, B, marks, begins, top, 0)
                 else:
                     top = halve(A, B, marks, begins, top, 1)
-    return found, count, True
+    return found[:count], True
 
 
 @compiled

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import grown
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .comb import frame, size_of
@@ -138,11 +139,7 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
         size = size_of(cubics, j)
         if not size > least:
             continue
-        if n + MOST + 1 > len(values):
-            longer, also = np.empty((2, 2 * len(values)))
-            for i in range(n):  # the assignment of slices compiles for six seconds
-                longer[i], also[i] = values[i], where[i]
-            values, where = longer, also
+        values, where = grown(values, n + MOST + 1), grown(where, n + MOST + 1)
         bx, by, x, y = directions(cubics, j, least)
         if ax * bx + ay * by <= corner * np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by)):
             values[n], where[n] = np.nan, j

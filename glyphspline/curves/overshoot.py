@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import ascending
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet
@@ -80,8 +81,8 @@ def convex_hull(points: FloatArray) -> FloatArray:
     """The convex hull, counter-clockwise, by Andrew's monotone chain."""
     n = len(points)
     hull = np.empty((2 * n + 1, 2))
-    order = np.argsort(points[:, 1], kind="mergesort")
-    order = order[np.argsort(points[:, 0][order], kind="mergesort")]
+    order = ascending(points[:, 1].copy())
+    order = order[ascending(points[:, 0][order])]
     count = 0
     for step in range(2):
         base = count

@@ -67,9 +67,12 @@ def cheapest_pairs(
         if reached[n, m] < least:
             least = float(reached[n, m])
             chosen = _followed(came, REACH)[:-1] + np.array([i0, j0])
+    first = 0  # of those in the second lap
+    while first < len(chosen) and chosen[first, 0] < n:
+        first += 1
     for k in range(len(chosen)):
         chosen[k, 0], chosen[k, 1] = chosen[k, 0] % n, chosen[k, 1] % m
-    return least, chosen[np.argsort(chosen[:, 0])]
+    return least, np.concatenate((chosen[first:], chosen[:first]))
 
 
 @compiled

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import grown
 from ..compiled import compiled
 from ..curves.cubics import bernstein, length_table, turns
 from ..types import BoolArray, FloatArray, IntArray
@@ -55,8 +56,7 @@ def sampled(
             at = _stepped(corners, table[-1], step, max_ratio, most)
         n = len(at)
         refused[k] = n < 3
-        while used + n > len(found):
-            found = np.concatenate((found, np.empty_like(found)))
+        found = grown(found, used + n)
         _evaluate(pieces, table, at, found[used : used + n])
         used += n
         ends[k + 1] = used

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ...arrays import grown
 from ...compiled import compiled, inlined
 from ...intrinsics import select
 from ...types import FloatArray, IntArray
@@ -78,7 +79,13 @@ def run(
             history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
             slots, lane, interval = 0, 0, 0
         row, own, u = group.table[slots], group.numbers[slots], knots_of(given, found, k, n)
-        pad_intervals(u, closed, knot_unit, group.h[interval:])
+        h, spans = group.h[interval:], u.shape[0] - 1
+        for i in range(spans):  # h[PAD + i] is the knot interval from u_i on, continued periodically, or by zeros
+            h[PAD + i] = (u[i + 1] - u[i]) * knot_unit
+        for i in range(PAD):  # one after another: fewer spans than PAD repeat more than once
+            h[PAD - 1 - i] = h[PAD + spans - 1 - i] if closed else 0.0
+        for i in range(PAD + 2):
+            h[PAD + spans + i] = h[PAD + i] if closed else 0.0
         row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, slots, 0
         row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
         limit = max(tolerances[k], settled * u[n - 1] / (n - 1))
@@ -114,7 +121,7 @@ def _iterate(
             if table[q, FINISHED]:
                 continue
             row, error = table[q], np.sqrt(numbers[q, LARGEST])
-            history = _grown(history, (row[PASSES] + 1) * every)
+            history = grown(history, (row[PASSES] + 1) * every)
             history[row[PASSES] * every + row[ORDER]] = error / numbers[q, UNIT]
             row[PASSES] += 1
             if np.inf > error and not error < numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
@@ -127,7 +134,7 @@ def _iterate(
             slots = close_ranks(group, at.N, at.Q, slots)
     for q in range(every):
         count = table[q, TOTAL]
-        residuals = _grown(residuals, used + count)
+        residuals = grown(residuals, used + count)
         for i in range(count):
             residuals[used + i] = history[i * every + q]
         used += count
@@ -232,16 +239,6 @@ def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> N
     out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, row[PASSES] - 1, row[FALLBACKS]
     out[SEARCHES], out[GIVEN_UP_ON] = row[SEARCHED], row[UNCERTIFIED]
     found.rates[k] = 2.0 * (1.0 - numbers[LEAST])
-
-
-@compiled
-def _grown(array: FloatArray, size: int) -> FloatArray:
-    """The array, or a larger one of at least ``size`` that begins with it."""
-    if array.shape[0] >= size:
-        return array
-    larger = np.empty(2 * size)
-    larger[: array.shape[0]] = array
-    return larger
 
 
 @inlined
@@ -355,15 +352,3 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
         row[STATUS] = BAD_KNOTS
         return 0, 1.0, 1.0
     return n, _power_of_two(extent), _power_of_two(u[-1] / n)
-
-
-@compiled
-def pad_intervals(u: FloatArray, closed: bool, unit: float, h: FloatArray) -> None:
-    """Knot intervals times ``unit``: h[PAD + i] is that from u_i on, continued periodically, or by zeros."""
-    spans = u.shape[0] - 1
-    for i in range(spans):
-        h[PAD + i] = (u[i + 1] - u[i]) * unit
-    for k in range(PAD):  # one after another: fewer spans than PAD repeat more than once
-        h[PAD - 1 - k] = h[PAD + spans - 1 - k] if closed else 0.0
-    for k in range(PAD + 2):
-        h[PAD + spans + k] = h[PAD + k] if closed else 0.0
