@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ..compiled import compiled
@@ -17,7 +19,7 @@ from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, 
 from ..outlines.places import sampled
 from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
-from ..types import BoolArray, FloatArray, IntArray, Views
+from ..types import FloatArray, IntArray, Views
 from .measures import distance_columns, solved_columns
 from .options import Options
 from .results import ConvertedContours
@@ -48,7 +50,8 @@ def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> Bat
     Raises:
         PolygonError: one that cannot be interpolated; its ``contour`` is the number of the polygon.
     """
-    even = graded_polygons(points, offsets, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
+    ratio, ends = min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9), pairwise(offsets.tolist())
+    even = np.array([chords_of(points[first:last], ratio)[1] for first, last in ends], dtype=np.bool_)
     found = interpolate_batch(points, offsets, method_for(options, options.fallback), by_knot=even, threads=1)
     for k in np.flatnonzero(found.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
@@ -60,8 +63,8 @@ def recorded(points: FloatArray, options: Options) -> History:
 
     The run is that of :func:`interpolated`, by the passes that keep what they do.
     """
-    even = graded_polygons(points, np.array([0, len(points)]), min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
-    method = method_for(options, "knot" if even[0] else options.fallback)
+    _, even = chords_of(points, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
+    method = method_for(options, "knot" if even else options.fallback)
     return interpolate_any_degree(points, method, keep_history=True).history or ()
 
 
@@ -95,15 +98,6 @@ def chords_of(points: FloatArray, ratio: float) -> tuple[FloatArray, bool]:
         a, b = chords[i - 1], chords[i]
         even = even and not (a > ratio * b or b > ratio * a)
     return chords, even
-
-
-@compiled
-def graded_polygons(points: FloatArray, offsets: IntArray, ratio: float) -> BoolArray:
-    """(K,) which of some closed polygons (ragged) have all adjacent chords within a ratio of each other."""
-    even = np.empty(len(offsets) - 1, dtype=np.bool_)
-    for k in range(len(offsets) - 1):
-        _, even[k] = chords_of(points[offsets[k] : offsets[k + 1]], ratio)
-    return even
 
 
 def convert_fixed(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:

@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled
 from ..curves.bezier import evaluate
 from ..curves.crossings import crossings
 from ..curves.cubics import bernstein
@@ -104,7 +103,8 @@ def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> 
         for (c, d), number in pairs.items():
             if a <= c < b:
                 new[list({c, d})] += max(number - known[c - a, d - a], 0)
-    before, now = areas(source), areas(written)
+    both = [[area(contour_cubics(of, c)) for c in range(of.num_contours)] for of in (source, written)]
+    before, now = np.array(both)
     collapsed = now * np.sign(before) < COLLAPSED * np.abs(before)
     for c in np.flatnonzero(collapsed).tolist():
         collapsed[c] = not _crossing_pairs(source.part(c, c + 1), np.array([0, 1]))[0]
@@ -115,15 +115,6 @@ def _crossing_pairs(contours: ContourArrays, glyphs: IntArray) -> tuple[Counter[
     """Number of crossings by the numbers of the two contours; and (G,) whether a glyph's were counted."""
     found, counted = crossings(all_cubics(contours), contours.offsets, glyphs)
     return Counter(map(tuple, found[:, :2].astype(np.int64).tolist())), counted
-
-
-@compiled
-def areas(contours: ContourArrays) -> FloatArray:
-    """(C,) signed area of each contour."""
-    found = np.empty(len(contours.offsets) - 1)
-    for c in range(len(found)):
-        found[c] = area(contour_cubics(contours, c))
-    return found
 
 
 def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tolerance: float) -> ContourArrays:

@@ -78,8 +78,12 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
             lasts[lasting(cubics)] = True
             its = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
             p = contours.points[contours.starts[c] : contours.starts[c + 1]][np.repeat(lasts, its)]
-            if not _encloses(p):
+            if len(p) < 3:
                 continue
+            away = (p[:, 0] != p[0, 0]) | (p[:, 1] != p[0, 1])
+            q = p[np.argmax(away)]
+            if not (away & ((p[:, 0] != q[0]) | (p[:, 1] != q[1]))).any():
+                continue  # of fewer than three distinct points
             d = its[lasts]
             n, m = len(p), len(d)
             backward, its = np.concatenate((p[:1], p[:0:-1])), d[::-1].copy()
@@ -135,19 +139,6 @@ def lower_left(cubics: FloatArray) -> float:
             if x + y < best:
                 best, left, place = x + y, x, j + at
     return place
-
-
-@compiled
-def _encloses(points: FloatArray) -> bool:
-    """Whether three of the points are distinct."""
-    second = -1
-    for i in range(1, len(points)):
-        if points[i, 0] != points[0, 0] or points[i, 1] != points[0, 1]:
-            if second < 0:
-                second = i
-            elif points[i, 0] != points[second, 0] or points[i, 1] != points[second, 1]:
-                return True
-    return False
 
 
 @compiled

@@ -48,14 +48,14 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
         around = 0
         for other in range(count):
             if other != c:
-                around += _winding(chords[starts[other] : starts[other + 1]], own[at, 0], own[at, 1])
+                around += winding(chords[starts[other] : starts[other + 1]], own[at, 0], own[at, 1])
         if around * sides[c] < 0.0:
             sides[c] = -sides[c]
     return sides
 
 
 @compiled
-def _winding(polygon: FloatArray, x: float, y: float) -> int:
+def winding(polygon: FloatArray, x: float, y: float) -> int:
     """How often a closed polygon (n, 2) runs around a point, counter-clockwise."""
     found = 0
     for i in range(len(polygon)):

@@ -121,6 +121,8 @@ def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int
     Polygons are :func:`.uncrossed`. One bounds ink if winding numbers are zero on one of its sides only; it is a hole
     if that is the inside, and belongs to the smallest outer one around it. The others are left out.
     """
+    from ..outlines.ink import winding  # here and not above: the package opens without a compiler
+
     areas = np.array([_area(polygon) for polygon in polygons])
     boxes = np.array([[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]).reshape(-1, 4)
     holes: dict[int, list[int]] = {}
@@ -129,7 +131,7 @@ def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int
         x, y = _middle(polygons[c])
         near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y) & (areas != 0)
         near[c] = False
-        turns = {k: _winding(polygons[k], x, y) for k in np.flatnonzero(near).tolist()}
+        turns = {k: winding(polygons[k], x, y) for k in np.flatnonzero(near).tolist()}
         outside = sum(turns.values())
         if outside == 0:
             holes[c] = []
@@ -167,11 +169,3 @@ def _middle(polygon: FloatArray) -> tuple[float, float]:
     longest = int(np.hypot(*(ends - polygon).T).argmax())
     x, y = ((polygon[longest] + ends[longest]) / 2).tolist()
     return x, y
-
-
-def _winding(polygon: FloatArray, x: float, y: float) -> int:
-    """How often a polygon runs around a point, counter-clockwise."""
-    ax, ay = (polygon - (x, y)).T
-    bx, by = np.roll(ax, -1), np.roll(ay, -1)
-    left = ax * by - ay * bx
-    return int(((ay <= 0) & (by > 0) & (left > 0)).sum() - ((ay > 0) & (by <= 0) & (left < 0)).sum())

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, newton_step
-from ...interpolation.kernels.lemma2 import add_fixed, margin_at, near_end, one_interval
+from ...interpolation.kernels.lemma2 import add_fixed, margin_at, one_interval
 from ...types import FloatArray, IntArray
 
 SHORT = 0.01
@@ -252,7 +252,7 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
         for r in range(4):
             before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
         c = margin
-        if not closed and near_end(i, k + 1):
+        if not closed:
             add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)
             c = margin_at(i, k + 1, margin)
         low, high, _, _ = one_interval(before, after, c, 1.0)

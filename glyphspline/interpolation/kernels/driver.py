@@ -143,9 +143,9 @@ def _iterate(
 
 @compiled
 def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
-    """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite."""
+    """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite, and its searches."""
     S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
-    count, size = count_of_blocks(group), pairs_size(d)
+    count, size, open_end = count_of_blocks(group), pairs_size(d), 0 if given.closed else 1
     for q in range(slots):
         numbers[q, LARGEST] = 0.0
     if not given.closed:
@@ -159,7 +159,16 @@ def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
         if wild > 0:
             _pass_over(group, block, S, slots, b)
         searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
-        _take_in(given, group, block, S, slots, b, searched)
+        for q in range(slots):
+            first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
+            for i in range(n if searched > 0 else 0):
+                mark = S[BAD + np.uint64(first + i)]
+                group.table[q, SEARCHED] += mark >= MARK
+                group.table[q, UNCERTIFIED] += mark == GIVEN_UP
+            low = open_end if b == 0 else 0
+            high = n - open_end if b + 1 == count else n
+            D = _largest(block, first + low, first + high) if high > low else 0.0
+            numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
 
@@ -177,23 +186,6 @@ def _pass_over(group: Group, block: FloatArray, S: FloatArray, slots: int, b: in
             for i in range(n):
                 S[BAD + np.uint64(first + i)] = 0.0
             table[q, UNCERTIFIED] += n
-
-
-@compiled
-def _take_in(given: Given, group: Group, block: FloatArray, S: FloatArray, slots: int, b: int, searched: int) -> None:
-    """Each polygon's largest squared error so far, with those of block b, and its searches if any were ``searched``."""
-    table, numbers, count = group.table, group.numbers, count_of_blocks(group)
-    for q in range(slots):
-        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
-        for i in range(n if searched > 0 else 0):
-            mark = S[BAD + np.uint64(first + i)]
-            table[q, SEARCHED] += mark >= MARK
-            table[q, UNCERTIFIED] += mark == GIVEN_UP
-        open_end = 0 if given.closed else 1
-        low = open_end if b == 0 else 0
-        high = n - open_end if b + 1 == count else n
-        D = _largest(block, first + low, first + high) if high > low else 0.0
-        numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
 
 
 @compiled

@@ -206,7 +206,8 @@ def fill_intervals(given: Given, group: Group, slots: int) -> None:
                     low, high, value, missing = _interval(
                         S, lane, h[i], h[i + 1], h[i + 2], h[i + 3], given.variant, given.peak_shares[k]
                     )
-                    if not given.closed and given.variant > 1 and near_end(at + i, n):
+                    # A fixed function of an arc reaches no other intervals.
+                    if not given.closed and given.variant > 1 and not 2 < at + i < n - 3:
                         low, high, value, missing = _end_interval(
                             given, group, q, h[i:], at + i, low, high, value, missing
                         )
@@ -216,16 +217,10 @@ def fill_intervals(given: Given, group: Group, slots: int) -> None:
 
 
 @compiled
-def near_end(i: int, n: int) -> bool:
-    """Whether a fixed function of an arc of n vertices reaches the interval of vertex i, an inner one."""
-    return i <= 2 or i >= n - 3
-
-
-@compiled
 def add_fixed(
     h: FloatArray, at: int, i: int, n: int, first: float, last: float, before: FloatArray, after: FloatArray
 ) -> None:
-    """Make W_i of B_i, for inner vertex i of an arc of n vertices.
+    """Make W_i of B_i, for inner vertex i of an arc of n vertices; they differ for the first two and the last two.
 
     Args:
         h: knot intervals; h[at] is the one before u_i.
