@@ -123,7 +123,8 @@ def lumps_of(
         i, j = k - 1 if k else number - 1, (k + 1) % number if whole else k + 1
         beside = max(sizes[i], sizes[j])
         if sizes[k] > beside:
-            (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = point_at(cubics, at[i]), point_at(cubics, at[j])
+            s, r = min(int(at[i]), len(cubics) - 1), min(int(at[j]), len(cubics) - 1)
+            (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = jet(cubics, s, at[i] - s), jet(cubics, r, at[j] - r)
             height = (sizes[k] - beside) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / WAVE
             if height >= least_height:
                 peaks[size, 0], peaks[size, 1], peaks[size, 2] = at[k], sizes[k] / max(beside, least) - 1, height
@@ -148,13 +149,6 @@ def lumps_of(
         for k in range(worst, size):
             peaks[k, 0], peaks[k, 1], peaks[k, 2] = peaks[k + 1, 0], peaks[k + 1, 1], peaks[k + 1, 2]
     return count
-
-
-@compiled
-def point_at(cubics: FloatArray, place: float) -> tuple[float, float, float, float, float, float]:
-    """Position, first and second derivative at a place of a chain; the end of the last piece is one too."""
-    j = min(int(place), len(cubics) - 1)
-    return jet(cubics, j, place - j)
 
 
 @compiled

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arrays import ascending
 from ..compiled import compiled
 from ..curves.cubics import extent, length, nearest, section
 from ..curves.pairing import ROUNDING, apart
@@ -272,7 +273,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
                 one.cubics[i], 0.0, 1.0, other, int(e[0]), e[1], int(e[2]), e[3], limit, sections
             )
     halvings, bound = 0, 0.0
-    order = np.argsort(-bounds)
+    order = ascending(-bounds)
     for k in range(m + n):
         at = order[k]
         if bounds[at] <= row[SEEN] + max(least, SHARP * row[SEEN]):

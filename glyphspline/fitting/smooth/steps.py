@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import ascending, grown
 from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
@@ -51,8 +52,7 @@ def first_places(
 def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
     """An array whose first ``count`` values are in use, or a larger one, with more after these."""
     stop = count + len(part)
-    if stop > len(values):
-        values = np.concatenate((values[:count], np.empty(2 * stop)))
+    values = grown(values, stop)
     values[count:stop] = part
     return values
 
@@ -291,7 +291,7 @@ def sparse(
             square = ax * ax + ay * ay
             along = min(max((ax * bx + ay * by) / square, 0.0), 1.0) if square > 0 else 0.0
             expected[i] = max(expected[i], np.sqrt((bx - along * ax) ** 2 + (by - along * ay) ** 2))
-    order, left = np.argsort(expected, kind="mergesort"), n
+    order, left = ascending(expected), n
     for k in range(n):
         i = order[k]
         if not expected[i] <= near or left <= 4:

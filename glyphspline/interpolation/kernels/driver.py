@@ -287,27 +287,6 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
     return -1, extent
 
 
-@compiled
-def _fill_knots(
-    p: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, own: FloatArray, u: FloatArray
-) -> bool:
-    """Write knots, sums of powers of chord lengths or the vertices' ``own`` parameters, to u.
-
-    Returns False if they are not finite and increasing.
-    """
-    u[0] = 0.0
-    for i in range(1, n + 1 if closed else n):
-        if exponent < 0.0:
-            value = own[kept[i] if i < n else own.shape[0] - 1] - own[kept[0]]
-        else:
-            chord = 1.0 if exponent == 0.0 else distance(p, kept[i - 1], kept[i if i < n else 0])
-            value = u[i - 1] + (np.sqrt(chord) if exponent == 0.5 else chord)
-        if not np.inf > value or not value > u[i - 1]:
-            return False
-        u[i] = value
-    return True
-
-
 @inlined
 def _power_of_two(x: float) -> float:
     """The power of two that brings x > 0 between 1 and 2."""
@@ -340,7 +319,15 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
         given.tolerances[k] = RELATIVE_TOLERANCE * extent
     u = knots_of(given, found, k, n)
     own = given.knots[start + (k if closed else 0) : stop + (k + 1 if closed else 0)]  # nothing, if there is a rule
-    if not _fill_knots(points, kept, n, closed, given.exponent, own, u):
-        row[STATUS] = BAD_KNOTS
-        return 0, 1.0, 1.0
+    u[0] = 0.0
+    for i in range(1, n + 1 if closed else n):
+        if given.exponent < 0.0:
+            value = own[kept[i] if i < n else own.shape[0] - 1] - own[kept[0]]
+        else:
+            chord = 1.0 if given.exponent == 0.0 else distance(points, kept[i - 1], kept[i if i < n else 0])
+            value = u[i - 1] + (np.sqrt(chord) if given.exponent == 0.5 else chord)
+        if not np.inf > value or not value > u[i - 1]:
+            row[STATUS] = BAD_KNOTS
+            return 0, 1.0, 1.0
+        u[i] = value
     return n, _power_of_two(extent), _power_of_two(u[-1] / n)
