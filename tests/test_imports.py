@@ -18,7 +18,7 @@ from tests.places import ROOT
 
 PACKAGE = ROOT / "glyphspline"
 
-BASE = {"compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
+BASE = {"arrays", "compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
@@ -26,6 +26,7 @@ WRITERS = FITTING | {"checks", "readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
     "compiled": set(),
+    "arrays": {"compiled", "types"},
     "intrinsics": {"compiled"},
     "errors": set(),
     "extras": {"errors"},
