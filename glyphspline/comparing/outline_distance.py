@@ -371,5 +371,5 @@ def paired(
     section(other, z0, z1, sections[1, 0])
     most = 0.0
     for k in range(4):
-        most = max(most, apart(sections, 0, k))
+        most = max(most, apart(sections[0, 0], sections[1, 0], k))
     return most

@@ -169,8 +169,9 @@ def pair_span(
             low, high, depth, row = marks[top, 2], marks[top, 3], marks[top, 4], top * V
             first = inner = end = 0.0
             for v in range(row, row + V):
-                first, end = max(first, apart(work, v, 0)), max(end, apart(work, v, 3))
-                inner = max(inner, max(apart(work, v, 1), apart(work, v, 2)))
+                A, B = work[0, v], work[1, v]
+                first, end = max(first, apart(A, B, 0)), max(end, apart(A, B, 3))
+                inner = max(inner, max(apart(A, B, 1), apart(A, B, 2)))
             if not slips:
                 if first > gap:
                     gap, where = first, low
@@ -180,8 +181,8 @@ def pair_span(
             if gap > enough:
                 limit = max(limit, gap + sharpness)
             if slips and most > limit:
-                A, B, scratch = work[0, row : row + V], work[1, row : row + V], work[0, (DEEPEST + 2) * V :]
-                most = min(most, slip_bound(A, B, chain, other, marks[top], arc, limit, scratch))
+                one, two, scratch = work[0, row : row + V], work[1, row : row + V], work[0, (DEEPEST + 2) * V :]
+                most = min(most, slip_bound(one, two, chain, other, marks[top], arc, limit, scratch))
             if depth >= least and (most <= limit or depth >= DEEPEST or halvings >= MOST_HALVINGS):
                 if slips and most > limit:
                     enough = np.inf
@@ -205,6 +206,6 @@ def pair_span(
 
 
 @compiled
-def apart(pairs: FloatArray, row: int, k: int) -> float:
-    """Distance of Bézier points k of pair ``row`` in an array (2, n, 4, 2)."""
-    return length(pairs[0, row, k, 0] - pairs[1, row, k, 0], pairs[0, row, k, 1] - pairs[1, row, k, 1])
+def apart(A: FloatArray, B: FloatArray, k: int) -> float:
+    """Distance of Bézier points k of two cubics (4, 2)."""
+    return length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])
