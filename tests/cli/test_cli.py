@@ -182,7 +182,7 @@ def test_report_writes_the_index_anew(tmp_path: Path) -> None:
 
 def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out"
-    options = ["--text", "O", "--step", "90", "--out", str(out), "--jobs", "0", "--format", "svg"]
+    options = ["--text", "O", "--step", "90", "--out", str(out), "--jobs", "0", "--format", "svg,otf"]
     assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
     assert not (out / "index.html").exists()
     result = runner.invoke(app, ["report", str(out)])
@@ -190,6 +190,8 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
     monkeypatch.chdir(FONTS)
     command = shlex.split(result.stderr.partition("add it by: ")[2])
     assert runner.invoke(app, [*command[1:], "--jobs", "0"]).exit_code == 0
+    assert {*json.loads((out / "run.json").read_text())["formats"]} == {"svg", "otf", "gallery"}
+    assert list(out.glob("*.otf"))
     assert '"source":"M' in (out / "gallery" / "O.glyph.js").read_text()
 
 
