@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -76,6 +77,13 @@ Out = Annotated[
 ]
 
 
+def as_typed(text: str) -> str:
+    """Text of the command line as UTF-8, also where the locale is not: with LC_ALL=C Python keeps its bytes."""
+    if not any("\udc80" <= character <= "\udcff" for character in text):
+        return text
+    return os.fsencode(text).decode("utf-8", "surrogateescape")
+
+
 @dataclass(frozen=True)
 class Subset:
     """The glyphs that are asked for, as in the fontTools subsetter."""
@@ -102,7 +110,7 @@ class Subset:
             raise GlyphsplineError(
                 "no glyphs asked for: give --text, --text-file, --unicodes, --glyphs, --gids or --all"
             )
-        text = self.text
+        text = as_typed(self.text) if self.text else None
         if self.text_file is not None:
             text = (text or "") + self.text_file.read_text(encoding="utf-8-sig")
         return source.select(

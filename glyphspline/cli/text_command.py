@@ -138,7 +138,7 @@ def words_of(words: str | None, file: File | None) -> str:
         return file.read_text(encoding="utf-8-sig")
     if words is None:
         raise GlyphsplineError("give a text, or --text-file")
-    return words
+    return opt.as_typed(words)
 
 
 def curve_of(lines: opt.TextOptions, along: opt.PathOptions, em: float, look: Appearance) -> Path | None:

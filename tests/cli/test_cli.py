@@ -195,6 +195,20 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
     assert '"source":"M' in (out / "gallery" / "O.glyph.js").read_text()
 
 
+@pytest.mark.skipif(os.name == "nt", reason="a locale of POSIX")
+@pytest.mark.parametrize(
+    "command", [["convert", FONT, "--text", "好", "--jobs", "0", "--out"], ["text", FONT, "好", "--out"]]
+)
+def test_text_is_utf_8_whatever_the_locale(command: list[str], tmp_path: Path) -> None:
+    environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    out = tmp_path / ("good" if command[0] == "convert" else "good.svg")
+    done = subprocess.run(
+        [sys.executable, "-m", "glyphspline", *command, str(out)],
+        cwd=ROOT, env=environment, capture_output=True, check=False, timeout=600,
+    )  # fmt: skip
+    assert (done.returncode, out.exists()) == (0, True), done.stderr
+
+
 def call(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=600)
 

@@ -301,7 +301,9 @@ def write_gallery(folder: Path) -> None:
         drawn: dict[str, str] = next((files for entry in entries_of(path) if (files := entry.get("files"))), {})
         if drawn and GALLERY not in drawn:
             words = re.sub(r" --format \S+", "", made.get("command", "glyphspline convert FONT"))
-            words += f" --format {','.join([*made.get('formats', drawn), GALLERY])} --out {shlex.quote(str(path))} --restart"
+            words += (
+                f" --format {','.join([*made.get('formats', drawn), GALLERY])} --out {shlex.quote(str(path))} --restart"
+            )
             raise OutputError(f"was made without the format gallery; add it by: {words}", font=str(path))
         write_report(path, entries_of(path), made)
     if not is_one:
