@@ -118,8 +118,16 @@ def start_forkserver(preload: Sequence[str]) -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+_is_ending = False
+
+
 def kill_all() -> None:
-    """Kill the workers of all pools, and the process from which they are forked, which may be compiling."""
+    """Kill the workers of all pools, and the process from which they are forked, which may be compiling.
+
+    No pool starts others from then on: this process is about to end.
+    """
+    global _is_ending
+    _is_ending = True
     for process in multiprocessing.active_children():
         process.kill()
     kill_server()
@@ -299,14 +307,14 @@ class WorkerPool(Executor):
             WorkerStartError: several in a row have died.
         """
         self._starting = True
-        while not self.is_closed and self._died < STARTS:
+        while not (self.is_closed or _is_ending) and self._died < STARTS:
+            if self._died and os.name != "nt":
+                start_forkserver(self._preload)
             try:
                 return _Worker(self._context, self._seconds, self._preload)
             except (EOFError, OSError):
                 self._died += 1
                 time.sleep(POLL * self._died)  # a process that was killed may not have ended yet
-                if os.name != "nt":
-                    start_forkserver(self._preload)
         raise WorkerStartError("a worker process could not start")
 
     def _receive(self, worker: _Worker) -> None:
