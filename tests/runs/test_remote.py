@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import signal
 import socket
 import subprocess
@@ -11,7 +10,6 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from importlib import import_module
 from io import BytesIO
 from pathlib import Path
@@ -33,21 +31,14 @@ pytestmark = pytest.mark.needs("fsspec", "s3fs", "localbucket")
 SECRET = "no-secret-at-all"
 
 
-def free_port() -> int:
-    """A free port below those that systems give to connections: one of them could take it while the server is away."""
-    for port in random.sample(range(20_000, 32_000), 100):
-        with socket.socket() as free, suppress(OSError):
-            free.bind(("127.0.0.1", port))
-            return port
-    raise OSError("no free port")
-
-
 class Server:
     """An S3 server that keeps its files in a folder, through its being killed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.port = free_port()
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
         self.start()
 
     def start(self) -> None:
@@ -56,12 +47,9 @@ class Server:
         until = time.monotonic() + 600
         while time.monotonic() < until:
             with socket.socket() as probe:
-                answers = probe.connect_ex(("127.0.0.1", self.port)) == 0
+                if probe.connect_ex(("127.0.0.1", self.port)) == 0:
+                    return
             time.sleep(0.05)
-            if self.process.poll() is not None:  # the port was taken
-                self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            elif answers:
-                return
         raise TimeoutError("the S3 server does not start")
 
     def kill(self) -> None:
