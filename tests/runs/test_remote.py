@@ -68,9 +68,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         patch.setenv("AWS_SECRET_ACCESS_KEY", SECRET)
         patch.setenv("AWS_DEFAULT_REGION", "us-east-1")
         patch.setenv("AWS_EC2_METADATA_DISABLED", "true")
-        pytest.importorskip(
-            "s3fs"
-        ).S3FileSystem.clear_instance_cache()  # one of an earlier server in this process knows that one's address
+        # A client of an earlier server in this process knows the address of that one.
+        pytest.importorskip("s3fs").S3FileSystem.clear_instance_cache()
         yield made
     made.kill()
 
