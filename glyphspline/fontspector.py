@@ -7,6 +7,7 @@ baseline are those of ``[tool.glyphspline.check]`` in the ``pyproject.toml`` of 
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -38,7 +39,13 @@ def main() -> int:
     except GlyphsplineError as error:
         sys.stderr.write(f"glyphspline-fontspector: {error}\n")
         return 2
-    return int(api.plugin_main(register, plugin_name="glyphspline"))
+    try:
+        status = int(api.plugin_main(register, plugin_name="glyphspline"))
+        sys.stdout.flush()
+    except BrokenPipeError:  # nobody reads on, as behind ``| head``
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    return status
 
 
 def register(plugin: Any) -> None:

@@ -117,6 +117,19 @@ def test_what_cannot_be_read_is_an_error_of_the_report(tmp_path: Path) -> None:
     assert "broken.ttf: not a TTF" in status["message"]
 
 
+@needs_api
+@pytest.mark.parametrize("arguments", [["--metadata"], ["--check", CHECK, str(FONT)]], ids=["short", "long"])
+def test_a_reader_that_goes_away_is_no_error(arguments: list[str], tmp_path: Path) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    run = subprocess.run(
+        [sys.executable, "-c", CALL, *arguments], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=writing, stderr=subprocess.PIPE, text=True, check=False,
+    )  # fmt: skip
+    os.close(writing)
+    assert (run.returncode, run.stderr) == (1, "")
+
+
 def test_without_the_extra_it_says_what_to_install(tmp_path: Path) -> None:
     code = "import sys; sys.modules['fontspectorapi'] = None; " + CALL
     run = called("--metadata", place=tmp_path, code=code)
