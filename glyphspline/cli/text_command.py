@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Sequence
-from math import inf
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -70,11 +69,10 @@ def text(
 
     files = list(formats_of(out, drawings.format_name))
     names = tuple(name for _, name in files)
-    # First: the worker gets ready while the text is laid out. Without a time limit: a text may be of any length.
-    with workers(1, inf, kinds_for(options, names), 1) as executor:
+    # First: the worker gets ready while the text is laid out.
+    with workers(1, kinds=kinds_for(options, names), expected=1) as executor:
         from ..readers import open_source
-        from ..runs.jobs.text import TextJob
-        from ..runs.jobs.text import drawings as draw
+        from ..runs.jobs.text import TextJob, draw
         from ..typesetting.placed import LEFT_OUT
 
         content = words_of(words, lines.text_file)
@@ -83,10 +81,10 @@ def text(
         curve = curve_of(lines, along, em, look)
         layout = laid_out(source, content, lines, curve is not None, look)
         align: Any = lines.align  # "justify" is refused with the path
-        drawn = executor.submit(draw, TextJob(
+        drawn = draw(TextJob(
             layout, options, names, settings, drawings.each_glyph, curve, along.bend, align, along.side,
             length("offset", along.offset, em, look) or 0.0,
-        )).result()  # fmt: skip
+        ), executor)  # fmt: skip
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":
             sys.stdout.buffer.write(drawing)

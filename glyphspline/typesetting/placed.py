@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import sqrt
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from .moved import Motion, Parts, joined_where_touching, moved_contours, moved_r
 
 LEFT_OUT = "left out"
 """How the note on a glyph begins that cannot be read or converted."""
+
+Fit: TypeAlias = Callable[[Sequence[Outline], Options], Sequence[GlyphResult | GlyphsplineError]]
+"""Fits outlines: a result for each, or its error."""
 
 NAME = "text"
 """The name of a text's outline."""
@@ -43,6 +47,7 @@ class Layout:
         scale: (n,) by which the glyph is enlarged: units of the first font per unit of its own. None: all by 1.
         notes: remarks, such as that a source has no tables for shaping.
         vertical: whether lines are columns.
+        unusable: glyphs that are not read: font and index, and why.
     """
 
     text: str
@@ -59,6 +64,7 @@ class Layout:
     scale: FloatArray | None = None
     notes: tuple[str, ...] = ()
     vertical: bool = False
+    unusable: Mapping[tuple[int, int], str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         said = f"{self.text[:24]}…" if len(self.text) > 25 else self.text
@@ -92,8 +98,15 @@ class Layout:
         pairs = self._pairs[0]
         metrics = self.fonts[0].metrics
         for k in np.unique(pairs[:, 0]).tolist():
-            scale = metrics.units_per_em / self.fonts[k].metrics.units_per_em
-            read = self.fonts[k].outlines(pairs[pairs[:, 0] == k, 1].tolist(), errors="return")
+            font, gids = self.fonts[k], pairs[pairs[:, 0] == k, 1].tolist()
+            scale = metrics.units_per_em / font.metrics.units_per_em
+            made = iter(font.outlines([gid for gid in gids if (k, gid) not in self.unusable], errors="return"))
+            read = [
+                GlyphsplineError(self.unusable[k, gid], font=str(font.path), glyph=font.glyph_names[gid])
+                if (k, gid) in self.unusable
+                else next(made)
+                for gid in gids
+            ]
             found += read if scale == 1.0 else [_scaled(outline, scale, metrics) for outline in read]
         return found
 
@@ -108,21 +121,21 @@ class Layout:
         notes = [f"glyph {outline.name!r}: {note}" for outline in parts.outlines for note in outline.notes]
         return replace(found, notes=tuple(notes), snapped=max([o.snapped for o in parts.outlines], default=0.0))
 
-    def results(self, options: Options = DEFAULTS) -> list[GlyphResult]:
-        """The results of :meth:`distinct`, each at its own origin, in units of the first font, in one batch.
+    def results(self, options: Options = DEFAULTS, fit: Fit | None = None) -> list[GlyphResult]:
+        """The results of :meth:`distinct`, each at its own origin, in units of the first font.
 
         A broken glyph has no contours, and ``notes`` of its outline or result say why. Of the tolerance is set aside
         what :meth:`convert` says.
 
         Args:
-            options: for all glyphs.
+            options: for all glyphs. fit: of their outlines; without it, :func:`.convert_many` of all at once.
 
         Raises:
             GlyphsplineError: no glyph can be converted: options that contradict each other, or a missing extra.
         """
-        return self._fitted(self._parts(united=False), options)
+        return self._fitted(self._parts(united=False), options, fit)
 
-    def convert(self, options: Options = DEFAULTS) -> GlyphResult:
+    def convert(self, options: Options = DEFAULTS, fit: Fit | None = None) -> GlyphResult:
         """Interpolate the text: each distinct glyph is fitted once, and its result moved into place.
 
         The measures of a contour are those of its glyph: crossings of different glyphs are not counted. Where a glyph
@@ -133,7 +146,7 @@ class Layout:
         once.
 
         Args:
-            options: for all glyphs.
+            options, fit: as in :meth:`results`.
 
         Returns:
             One result of all contours. Its outline has their sources; what cannot be read or converted is left out, and
@@ -143,7 +156,7 @@ class Layout:
             GlyphsplineError: no glyph can be converted: options that contradict each other, or a missing extra.
         """
         parts = self._parts(options.remove_overlaps)
-        return self._placed(parts, self._fitted(parts, options), options)
+        return self._placed(parts, self._fitted(parts, options, fit), options)
 
     def placed(self, results: Sequence[GlyphResult]) -> GlyphResult:
         """Results of :meth:`distinct`, moved into place: one result of all contours, as of :meth:`convert`."""
@@ -172,12 +185,12 @@ class Layout:
         parts = Parts(outlines, self.which, self.origin, self.angle)
         return joined_where_touching(parts) if united else parts
 
-    def _fitted(self, parts: Parts, options: Options) -> list[GlyphResult]:
+    def _fitted(self, parts: Parts, options: Options, fit: Fit | None) -> list[GlyphResult]:
         outlines = list(parts.outlines)
         if _rounded_anew(parts, options.precision):
             moved = sqrt(2.0) * 10.0**-options.precision
             outlines = [replace(outline, snapped=outline.snapped + moved) for outline in outlines]
-        found = convert_many(outlines, options, errors="return")
+        found = fit(outlines, options) if fit else convert_many(outlines, options, errors="return")
         errors = [result for result in found if isinstance(result, GlyphsplineError)]
         if errors and len(errors) >= sum(len(outline.contours) > 0 for outline in outlines):
             raise errors[0]

@@ -18,11 +18,16 @@ from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
 
+from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
 from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.jobs.text import TextJob, draw, drawings
+from glyphspline.runs.schedule import workers
 from glyphspline.runs.spec import Limits, RunSpec
+from glyphspline.typesetting.lay_out import layout
+from glyphspline.writers.settings import Settings
 from tests.places import ROOT
 
 NASTY = ["../../etc/passwd", "CON", "<&\"'>]]>", "x" * 250, "a\nb\x1b[31m", "-rf", "A", "a", "..", "%s%n", "\udc80"]
@@ -31,7 +36,7 @@ NASTY = ["../../etc/passwd", "CON", "<&\"'>]]>", "x" * 250, "a\nb\x1b[31m", "-rf
 def built(glyphs: dict[str, object], *, cff: bool = False) -> FontBuilder:
     builder = FontBuilder(1000, isTTF=not cff)
     builder.setupGlyphOrder(list(glyphs))
-    builder.setupCharacterMap({})
+    builder.setupCharacterMap({ord("a") + k: name for k, name in enumerate(glyphs) if len(glyphs) < 26})
     if cff:
         builder.setupCFF("Hostile", {}, glyphs, {})
     else:
@@ -129,6 +134,23 @@ def test_a_glyph_that_never_ends_is_killed_and_the_others_are_there(tmp_path: Pa
     summary = convert_font(font, font.glyph_names, tmp_path / "out", spec, jobs=2)
     assert summary.statuses == {"ok": 2, "failed": 1}
     assert summary.failures == [("endless", "took longer than 10 s")]
+
+
+def test_a_text_is_drawn_without_the_glyph_that_never_ends(tmp_path: Path) -> None:
+    endless_font(tmp_path / "endless.otf")
+    text = layout(open_font(tmp_path / "endless.otf"), "bcc")
+    with workers(1, 5.0, expected=1) as pool:
+        drawn = draw(TextJob(text, Options(step=50.0), ("svg",), Settings()), pool)
+    (note,) = drawn.notes
+    assert "left out: " in note
+    assert note.endswith("glyph 'endless': took longer than 5 s")
+    assert drawn.contents[0].count(b"M") == 2
+
+
+def test_a_text_that_needs_too_many_vertices_is_refused(tmp_path: Path) -> None:
+    text = layout(open_font(ROOT / "fonts_test" / "kouzan-gyosho.ttf"), "O")
+    with pytest.raises(GlyphsplineError, match="vertices, more than the 200000 allowed"):
+        drawings(TextJob(text, Options(step=1e-6), ("svg",), Settings()))
 
 
 def test_links_in_the_output_folder_lead_nowhere(tmp_path: Path) -> None:

@@ -1,19 +1,30 @@
-"""The drawings of a text, made by a worker: the command lays the text out, a process that can be killed fits it."""
+"""The drawings of a text, made by a worker: the command lays the text out, a process that can be killed fits it.
+
+A worker that is killed or dies is followed by one that tries each glyph; then the text is drawn without those at fault.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ...errors import GlyphsplineError
 from ...fitting.options import Options
 from ...typesetting.placed import Layout
 from ...typesetting.setting import Side
 from ...writers.settings import Settings
+from ..engine import Item, Job, reason, run, work
+from ..pool import TimeLimitError, WorkerLostError, sign_of_life
+from ..schedule import Place, place_of, sources
+from ..spec import Limits
+from .convert import ConvertJob
 
 if TYPE_CHECKING:
     from ...fitting.results import GlyphResult
+    from ...outlines.outline import Outline
     from ...typesetting.path import Path
 
 
@@ -46,6 +57,74 @@ class Drawings(NamedTuple):
     notes: list[str]
 
 
+@dataclass(frozen=True)
+class FitJob(Job["Outline", "list[GlyphResult | GlyphsplineError]"]):
+    """Outlines fitted in batches, within the limits of a run."""
+
+    options: Options
+
+    budget = ConvertJob.budget
+
+    def read(self, tasks: Sequence[Outline]) -> list[Item | Exception]:
+        """Outlines; one that is too large is an error."""
+        from ..worker import items
+
+        return items(tasks, self.options, Limits())
+
+    def together(self, tasks: Sequence[Outline], contents: Sequence[Any]) -> list[GlyphResult | GlyphsplineError]:
+        """The results of a batch."""
+        from ...fitting.convert import convert_many
+
+        return convert_many(contents, self.options, errors="return")
+
+    def failed(self, task: Outline, error: Exception) -> list[GlyphResult | GlyphsplineError]:
+        """Why an outline cannot be fitted."""
+        return [error if isinstance(error, GlyphsplineError) else GlyphsplineError(reason(error), glyph=task.name)]
+
+
+def fitted(outlines: Sequence[Outline], options: Options) -> list[GlyphResult | GlyphsplineError]:
+    """The results of outlines, or their errors, with a sign of life after each batch."""
+    return [result for part in work(FitJob(options), outlines) for result in part.result]
+
+
+@dataclass(frozen=True)
+class TrialJob(Job[tuple[int, int], str | None]):
+    """Glyphs by font and index read and fitted, each by itself: what is wrong with those that end their worker."""
+
+    places: tuple[Place, ...]
+    options: Options
+
+    chunk = 1
+
+    def together(self, tasks: Sequence[tuple[int, int]], contents: Sequence[Any]) -> None:
+        """Nothing: a glyph that can be read and fitted, or has an error of its own, is for the text."""
+        ((font, gid),) = tasks
+        (outline,) = sources(*self.places)[font].outlines([gid], errors="return")
+        if not isinstance(outline, GlyphsplineError):
+            fitted([outline], self.options)
+
+    def failed(self, task: tuple[int, int], error: Exception) -> str:
+        """Why a glyph cannot be in the text."""
+        return reason(error)
+
+
+def draw(job: TextJob, pool: Executor) -> Drawings:
+    """The drawings of a text, made in a pool. Glyphs that take too long, or end their worker, are left out of it.
+
+    Raises:
+        GlyphsplineError: as :func:`drawings`; or the text takes too long, and none of its glyphs does.
+    """
+    try:
+        return pool.submit(drawings, job).result()
+    except (TimeLimitError, WorkerLostError):
+        layout = job.layout
+        trial = TrialJob(tuple(map(place_of, layout.fonts)), job.options)
+        unusable = {part.tasks[0]: part.result for part in run(trial, layout.distinct(), pool) if part.result}
+        if not unusable:
+            raise
+        return pool.submit(drawings, replace(job, layout=replace(layout, unusable=unusable))).result()
+
+
 def drawings(job: TextJob) -> Drawings:
     """Fit a text and draw it in all formats; it is fitted once for all, and not at all for its source's outline.
 
@@ -69,9 +148,9 @@ def drawings(job: TextJob) -> Drawings:
     notes: dict[str, None] = {}
 
     @cache
-    def whole(fitted: bool) -> GlyphResult:
-        if fitted:
-            result = layout.convert(options) if bent is None else convert(bent, options)
+    def whole(fit: bool) -> GlyphResult:
+        if fit:
+            result = layout.convert(options, fitted) if bent is None else convert(bent, options)
         else:
             outline = layout.outline() if bent is None else bent
             (found,) = unfitted([outline], options)
@@ -82,12 +161,12 @@ def drawings(job: TextJob) -> Drawings:
         notes.update(dict.fromkeys(result.notes))
         return result
 
-    def each_glyph(fitted: bool) -> bytes:
+    def each_glyph(fit: bool) -> bytes:
         from ...writers.svg.text_drawing import text_document
 
         if bent is not None:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
-        results = layout.results(options) if fitted else layout.unfitted(options)
+        results = layout.results(options, fitted) if fit else layout.unfitted(options)
         notes.update(dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)]))
         return text_document(layout, results, job.settings.look)
 
@@ -99,4 +178,5 @@ def drawings(job: TextJob) -> Drawings:
         else:
             made = form.write(whole(form.fitted), job.settings.scaled(metrics))
             contents.append(made.encode() if isinstance(made, str) else made)
+        sign_of_life()
     return Drawings(contents, list(notes))
