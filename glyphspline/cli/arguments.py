@@ -113,8 +113,9 @@ class Subset:
         text = as_typed(self.text) if self.text else None
         if self.text_file is not None:
             text = (text or "") + self.text_file.read_text(encoding="utf-8-sig")
+        glyphs = as_typed(self.glyphs) if self.glyphs else None
         return source.select(
-            text=text, unicodes=self.unicodes, glyphs=self.glyphs, gids=self.gids, all_glyphs=self.all_glyphs
+            text=text, unicodes=self.unicodes, glyphs=glyphs, gids=self.gids, all_glyphs=self.all_glyphs
         )
 
 

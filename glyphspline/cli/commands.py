@@ -116,8 +116,7 @@ def dataset(
     """
     from ..datasets.run import dataset as make
 
-    if not fit:
-        spec = replace(spec, options=None)
+    spec = replace(spec, characters=opt.as_typed(spec.characters), options=spec.options if fit else None)
     if text_file is not None:
         if spec.characters:
             raise OptionError("give --characters or --text-file, not both")
@@ -195,7 +194,7 @@ def atlas(
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     maps: Maps,
-    run: Annotated[opt.RunOptions, only("quiet")],
+    run: Annotated[opt.RunOptions, only("jobs", "quiet")],
     out: Annotated[Path, About("Write this PDF.", None, "FILE", ("--out", "-o"), more=opt.PLACE)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
@@ -224,14 +223,14 @@ def atlas(
     names = subset.of(source)
     if not names:
         stop("none of the glyphs asked for is in the font")
-    chosen = None if profiles is None else source.select(text=profiles)
+    chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
         if axis is not None:
-            pages, failed = make_axis_atlas(source, names, out, options, axis, observer=observer)
+            pages, failed = make_axis_atlas(source, names, out, options, axis, jobs=run.jobs, observer=observer)
         else:
             pages, failed = make_atlas(
                 source, names, out, options, profiles=chosen, comb=maps.comb, in_corners=maps.corner_teeth,
-                observer=observer,
+                jobs=run.jobs, observer=observer,
             )  # fmt: skip
     if not run.quiet:
         say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
@@ -287,7 +286,7 @@ def demo(
     with workplace(run.jobs, None, spec) as executor:
         for path, characters in [(font, "龍好")] if font else demo_fonts():
             source = open_source(path)
-            names = source.select(text=subset.text or characters)
+            names = source.select(text=opt.as_typed(subset.text or characters))
             if not names:
                 stop(f"{path} has none of {subset.text or characters}: give --text")
             folder = out / f"{path.stem}-{path.suffix[1:].lower()}"

@@ -282,6 +282,9 @@ class GlyphResult:
         if not isinstance(self.contours, ContourResults):
             object.__setattr__(self, "contours", ContourResults(_end_to_end(self.contours)))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return GlyphResult, (self.outline, self.options, tuple(self.contours), self.notes)
+
     def __repr__(self) -> str:
         name, contours = self.outline.name, counted(len(self.contours), "contour")
         return f"<GlyphResult {name!r}: {contours}, {_told([contour.measures for contour in self.contours])}>"

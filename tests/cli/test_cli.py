@@ -197,16 +197,26 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
 
 @pytest.mark.skipif(os.name == "nt", reason="a locale of POSIX")
 @pytest.mark.parametrize(
-    "command", [["convert", FONT, "--text", "好", "--jobs", "0", "--out"], ["text", FONT, "好", "--out"]]
+    ("command", "said"),
+    [
+        (["convert", FONT, "--text", "好", "--jobs", "0", "--format", "svg", "--out", "good"], "1 glyph in"),
+        (["text", FONT, "好", "--out", "good.svg"], ""),
+        (["check", FONT, "--text", "好"], "1 glyph: "),
+        (["diff", FONT, FONT, "--text", "好"], "1 glyph compared"),
+        (["atlas", FONT, "--text", "O好", "--profiles", "好", "--out", "good.pdf"], "2 pages"),
+        (["dataset", FONT, "--characters", "好", "--no-fit", "--jobs", "0", "--out", "good"], "1 row of 1 glyph"),
+        (["demo", FONT, "--text", "好", "--jobs", "0", "--out", "good"], "1 glyph in"),
+    ],
 )
-def test_text_is_utf_8_whatever_the_locale(command: list[str], tmp_path: Path) -> None:
-    environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    out = tmp_path / ("good" if command[0] == "convert" else "good.svg")
+def test_text_is_utf_8_whatever_the_locale(command: list[str], said: str, tmp_path: Path) -> None:
+    environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        [sys.executable, "-m", "glyphspline", *command, str(out)],
-        cwd=ROOT, env=environment, capture_output=True, check=False, timeout=600,
+        [sys.executable, "-m", "glyphspline", *command],
+        cwd=tmp_path, env=environment, capture_output=True, check=False, timeout=600,
     )  # fmt: skip
-    assert (done.returncode, out.exists()) == (0, True), done.stderr
+    assert said in done.stderr.decode()
+    assert done.returncode == 0
+    assert "--out" not in command or list(tmp_path.glob("good*"))
 
 
 def call(*arguments: str) -> subprocess.CompletedProcess[str]:

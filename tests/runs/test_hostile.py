@@ -21,7 +21,10 @@ from fontTools.ttLib import TTFont
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
+from glyphspline.runs import schedule
 from glyphspline.runs.folder import entries_of
+from glyphspline.runs.jobs.atlas import make_atlas
+from glyphspline.runs.jobs.check import Asked, check_fonts
 from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.jobs.text import TextJob, draw, drawings
 from glyphspline.runs.schedule import workers
@@ -145,6 +148,18 @@ def test_a_text_is_drawn_without_the_glyph_that_never_ends(tmp_path: Path) -> No
     assert "left out: " in note
     assert note.endswith("glyph 'endless': took longer than 5 s")
     assert drawn.contents[0].count(b"M") == 2
+
+
+def test_check_and_atlas_go_on_without_the_glyph_that_never_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(schedule.workers, "__defaults__", (5.0, (), 0))
+    endless_font(tmp_path / "endless.otf")
+    (face,) = check_fonts([tmp_path / "endless.otf"], Asked(), jobs=1, alone=True)
+    assert (face.glyphs, face.failed) == (2, [("endless", "took longer than 5 s")])
+    font = open_font(tmp_path / "endless.otf")
+    found = make_atlas(font, font.glyph_names, tmp_path / "atlas.pdf", Options(), jobs=1)
+    assert found == (3, 1)
 
 
 def test_a_text_that_needs_too_many_vertices_is_refused(tmp_path: Path) -> None:

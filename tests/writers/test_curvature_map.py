@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+import pickle
 import re
 import subprocess
 import sys
@@ -208,6 +209,11 @@ def test_same_input_gives_the_same_bytes() -> None:
     pdf = map_image(random_glyph(), "pdf")
     assert pdf == map_image(random_glyph(), "pdf")
     assert b"Date" not in pdf
+
+
+def test_a_pickled_result_is_drawn_alike() -> None:
+    made = gs.convert(gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O"), gs.Options(count=20))
+    assert to_curvature_svg(pickle.loads(pickle.dumps(made))) == to_curvature_svg(made)
 
 
 def test_png_shows_the_comb_in_its_colours() -> None:

@@ -18,8 +18,9 @@ from ...writers.figures.atlas import write_atlas
 from ...writers.figures.axis_pages import write_axis_atlas
 from ...writers.settings import Whose
 from ...writers.svg.comb import curvature_scale
-from ..engine import Job, Observer, reason, run
-from ..schedule import InProcess, Place, place_of, sources
+from ..engine import Item, Job, Observer, reason, run
+from ..schedule import Place, kinds_for, place_of, sources, workers
+from ..spec import Limits
 from .convert import SCALE_SAMPLE
 
 if TYPE_CHECKING:
@@ -43,15 +44,24 @@ class AtlasJob(Job[str, Converted]):
     chunk = 1
     budget = 1.0
 
+    def read(self, tasks: Sequence[str]) -> list[Item | Exception]:
+        """Glyphs in all masters by name; or outlines, of which one that is too large is an error."""
+        from ..worker import items
+
+        if self.masters:
+            return [Item(name) for name in tasks]
+        (source,) = sources(self.place)
+        return items(source.outlines(tasks, errors="return"), self.options, Limits())
+
     def together(self, tasks: Sequence[str], contents: Sequence[Any]) -> Converted:
         """Convert one glyph."""
         from ...fitting.convert import convert
         from ...fitting.convert_masters import convert_masters
 
-        (name,), (source,) = tasks, sources(self.place)
+        ((source,), (content,)) = sources(self.place), contents
         if self.masters:
-            return convert_masters(source.masters(name), self.options)
-        return convert(source.outline(name), self.options)
+            return convert_masters(source.masters(content), self.options)
+        return convert(content, self.options)
 
     def failed(self, task: str, error: Exception) -> Converted:
         """Why a glyph could not be converted."""
@@ -67,6 +77,7 @@ def make_atlas(
     profiles: Sequence[str] | None = None,
     comb: Whose = "result",
     in_corners: bool = False,
+    jobs: int | None = 0,
     observer: Observer | None = None,
 ) -> tuple[int, int]:
     """Write the atlas of some glyphs.
@@ -76,6 +87,7 @@ def make_atlas(
         options: of the conversion.
         profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
         comb: whose curvature the pages of combs show. in_corners: see :func:`to_curvature_svg`.
+        jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Returns:
@@ -84,7 +96,7 @@ def make_atlas(
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
     job, total, failed = AtlasJob(place_of(source), options), len(names), list[str]()
-    with InProcess() as pool:
+    with workers(jobs, kinds=kinds_for(options), expected=total) as pool:
         sample = names[:: -(-total // SCALE_SAMPLE) or 1]
         kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
         scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
@@ -106,6 +118,7 @@ def make_axis_atlas(
     options: Options,
     axis: str,
     *,
+    jobs: int | None = 0,
     observer: Observer | None = None,
 ) -> tuple[int, int]:
     """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
@@ -113,6 +126,7 @@ def make_axis_atlas(
     Args:
         source: the opened font; its location is that of the other axes. names: its glyphs, in order. path: the PDF.
         options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
+        jobs: as of :func:`make_atlas`.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Returns:
@@ -129,7 +143,7 @@ def make_axis_atlas(
     scale = curvature_scale(as_glyph(outline) for outline in sources if not isinstance(outline, GlyphsplineError))
     check_options(options)
     failed: list[str] = []
-    with InProcess() as pool:
+    with workers(jobs, kinds=kinds_for(options, masters=True), expected=len(names)) as pool:
         parts = run(AtlasJob(place_of(source), options, masters=True), names, pool, ordered=True, observer=observer)
         made: Iterator[Any] = (part.result for part in parts)
         pages = write_axis_atlas(

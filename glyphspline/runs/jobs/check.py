@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager, ExitStack, nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
@@ -40,10 +40,6 @@ DECIMALS = 2
 
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
-
-POOL_FROM = 2000
-POOL_FROM_ALONG_AXES = 100
-"""Glyphs of a face, or of one of a variable font, from which worker processes are worth their start."""
 
 
 class Checked(NamedTuple):
@@ -347,21 +343,17 @@ def check_fonts(
     Args:
         fonts: files. asked: what is looked for. chosen: the glyphs of each font; without it, all.
         face_index: the only face of each file; without it, all. location: of variable fonts.
-        jobs: worker processes; None takes all cores if there are many glyphs, 0 does everything in this process.
+        jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
         watch: opened for each face; yields its observer, see :data:`.engine.Observer`.
         alone: one face of one font is checked; its errors are raised.
     """
     if alone:
         face_index = face_index or 0
-    with ExitStack() as stack:
-        pool: Executor | None = None
+    with workers(jobs, kinds=["checks"], expected=1) as pool:
         for font in fonts:
             try:
                 for source in faces_of(font, location, face_index):
                     names = source.glyph_names if chosen is None else chosen(source)
-                    least = POOL_FROM_ALONG_AXES if source.axes else POOL_FROM
-                    if pool is None and (jobs or (jobs is None and len(names) >= least)):
-                        pool = stack.enter_context(workers(jobs, kinds=["checks"]))
                     name = str(font) if alone or source.num_faces == 1 else f"{font}, face {source.face_index}"
                     with watch() as observer:
                         face = check_face(source, name, names, asked, pool, observer, alone=alone)
