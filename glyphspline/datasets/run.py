@@ -10,7 +10,7 @@ from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -29,9 +29,10 @@ from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
 from .shards import Made, OfFont, Shapes, add_shapes, finished, write_shard
 from .spec import DatasetSpec
+from .unfinished import Unfinished
 
-RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
-"""Files beside the folder of shards."""
+RECORD, FONTS, CARD, UNFINISHED = "dataset.json", "fonts.parquet", "README.md", ".unfinished"
+"""Files beside the folder of shards; the last one only while a shard is made."""
 
 SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
 
@@ -111,8 +112,9 @@ def dataset(
     """Make a data set of the glyphs of fonts: a folder of Parquet files that ``datasets.load_dataset`` opens.
 
     The same fonts and options give the same bytes, whatever ``jobs`` is and however often the run was interrupted:
-    called again, it goes on after the last shard that is finished. Memory does not grow with the number of glyphs, but
-    for 8 bytes for each distinct shape, by which duplicates are found, twice that for moments, and the facts of fonts.
+    called again, it goes on where it was; in an object store, after the last shard that is finished. Memory does not
+    grow with the number of glyphs, but for 8 bytes for each distinct shape, by which duplicates are found, twice that
+    for moments, and the facts of fonts.
 
     Fonts and glyphs that are broken cost only themselves: ``fonts.parquet`` says what failed and why.
 
@@ -165,7 +167,7 @@ def _prepare(out: str, plan: Plan, restart: bool) -> None:
         if shards or remote.exists(f"{out}/{CARD}") or remote.exists(f"{out}/{FONTS}"):
             raise OutputError("holds files that are of no data set: give another folder", font=out)
     elif restart:
-        for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, RECORD):
+        for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, UNFINISHED, RECORD):
             if remote.exists(f"{out}/{name}"):
                 remote.remove(f"{out}/{name}")
     elif changed := differences(old, json.loads(record_text(plan))):
@@ -202,17 +204,33 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     numbers = {font.key: k for k, font in enumerate(plan.fonts) if font.taken}
     failed = sum(of_font.failed for fonts in held.values() if fonts is not None for of_font in fonts.values())
     watching = observer and (lambda done, total, new: observer(done, total, failed + new))
+
+    def opened(shard: Shard) -> Unfinished | None:
+        return None if remote.is_url(out) else Unfinished(Path(out, UNFINISHED), mark_of(shard, plan))
+
+    first = opened(left[0]) if left else None
+    known = first.chunks if first else 0
+    made = sum(map(len, islice(plan.chunks(left[0]), known))) if left else 0
     parts = run(
         RowsJob(plan.spec, limits), (), pool, ordered=True, observer=watching, total=plan.glyphs,
-        before=plan.glyphs - sum(shard.glyphs for shard in left), chunks=chain.from_iterable(map(plan.chunks, left)),
+        before=plan.glyphs - sum(shard.glyphs for shard in left) + made,
+        chunks=islice(chain.from_iterable(map(plan.chunks, left)), known, None),
     )  # fmt: skip
 
     def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
-        done = 0
-        while done < shard.glyphs:
-            part = next(parts)
-            done += len(part.tasks)
-            yield numbers[part.tasks[0].font.key], part.result
+        kept = first if shard == left[0] else opened(shard)
+        before = iter(kept or ())
+        for chunk in plan.chunks(shard):
+            number, own = numbers[chunk[0].font.key], next(before, None)
+            if own is None:
+                own, done = [], 0
+                while done < len(chunk):
+                    part = next(parts)
+                    own.append(part.result)
+                    done += len(part.tasks)
+                if kept:
+                    kept.add(own)
+            yield from ((number, one) for one in own)
 
     shapes, following = Shapes(), len(left)
     layout = schema(plan.spec, of_fonts=True)
@@ -224,6 +242,8 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
             add_shapes(paths[shard], shapes)
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)
+    if remote.exists(f"{out}/{UNFINISHED}"):
+        remote.remove(f"{out}/{UNFINISHED}")
     sizes = {shard: remote.size(path) for shard, path in paths.items()}
     summary = Summary.of(plan, totals, sizes)
     remote.put(f"{out}/{FONTS}", fonts_file(plan, totals))

@@ -128,6 +128,48 @@ def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: in
     assert contents(out) == contents(tmp_path / "whole")
 
 
+class StoppedError(Exception):
+    pass
+
+
+@pytest.mark.parametrize("damage", ["", "cut", "changed", "link"])
+def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
+    damage: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec, counts = replace(PLAIN, characters="龍好愛國書法永之あいうのをABgO"), list[int]()
+    together = RowsJob.together
+
+    def counted(self: RowsJob, tasks: Any, contents: Any) -> Made:
+        counts.append(len(tasks))
+        return together(self, tasks, contents)
+
+    def until(done: int, total: int, failed: int) -> None:
+        if done >= 20:
+            raise StoppedError
+
+    monkeypatch.setattr(RowsJob, "together", counted)
+    monkeypatch.setattr(plan, "SHARD", 1000)
+    gs.dataset(FONTS, tmp_path / "whole", spec, jobs=0)
+    whole, out = sum(counts), tmp_path / "stopped"
+    counts.clear()
+    with pytest.raises(StoppedError):
+        gs.dataset(FONTS, out, spec, jobs=0, observer=until)
+    kept, made = out / ".unfinished", sum(counts)
+    assert not list(out.glob("data/*.parquet"))
+    if damage == "link":
+        (tmp_path / "victim").write_bytes(kept.read_bytes())
+        kept.unlink()
+        kept.symlink_to(tmp_path / "victim")
+    elif damage:
+        data = kept.read_bytes()
+        kept.write_bytes(data[:-1] if damage == "cut" else data[:-1] + bytes([data[-1] ^ 1]))
+    counts.clear()
+    gs.dataset(FONTS, out, spec, jobs=0)
+    again = sum(counts) - (whole - made)
+    assert again == made if damage == "link" else (0 < again <= 10) == bool(damage)
+    assert contents(out) == contents(tmp_path / "whole")
+
+
 def test_shards_that_are_gone_or_broken_are_made_again(tmp_path: Path) -> None:
     gs.dataset(FONTS, tmp_path, PLAIN, jobs=0)
     before = contents(tmp_path)
