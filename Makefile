@@ -45,9 +45,10 @@ test: .venv/.test lint .venv/.warm
 test-extras: .venv/.test-extras .venv/.warm
 	$(BIN)/python -m pytest -n auto --dist worksteal -m needs --require-libraries
 
-# The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look).
+# The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look). `make paper ONLY=fig4`
+# makes that figure and its claims alone, into outputs/paper-fig4.
 paper: .venv/.ready
-	$(BIN)/python -m scripts.paper
+	$(BIN)/python -m scripts.paper $(if $(ONLY),--only $(ONLY))
 
 # 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.

@@ -13,9 +13,24 @@ SIGN = {"reproduced": "✓", "differs": "≠", "not decidable": "?", "proven": "
 
 
 def write_report(out: Path) -> None:
-    """Fill the template from ``out/claims.json``."""
+    """Fill the template from ``out/claims.json``, without sections that have no claim, and pictures that are not there.
+
+    A page of all claims is the whole template.
+    """
     content = json.loads((out / "claims.json").read_text(encoding="utf-8"))
-    (out / "README.md").write_text(render(TEMPLATE.read_text(encoding="utf-8"), content), encoding="utf-8")
+    made = chosen(TEMPLATE.read_text(encoding="utf-8"), {c["id"] for c in content["claims"]})
+    page = re.sub(r"!\[[^]]*\]\(([^)]+)\)\n\n", lambda m: m[0] if (out / m[1]).exists() else "", render(made, content))
+    (out / "README.md").write_text(page, encoding="utf-8")
+
+
+def chosen(template: str, claims: set[str]) -> str:
+    """The template without the sections all of whose claims are missing; some have none, and are of all."""
+    parts = re.split(r"(?m)^(?=#{1,2} )", template)
+    asked = [set(re.findall(r"\{\{claim (.+?)\}\}", part)) for part in parts]
+    if set().union(*asked) <= claims:
+        return template
+    of_all = [k for k, part in enumerate(parts) if "{{summary}}" in part or "{{times}}" in part]
+    return "".join(part for k, part in enumerate(parts) if k in of_all or asked[k] & claims)
 
 
 def render(template: str, content: dict[str, Any]) -> str:
@@ -38,7 +53,7 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f'| {c["source"]} | <a href="#{c["id"]}">{c["id"]}</a> | {SIGN[_kind(c["verdict"])]} {c["verdict"]} |'
+        f'| {c["source"]} | <a href="#{c["id"]}">{cell(c["claim"])}</a> | {SIGN[_kind(c["verdict"])]} {c["verdict"]} |'
         for c in claims.values()
     ]
     return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])

@@ -15,6 +15,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.interpolation.intervals import basis_function
+from scripts.paper import local
 from scripts.paper.certified import certify, enclose, family, peak_values, threshold, windows_of, worst_corner
 from scripts.paper.clicking import CHARACTERS, DATA, FONTS, clicked_character
 from scripts.paper.common import Run, is_verdict, random_polygons
@@ -49,6 +50,25 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def claims_of(folder: Path) -> dict[str, Any]:
     content = json.loads((folder / "claims.json").read_text(encoding="utf-8"))
     return {c["id"]: c for c in content["claims"]}
+
+
+def test_a_page_of_one_figure_has_that_one_alone(tmp_path: Path) -> None:
+    reproduce(Run(tmp_path, quick=True), ["fig4"])
+    page = (tmp_path / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r"!\[.*?\]\((.+?)\)", page) == ["fig-4.png"]
+    assert re.findall(r"(?m)^#.*", page) == ["# The paper, claim by claim", "## Fig. 4: time", "# Times"]
+    assert "was not run" not in page
+    for claim in claims_of(tmp_path).values():
+        assert f'| {claim["source"]} | <a href="#{claim["id"]}">{claim["claim"]}</a> |' in page
+
+
+def test_a_line_that_would_flatten_the_others_has_a_scale_of_its_own() -> None:
+    times = {f"variant {v}": {"5": value, "90": 2 * value} for v, value in enumerate((0.1, 0.2, 2.5))}
+    assert [
+        len(axes.get_shared_x_axes().get_siblings(axes)) for axes in local.picture(times, times, Run(Path())).axes
+    ] == [2] * 4
+    alike = {name: {"5": 1.0, "90": 2.0} for name in times}
+    assert len(local.picture(alike, alike, Run(Path())).axes) == 2
 
 
 def test_every_claim_has_the_schema(quick: Path) -> None:
