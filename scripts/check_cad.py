@@ -45,7 +45,7 @@ SIZE = 20.0
 KINDS: tuple[DxfKind, ...] = get_args(DxfKind)
 
 LOOKS = {
-    "smooth": gs.Options(),
+    "smooth": gs.Options(corners="smooth"),
     "sharp": gs.Options(corners="sharp"),
     "g1": gs.Options(corners="sharp", continuity="g1"),
 }

@@ -23,7 +23,7 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import glyphspline as gs
-from glyphspline.fitting.options import Corners
+from glyphspline.fitting.options import PRESETS, Corners
 
 ROOT = Path(__file__).resolve().parent.parent
 FONTS = ROOT / "fonts_test"
@@ -74,7 +74,7 @@ def main() -> None:
 
 def dragon(page: Any) -> None:
     """The Dragon and its curvature comb."""
-    glyph = gs.convert(outline("kouzan-kaisho.ttf", "龍"), gs.Options(tolerance=2.0))
+    glyph = gs.convert(outline("kouzan-kaisho.ttf", "龍"), gs.Options(tolerance=2.0, **PRESETS["paper"]))
     drawing = gs.to_curvature_svg(glyph, vertices=False)
     side_by_side(page, "dragon", [("", gs.to_svg(glyph, view_box="ink")), ("", drawing)])
 
@@ -123,7 +123,7 @@ def terminal(page: Any) -> None:
         lines = []
         for command in (
             "glyphspline info kouzan-kaisho.ttf",
-            "glyphspline convert kouzan-kaisho.ttf --text 龍好 --out dragon",
+            "glyphspline convert kouzan-kaisho.ttf --text 龍好 --preset paper --out dragon",
             "ls dragon dragon/svg",
         ):
             words = shlex.split(command)

@@ -69,8 +69,8 @@ BRUSH, VARIABLE = FONTS / "kouzan-gyosho.ttf", FONTS / "variable.ttf"
 
 COMMANDS: dict[str, Sequence[str | Path]] = {
     "interpolate": ["-c", INTERPOLATE],
-    "smooth": ["convert", BRUSH, "--text", "龍", "--format", "svg,curvature,gallery", "--out", "smooth"],
-    "sharp": ["convert", BRUSH, "--text", "好", "--corners", "sharp", "--format", "svg,curvature", "--out", "sharp"],
+    "smooth": ["convert", BRUSH, "--text", "龍", "--preset", "paper", "--out", "smooth"],
+    "sharp": ["convert", BRUSH, "--text", "好", "--format", "svg,curvature", "--out", "sharp"],
     "type": ["convert", VARIABLE, "--all", "--preset", "type", "--out", "type"],
     "masters": ["convert", VARIABLE, "--masters", "--all", "--preset", "type", "--format", "ttf", "--out", "masters"],
     "check": ["check", VARIABLE],

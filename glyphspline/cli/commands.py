@@ -14,7 +14,7 @@ import typer
 from ..datasets.spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
 from ..fields import WRITTEN, About
-from ..fitting.options import Options
+from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
 from ..writers.settings import Maps
 from . import arguments as opt
@@ -29,6 +29,9 @@ from .text_command import text
 
 MEMORY = 16 << 30
 """Limit of a process's address space in bytes. Compiled code and thread stacks take a few GB of it."""
+
+BRUSHED = "龍好"
+"""Characters of the demonstration in brush faces."""
 
 app = typer.Typer(
     help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
@@ -199,8 +202,8 @@ def atlas(
     axis: Annotated[
         str | None,
         About(
-            "Draw each glyph along this axis of a variable font instead, its source and the curve for all masters. "
-            "Corners are sharp.",
+            "Draw each glyph along this axis of a variable font instead, its source and the sharp curve for all "
+            "masters.",
             metavar="TAG",
         ),
     ] = None,
@@ -274,21 +277,28 @@ def demo(
     ] = None,
     out: opt.Out = Path("outputs/demo"),
 ) -> int:
-    """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and a Latin letter."""
+    """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.
+
+    龍 and 好 are converted with the preset paper.
+    """
     from ..readers import open_source
     from ..runs.schedule import kinds_for
     from ..runs.warm import is_kept
     from ..runs.warm import warm as warm_up
 
-    failed, shown, spec = 0, [], RunSpec()
+    failed, shown, paper = 0, [], RunSpec(Options(**PRESETS["paper"]))
+    asked = opt.as_typed(subset.text or "")
+    texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
+    specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
     if not is_kept():  # on all cores; a run's workers wait for one process
-        warm_up(run.jobs, kinds=kinds_for(spec.options, spec.formats))
-    with workplace(run.jobs, None, spec) as executor:
-        for path, characters in [(font, "龍好")] if font else demo_fonts():
+        kinds = dict.fromkeys(kind for spec in specs for kind in kinds_for(spec.options, spec.formats))
+        warm_up(run.jobs, kinds=[*kinds])
+    with workplace(run.jobs, None, specs[0]) as executor:
+        for (path, text), spec in zip(texts, specs, strict=True):
             source = open_source(path)
-            names = source.select(text=opt.as_typed(subset.text or characters))
+            names = source.select(text=text)
             if not names:
-                stop(f"{path} has none of {subset.text or characters}: give --text")
+                stop(f"{path} has none of {text}: give --text")
             folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
             call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
             failed += run_face(source, names, call, executor).failed
@@ -322,7 +332,7 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [*((fonts / name, "龍好") for name in brushes), (dejavu, "g&")]
+    return [*((fonts / name, BRUSHED) for name in brushes), (dejavu, "g&")]
 
 
 def limit_memory() -> None:

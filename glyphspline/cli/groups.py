@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import typer
 
@@ -46,8 +46,8 @@ class PresetOption:
 
     preset: Preset | None = option(
         None,
-        "Set several options: type has sharp corners and few points, for letters; paper is smooth, with "
-        "margin 0. Options given beside it win.",
+        "Set several options: type keeps corners, in the fewest points; brush is smooth, within 3/1000 em; "
+        "paper is smooth, with margin 0. Options given beside it win.",
         CORNERS,
     )  # fmt: skip
 
@@ -101,14 +101,15 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     if kind is Options:
         given = {**PRESETS.get(given.get("preset", ""), {}), **given}
     known = {one.name: one for one in options_of(kind)}
-    found: dict[str, Any] = {}
+    usual = kind()
+    found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
     for name in (one.name for one in fields(kind) if shown.has(one.name)):
         if is_dataclass(value := getattr(base, name)):
             found[name] = collected(value, shown, given)
         elif name in known and name in given:
             found[name] = _read(known[name], given[name])
     try:
-        return replace(base, **found)  # type: ignore[type-var]
+        return cast(Value, kind(**found))  # not "replace": what is not given may depend on what is
     except OptionError as error:
         first, *rest = re.split(" (?=is |and .* are )", error.message, maxsplit=1)
         named = rest and first in known

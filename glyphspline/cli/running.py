@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext, suppress
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -92,9 +92,6 @@ def convert_face(source: Source, name: str, call: Conversion, executor: Executor
     if alone and not names:
         stop("none of the glyphs asked for is in the font")
     summary = run_face(source, names, call, executor, None if alone else name)
-    talks = not (call.run.quiet or call.run.json_log)
-    if alone and talks and looks_like_type(source, names, call.spec, executor):
-        say("most joints of these glyphs are corners or lines, which --corners sharp (or --preset type) keeps")
     return FontRun(name, call.out, summary)
 
 
@@ -158,19 +155,3 @@ def run_face(
         for line in summary.lines():
             say(f"  {line}" if name else line)
     return summary
-
-
-def looks_like_type(source: Source, names: Sequence[str], spec: RunSpec, executor: Executor) -> bool:
-    """Whether a run in smooth mode is over glyphs most of whose joints are corners or ends of lines."""
-    from ..errors import GlyphsplineError
-    from ..runs.folder import Task
-    from ..runs.jobs.convert import corners_of
-    from ..runs.schedule import side_of
-
-    if spec.options.corners != "smooth" or spec.options.is_fixed or not spec.is_fitted:
-        return False
-    chosen = names[:: max(len(names) // 64, 1)][:64]  # enough to tell type from brush
-    tasks = [Task(source.glyph_names.index(name), name, "", ()) for name in chosen]
-    with suppress(GlyphsplineError):  # its worker is lost or killed: nothing is known of these glyphs
-        return executor.submit(corners_of, side_of(source), tasks).result() > 0.5
-    return False

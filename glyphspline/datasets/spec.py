@@ -22,10 +22,6 @@ MOST_POINTS = 4096
 """Points of a contour, and pixels of a raster's side."""
 
 
-FIT = Options(corners="sharp")
-"""The fit of a data set: as type has it."""
-
-
 @dataclass(frozen=True)
 class DatasetSpec:
     """What a data set holds.
@@ -50,7 +46,7 @@ class DatasetSpec:
         ROWS, "N|polygon", rule=whole(3, MOST_POINTS), words={"polygon": None},
     )  # fmt: skip
     normalise: Normalise = option("em", "Write coordinates in em, or in font units.", ROWS)
-    options: Options | None = FIT
+    options: Options | None = Options()
     raster: int | None = option(None, "Add a grey picture of N by N pixels.", ROWS, "N", rule=whole(8, MOST_POINTS))
     characters: str = option("", "Take only glyphs of these characters.", TAKEN)
     scripts: tuple[str, ...] = option(

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .sharp.sharp_fit import SharpFit
     from .topology import Changes
 
-SHARP = Options(corners="sharp")
+DEFAULTS = Options()
 
 NO_HANDLE = 1e-9
 """Handles up to this long, in font units, give no tangent."""
@@ -123,10 +123,10 @@ class MastersResult:
         return Outline(m.name, m.gid, m.unicodes, float(m.advances @ weights), contours, m.metrics, self.notes)
 
 
-def convert_masters(masters: Masters, options: Options = SHARP) -> MastersResult:
+def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersResult:
     """Put one curve through all masters of a glyph.
 
-    With ``corners="smooth"`` it is one closed C2 curve a contour; with "sharp" arcs end at corners and lines.
+    Arcs end at corners and lines; with ``corners="smooth"`` it is one closed C2 curve a contour.
 
     Args:
         masters: of the glyph; see :meth:`.Source.masters`. options: how; the tolerance holds at every location.

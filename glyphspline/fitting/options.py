@@ -13,13 +13,15 @@ from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]
 Continuity = Literal["c2", "g1"]
-Preset = Literal["paper", "type"]
+Preset = Literal["paper", "type", "brush"]
 
 PRESETS: dict[str, dict[str, Any]] = {
     "paper": {"corners": "smooth", "margin": 0.0},
     "type": {"corners": "sharp", "continuity": "c2", "effort": "best"},
+    "brush": {"corners": "smooth", "thousandths": 3.0},
 }
-"""Options set together: one smooth curve a contour as the paper has it; corners and C2 arcs for type."""
+"""Options set together: one smooth curve a contour as the paper has it; corners and C2 arcs for type; and one smooth
+curve a contour, further from the noise of traced outlines, for brush."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +30,11 @@ class Options:
 
     Attributes:
         variant: 0 to 4 (the paper's Table 1).
-        tolerance: two-sided distance allowed between the result and the source outline; None is 1/1000 em.
+        tolerance: two-sided distance allowed between the result and the source outline; None is ``thousandths``.
+        thousandths: the same in thousandths of the em.
         step, count: sample by arc length or by number instead of by tolerance.
-        corners: "smooth" is one closed C2 curve a contour (the paper), "sharp" splits at corners.
+        corners: "sharp" splits at corners, "smooth" is one closed C2 curve a contour (the paper). None is "sharp", with
+            ``step`` or ``count`` "smooth"; it is replaced by what it stands for.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
         continuity: of "sharp" between corners: "c2" is one spline of variant 2, "g1" cubics that only share tangents,
@@ -49,10 +53,10 @@ class Options:
 
     Example:
         >>> from glyphspline import Options
-        >>> Options(corners="sharp", tolerance=2.0).words
+        >>> Options(tolerance=2.0).words
         'variant 2, margin 0.02, corners sharp, continuity c2, tolerance 2, effort fast'
-        >>> Options(step=20.0).is_fixed
-        True
+        >>> Options(step=20.0).corners
+        'smooth'
         >>> Options(step=20.0, count=9)
         Traceback (most recent call last):
         glyphspline.errors.OptionError: give one of tolerance, step and count, not step and count
@@ -60,8 +64,12 @@ class Options:
 
     variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", METHOD, "0…4")
     tolerance: float | None = option(
-        None, "Keep the curve within this distance of its source, in font units. Without it, 1/1000 em.",
+        None, "Keep the curve within this distance of its source, in font units. Without it, --thousandths.",
         CLOSENESS, "UNITS", rule=positive("distance"),
+    )  # fmt: skip
+    thousandths: float = option(
+        1.0, "Keep the curve within this number of thousandths of the em of its source.",
+        CLOSENESS, "N", rule=positive("number"),
     )  # fmt: skip
     step: float | None = option(
         None, "Place a point every UNITS font units of the outline, instead of by tolerance.", CLOSENESS, "UNITS"
@@ -70,8 +78,9 @@ class Options:
         None, "Place this number of points on each contour, instead of by tolerance.", CLOSENESS, "N"
     )
     corners: Corners = option(
-        "smooth",
-        "Draw one curve a contour (smooth), for brush and traced outlines, or keep corners (sharp), for type.",
+        None,
+        "Keep corners (sharp), or draw one curve a contour (smooth), for brush and traced outlines. --step and --count "
+        "are for smooth, their default.",
         CORNERS,
     )  # fmt: skip
     corner_angle: float = option(CORNER_ANGLE, "Set how sharp a turn counts as a corner.", CORNERS, "DEGREES")
@@ -99,6 +108,8 @@ class Options:
     remove_overlaps: bool = option(False, "Unite overlapping contours first.", WRITTEN)
 
     def __post_init__(self) -> None:
+        if self.corners is None:
+            object.__setattr__(self, "corners", "smooth" if self.is_fixed else "sharp")
         Method(
             self.variant, margin=self.margin, fallback=self.fallback, residual_tolerance=self.residual_tolerance,
             max_iterations=self.max_iterations,
@@ -109,7 +120,9 @@ class Options:
         if len(given) > 1:
             raise OptionError(f"give one of tolerance, step and count, not {' and '.join(given)}")
         if self.corners == "sharp" and self.is_fixed:
-            raise OptionError('step and count sample whole contours, which corners="sharp" cuts: give a tolerance')
+            raise OptionError(
+                'step and count sample whole contours, which corners="sharp" cuts: take "smooth", or give a tolerance'
+            )
 
     @property
     def is_fixed(self) -> bool:
@@ -124,13 +137,13 @@ class Options:
         said = [f"variant {self.variant}", f"margin {self.margin:g}"] if interpolated else []
         said += [f"corners {self.corners}", *([f"continuity {self.continuity}"] if sharp else [])]
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
-        said += [f"{name} {getattr(self, name):g}" for name in given] or ["tolerance 1/1000 em"]
+        said += [f"{name} {getattr(self, name):g}" for name in given] or [f"tolerance {self.thousandths:g}/1000 em"]
         said += [] if self.is_fixed else [f"effort {self.effort}"]
         return ", ".join(said)
 
     def tolerance_for(self, units_per_em: float) -> float:
         """The geometric tolerance in font units."""
-        return units_per_em / 1000 if self.tolerance is None else self.tolerance
+        return units_per_em * self.thousandths / 1000 if self.tolerance is None else self.tolerance
 
     @property
     def solver_tolerance(self) -> float:

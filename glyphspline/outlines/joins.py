@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,7 +10,7 @@ import numpy as np
 from ..curves.comb import end_curvatures
 from ..curves.cubics import turns
 from ..types import BoolArray, FloatArray
-from .outline import Contour, Outline
+from .outline import Contour
 from .sampling import CORNER_ANGLE
 
 TANGENT_ANGLE = 0.5
@@ -51,14 +50,3 @@ def joins(contour: Contour) -> Joins:
     pieces = contour.cubics()
     curvature = end_curvatures(pieces)
     return Joins(pieces[:, 0], turns(pieces, 0.0), curvature[:, 0] - np.roll(curvature[:, 1], 1))
-
-
-def share_of_corners(outlines: Iterable[Outline]) -> float:
-    """The share of joints that are corners or ends of lines, a hint that the sharp mode suits; 0 without joints."""
-    hard = total = 0
-    for contour in [contour for outline in outlines for contour in outline.contours]:
-        corner = np.abs(turns(contour.cubics(), 0.0)) >= np.radians(CORNER_ANGLE)
-        line = contour.degrees == 1
-        hard += int((corner | line | np.roll(line, 1)).sum())
-        total += len(contour)
-    return hard / max(total, 1)

@@ -29,6 +29,7 @@ class Facts(NamedTuple):
         deviation: the largest of its contours; None if none was measured.
         crossings, collapsed, kept: whether a contour crosses where its source does not, has lost its area, or is the
             source's own.
+        contours, splines: number of its contours that were fitted, and of those that are one closed spline.
         notes: of a glyph that came out empty: what was left out.
     """
 
@@ -38,6 +39,8 @@ class Facts(NamedTuple):
     crossings: bool = False
     collapsed: bool = False
     kept: bool = False
+    contours: int = 0
+    splines: int = 0
     notes: tuple[str, ...] = ()
 
 
@@ -53,10 +56,19 @@ CHANGED = {
 
 def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) -> Facts:
     """The facts of a glyph whose contours are those from ``first`` up to ``last``."""
-    names = ("converged", "within_tolerance", "deviation", "new_crossings", "collapsed", "source_kept")
-    converged, within, deviations, crossings, collapsed, kept = (measures.get(name, ())[first:last] for name in names)
+    names = (
+        "converged", "within_tolerance", "deviation", "new_crossings", "collapsed", "source_kept", "segments",
+        "numbers", "iterations",
+    )  # fmt: skip
+    converged, within, deviations, crossings, collapsed, kept, *sizes = (
+        measures.get(name, ())[first:last] for name in names
+    )
     deviation = max((value for value in deviations if value is not None), default=None)
-    return Facts(False in converged, False in within, deviation, any(crossings), any(collapsed), any(kept))
+    return Facts(
+        False in converged, False in within, deviation, any(crossings), any(collapsed), any(kept), len(sizes[0]),
+        # A closed spline stores a point a segment; arcs between corners store two more. Lines alone iterate nothing.
+        sum(numbers == 2 * segments and passes is not None for segments, numbers, passes in zip(*sizes, strict=False)),
+    )  # fmt: skip
 
 
 def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
@@ -73,6 +85,7 @@ class Summary:
     Attributes:
         statuses: glyphs by status. not_converged, outside_tolerance, new_crossings, collapsed, source_kept: glyphs with
             such a contour.
+        contours, splines: that were fitted, and those of them that are one closed spline without a corner.
         named: the first few glyphs of the last four, by what it is. left_out: (glyph, notes), the first few that came
             out empty because of what was left out.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
@@ -88,6 +101,8 @@ class Summary:
     new_crossings: int = 0
     collapsed: int = 0
     source_kept: int = 0
+    contours: int = 0
+    splines: int = 0
     named: dict[str, list[str]] = field(default_factory=dict)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     worst: list[tuple[float, str]] = field(default_factory=list)
@@ -109,6 +124,8 @@ class Summary:
         if status == "failed" and len(self.failures) < SHOWN:
             self.failures.append((glyph, error or ""))
         self.not_converged += facts.not_converged
+        self.contours += facts.contours
+        self.splines += facts.splines
         those = facts.outside, facts.crossings, facts.collapsed, facts.kept
         for name, is_one in zip(("outside_tolerance", *CHANGED), those, strict=True):
             if is_one:
@@ -144,7 +161,9 @@ class Summary:
         return ", ".join([" and ".join(parts) + f" in {self.seconds:.1f} s{before}", *how])
 
     def lines(self) -> Iterator[str]:
-        """What there is to say of single glyphs and files, as lines of text; failures come last."""
+        """What there is to say of contours, single glyphs and files, as lines of text; failures come last."""
+        if self.contours:
+            yield f"contours that are one closed spline without a corner: {self.splines} of {self.contours}"
         if self.worst and self.aim and self.outside_tolerance:
             yield f"not within {self.aim}: {listed(self.named['outside_tolerance'], self.outside_tolerance)}"
         for name, words in CHANGED.items():

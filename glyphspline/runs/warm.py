@@ -156,7 +156,7 @@ def masters() -> None:
     disc = MasterContour(np.stack([DISC.points * 3, DISC.points[:, ::-1] * [2.0, -5.0]]), DISC.degrees)
     slanted = MasterContour(np.stack([bow, bold]), np.array([1, 3, 1, 1]))
     family = Masters("shapes", axes=AXES, regions=REGIONS, contours=(disc, slanted), advances=np.ones(2))
-    result = convert_masters(family, Options(corners="sharp", tolerance=0.3))
+    result = convert_masters(family, Options(tolerance=0.3))
     result.energy_ratio({"wght": 0.5})
     result.turn({"wght": 0.5})
     ContourPen(masters=2).contour(slanted.points, slanted.degrees)  # as readers draw contours outside bulk passes
@@ -222,18 +222,18 @@ def rest() -> None:
 
 
 WORK: dict[str, Callable[[], Any]] = {
-    "sharp": lambda: converted(Options(corners="sharp", tolerance=0.3)),  # pieces fail the certificate
+    "sharp": lambda: converted(Options(tolerance=0.3)),  # pieces fail the certificate
     "interpolation": interpolations,
     "checks": checks,
     "comparing": comparisons,
     "points": points,
     "rest": rest,
     "drawings": drawings,
-    "smooth": lambda: converted(Options()),
+    "smooth": lambda: converted(Options(corners="smooth")),
     "masters": masters,
     "smooth_best": lambda: converted(Options(corners="smooth", effort="best")),
-    "g1": lambda: converted(Options(corners="sharp", continuity="g1")),
-    "sharp_best": lambda: converted(Options(corners="sharp", effort="best")),
+    "g1": lambda: converted(Options(continuity="g1")),
+    "sharp_best": lambda: converted(Options(effort="best")),
     "fixed": lambda: converted(Options(step=20.0)),
     "unfitted": unfitted,
 }

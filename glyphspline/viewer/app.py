@@ -177,9 +177,13 @@ def static(request: Request) -> Response:
 
 def font_facts(work: Work) -> dict[str, Any]:
     """The facts of the font that the page needs."""
-    font, options = work.font, Options()
-    names = ("variant", "margin", "corners", "continuity", "effort")
-    defaults = {name: getattr(options, name) for name in names}
+    font = work.font
+
+    def choices(**given: Any) -> dict[str, Any]:
+        options = Options(**given)
+        chosen = {name: getattr(options, name) for name in ("margin", "corners", "continuity", "effort")}
+        return chosen | {"sampling": "tolerance", "amount": options.tolerance_for(work.em)}
+
     return {
         "family": font.family,
         "style": font.style,
@@ -187,10 +191,10 @@ def font_facts(work: Work) -> dict[str, Any]:
         "metrics": asdict(font.metrics),
         "axes": [axis_facts(axis) for axis in font.axes],
         "first": first_glyph(work),
-        "defaults": defaults | {"sampling": "tolerance", "amount": options.tolerance_for(work.em)},
+        "defaults": {"variant": Options.variant} | choices(),
         "measures": measures(),
         "scale": work.scale(),
-        "presets": PRESETS,
+        "presets": {name: choices(**values) for name, values in PRESETS.items()},
         "palette": palette(),
     }
 

@@ -258,10 +258,11 @@
     for (const id of ["variants", "margin", "compare"]) at(id).disabled = fitted;
     at("compare").disabled ||= at("along").checked;
     at("variant-words").textContent = fitted ? "no variant runs: G1 cubics are fitted, nothing is iterated" : WORDS[state.variant];
-    for (const input of document.querySelectorAll("[name=preset]")) {
-      input.checked = Object.entries(font.presets[input.value]).every(([key, value]) => state[key] === value);
-    }
     amount();
+    for (const input of document.querySelectorAll("[name=preset]")) {
+      const { amount: exact, ...rest } = font.presets[input.value];
+      input.checked = Object.entries({ ...rest, amount: +exact.toPrecision(4) }).every(([key, value]) => state[key] === value);
+    }
   };
   /* Step and count sample whole contours, which sharp corners cut. */
   const together = (sampling, corners) => {
@@ -276,13 +277,10 @@
   }
   for (const input of document.querySelectorAll("[name=preset]")) {
     input.addEventListener("change", () => {
-      for (const [key, value] of Object.entries(font.presets[input.value])) {
-        const choice = choiceOf(key, value);
-        if (choice) choice.checked = true;
-        else at(key).value = String(value);
-      }
-      const { corners } = font.presets[input.value];
-      if (corners === "sharp" && state.sampling !== "tolerance") together("tolerance", corners);
+      const { amount: exact, margin, ...choices } = font.presets[input.value];
+      for (const [key, value] of Object.entries(choices)) choiceOf(key, value).checked = true;
+      at("margin").value = String(margin);
+      at("amount").value = String(shareOf("tolerance", exact));
       state.moved = [];
       read();
       ask();

@@ -112,8 +112,8 @@ def face_rows(face: Face) -> list[Row]:
     every = max(1, len(glyphs) // 25)
     few = glyphs[::every]
     kurbo = np.array([fewest(glyph, kurbo_results(glyph)) for glyph in few])
-    smooth, smooth_time = converted(few, gs.Options(tolerance=1.0, effort="best"))
-    third, _ = converted(few, gs.Options(tolerance=1.0, effort="best", variant=3))
+    smooth, smooth_time = converted(few, gs.Options(corners="smooth", tolerance=1.0, effort="best"))
+    third, _ = converted(few, gs.Options(corners="smooth", tolerance=1.0, effort="best", variant=3))
     missed, contours = best[:, 2].sum() + fast[:, 2].sum(), 2 * sum(len(g.contours) for g in glyphs)
     note = (
         f"{len(glyphs)} glyphs; a glyph: source {source.mean(0)}, FontForge {forge.mean(0)}, sharp {best.mean(0)[:2]}"
@@ -155,8 +155,8 @@ def converted(glyphs: list[gs.Outline], options: gs.Options) -> tuple[FloatArray
 
 
 WAYS = {
-    "smooth fast": gs.Options(tolerance=1.0),
-    "smooth best": gs.Options(tolerance=1.0, effort="best"),
+    "smooth fast": gs.Options(tolerance=1.0, corners="smooth"),
+    "smooth best": gs.Options(tolerance=1.0, corners="smooth", effort="best"),
     "sharp fast": gs.Options(tolerance=1.0, corners="sharp"),
     "sharp best": gs.Options(tolerance=1.0, corners="sharp", effort="best"),
     "sharp best g1": gs.Options(tolerance=1.0, corners="sharp", effort="best", continuity="g1"),

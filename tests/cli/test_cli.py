@@ -18,19 +18,16 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner, Result
 
 import glyphspline
-from glyphspline import Outline, open_font
 from glyphspline.cli import app
 from glyphspline.cli.groups import grouped, without
 from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
-from glyphspline.outlines.joins import share_of_corners
 from glyphspline.runs.folder import locked
 from glyphspline.runs.spec import RunSpec
 from glyphspline.runs.summary import Facts, Summary
 from glyphspline.writers.settings import Appearance, Maps, Settings
 from tests.places import ROOT
-from tests.polygons import circle_contour, square_contour
 from tests.runs.test_batch import content
 
 FONTS = ROOT / "fonts_test"
@@ -54,12 +51,18 @@ def test_convert_writes_what_it_says(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["--preset", "paper"], ("smooth", 0.0, "fast")),
-        (["--preset", "type", "--corners", "sharp"], ("sharp", 0.02, "best")),
-        (["--preset", "type", "--corners", "smooth"], ("smooth", 0.02, "best")),
-        (["--preset", "type", "--effort", "fast"], ("sharp", 0.02, "fast")),
-        (["--preset", "paper", "--margin", "0.02"], ("smooth", 0.02, "fast")),
-        (["--preset", "paper", "--corners", "sharp"], ("sharp", 0.0, "fast")),
+        ([], ("sharp", 0.02, "fast", 1.024)),
+        (["--step", "40"], ("smooth", 0.02, "fast", 1.024)),
+        (["--preset", "paper"], ("smooth", 0.0, "fast", 1.024)),
+        (["--preset", "paper", "--step", "40"], ("smooth", 0.0, "fast", 1.024)),
+        (["--preset", "brush"], ("smooth", 0.02, "fast", 3.072)),
+        (["--preset", "brush", "--tolerance", "2"], ("smooth", 0.02, "fast", 2.0)),
+        (["--preset", "brush", "--thousandths", "2", "--corners", "sharp"], ("sharp", 0.02, "fast", 2.048)),
+        (["--preset", "type", "--corners", "sharp"], ("sharp", 0.02, "best", 1.024)),
+        (["--preset", "type", "--corners", "smooth"], ("smooth", 0.02, "best", 1.024)),
+        (["--preset", "type", "--effort", "fast"], ("sharp", 0.02, "fast", 1.024)),
+        (["--preset", "paper", "--margin", "0.02"], ("smooth", 0.02, "fast", 1.024)),
+        (["--preset", "paper", "--corners", "sharp"], ("sharp", 0.0, "fast", 1.024)),
     ],
 )
 def test_presets_set_options_together_and_options_given_beside_them_win(
@@ -68,7 +71,7 @@ def test_presets_set_options_together_and_options_given_beside_them_win(
     out = ["--format", "svg", "--out", str(tmp_path / "out"), "--jobs", "0"]
     assert runner.invoke(app, ["convert", FONT, "--text", "O", *arguments, *out]).exit_code == 0
     options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
-    assert (options["corners"], options["margin"], options["effort"]) == expected
+    assert tuple(options[name] for name in ("corners", "margin", "effort", "tolerance")) == expected
 
 
 @pytest.mark.parametrize("more", [[], ["--preset", "type"]])
@@ -82,11 +85,11 @@ def test_options_of_a_file_win_over_a_preset(more: list[str], tmp_path: Path) ->
 
 
 def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -> None:
-    options = Options(corners="sharp", tolerance=2.5, measure=True)
+    options = Options(corners="smooth", tolerance=2.5, measure=True)
     spec = RunSpec(options, ("svg",), Settings(Appearance(fill="red"), dxf="polyline"), maps=Maps("source"))
     words = [*chain(*arguments(spec, RunSpec()).values())]
     assert words == [
-        "--tolerance", "2.5", "--corners", "sharp", "--measure", "--format", "svg", "--fill", "red",
+        "--tolerance", "2.5", "--corners", "smooth", "--measure", "--format", "svg", "--fill", "red",
         "--dxf", "polyline", "--comb", "source",
     ]  # fmt: skip
     found = []
@@ -105,24 +108,6 @@ def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -
 def test_help_is_a_sentence(kind: type) -> None:
     for one in options_of(kind):
         assert re.fullmatch(r"[A-Z][a-z]+ .*[.)]", one.about.help), one.name
-
-
-@pytest.mark.parametrize("corners", ["smooth", "sharp"])
-def test_a_hint_says_that_outlines_are_mostly_corners(corners: str, tmp_path: Path) -> None:
-    source = open_font(FONT)
-    assert share_of_corners([source.outline(name) for name in source.select(text="永")]) > 0.5
-    output = ["--out", str(tmp_path / "out"), "--jobs", "0", "--format", "svg"]
-    said = runner.invoke(app, ["convert", FONT, "--text", "永", "--corners", corners, *output]).stderr
-    assert ("--preset type" in said) == (corners == "smooth")
-
-
-def test_joints_that_are_corners_or_end_lines_are_counted() -> None:
-    square, circle = (Outline("x", contours=(contour,)) for contour in (square_contour(), circle_contour()))
-    assert share_of_corners([square]) == 1.0
-    assert share_of_corners([circle]) == 0.0
-    corners, joints = len(square.arrays.degrees), len(circle.arrays.degrees)
-    assert share_of_corners([square, circle]) == corners / (corners + joints)
-    assert share_of_corners([]) == 0.0
 
 
 def test_quiet_says_nothing(tmp_path: Path) -> None:

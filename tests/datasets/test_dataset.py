@@ -34,7 +34,7 @@ from glyphspline.datasets.plan import Plan, Task, plan_of
 from glyphspline.datasets.run import RowsJob
 from glyphspline.datasets.scan import SPLITS, FontFacts, licence_of, split_of
 from glyphspline.datasets.shards import Made, Shapes
-from glyphspline.datasets.spec import FIT, DatasetSpec
+from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
@@ -98,7 +98,7 @@ MAKE = """
 import sys, time
 import glyphspline as gs
 from glyphspline.datasets import plan, shards
-from glyphspline.datasets.spec import FIT, DatasetSpec
+from glyphspline.datasets.spec import DatasetSpec
 plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)
@@ -639,7 +639,7 @@ def test_the_command_makes_what_the_function_makes(tmp_path: Path) -> None:
         (["--points", "2"], "--points is a whole number from 3"),
         (["--validation", "0.9", "--test", "0.2"], "more than all families"),
         (["--characters", "A", "--text-file", "x"], "not both"),
-        (["--step", "20"], "corners"),
+        (["--step", "20", "--corners", "sharp"], "corners"),
     ],
 )
 def test_the_command_refuses_what_makes_no_sense(arguments: list[str], message: str, tmp_path: Path) -> None:
@@ -659,7 +659,7 @@ def test_the_status_says_that_something_failed(tmp_path: Path) -> None:
 
 
 def test_a_command_names_only_options_that_there_are() -> None:
-    assert command(DatasetSpec(options=replace(FIT, max_iterations=7))) == "glyphspline dataset FONTS… --out DIR"
+    assert command(DatasetSpec(options=gs.Options(max_iterations=7))) == "glyphspline dataset FONTS… --out DIR"
     assert command(DatasetSpec(options=None, characters="`")) == (
         "glyphspline dataset FONTS… --out DIR --text-file CHARACTERS.txt --no-fit"
     )

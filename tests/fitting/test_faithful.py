@@ -118,7 +118,7 @@ def test_arcs_are_what_the_public_interpolation_makes_of_their_vertices() -> Non
 
 
 def test_smooth_is_one_closed_curve_graded_and_twice_differentiable_at_the_seam() -> None:
-    for contour in gs.convert(glyph("永")).contours:
+    for contour in gs.convert(glyph("永"), gs.Options(corners="smooth")).contours:
         (interpolation,) = contour.interpolations
         spline = interpolation.spline
         assert spline.closed

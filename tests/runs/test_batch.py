@@ -21,6 +21,7 @@ from glyphspline.errors import GlyphsplineError, OutputError
 from glyphspline.files import write_whole
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
+from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, open_font
 from glyphspline.runs import worker
 from glyphspline.runs.file_names import LONGEST_NAME, file_names, folders_for
@@ -31,6 +32,7 @@ from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.runs.summary import Facts, facts_of
 from glyphspline.runs.worker import contour_entries
 from glyphspline.writers.settings import Appearance, Settings
+from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
 from tests.places import FONTS
 
 SPEC = RunSpec(Options(step=80))
@@ -254,6 +256,23 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
     assert (good["deviation"], good["length"], bad["length"]) == (0.1234568, None, None)
     assert facts_of(columns) == Facts(True, False, 2.0)
     assert facts_of(columns, 0, 1) == Facts(False, False, 0.123456789)
+
+
+@pytest.mark.parametrize(("options", "splines"), [(Options(), 1), (Options(corners="smooth"), 3)])
+def test_contours_that_are_one_closed_spline_are_counted(
+    options: Options, splines: int, font: Font, tmp_path: Path
+) -> None:
+    disc = list(circle(200, centre=(800.0, 300.0)))
+    half = [*circle(200, centre=(1300.0, 300.0))[:16], np.array([[1100.0, 300.0], [1500.0, 300.0]])]
+    contours = polygon_contour(L_SHAPE), Contour.from_segments(disc), Contour.from_segments(half)
+    drawn = Outline("three", contours=contours, metrics=METRICS)
+    found = convert_many([drawn], options)[0]
+    assert sum([arc.spline.closed for arc in contour.interpolations] == [True] for contour in found.contours) == splines
+    facts = facts_of(found.arrays.measures)
+    assert (facts.contours, facts.splines) == (3, splines)
+    new, old = (convert_font(font, ["O"], tmp_path, RunSpec(options, ("svg",)), jobs=0) for _ in range(2))
+    assert (old.contours, old.splines) == (new.contours, new.splines)  # of the manifest
+    assert f"contours that are one closed spline without a corner: {old.splines} of 2" in old.lines()
 
 
 @pytest.mark.parametrize(

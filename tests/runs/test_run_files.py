@@ -82,7 +82,7 @@ def test_other_names_are_another_run(font: Font, tmp_path: Path) -> None:
 
 
 def test_run_json_has_the_options_in_effect_the_selection_and_the_command(font: Font, tmp_path: Path) -> None:
-    spec = RunSpec(Options(corners="sharp"), ("svg",))
+    spec = RunSpec(Options(corners="smooth"), ("svg",))
     summary = convert_font(font, font.select(text="O龘\ud800"), tmp_path, spec, jobs=0)
     run = json.loads((tmp_path / "run.json").read_text())
     assert run["options"]["tolerance"] == font.metrics.units_per_em / 1000
@@ -91,7 +91,7 @@ def test_run_json_has_the_options_in_effect_the_selection_and_the_command(font: 
     assert run["selected"] == 1
     assert run["missing"] == {"count": 2, "first": ["U+9F98", "U+D800"]} == {
         "count": len(summary.missing), "first": list(summary.missing)}  # fmt: skip
-    expected = "glyphspline convert kouzan-gyosho.otf --text 'O龘?' --corners sharp --format svg"
+    expected = "glyphspline convert kouzan-gyosho.otf --text 'O龘?' --corners smooth --format svg"
     assert run["command"] == expected
 
 

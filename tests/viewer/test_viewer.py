@@ -99,9 +99,13 @@ def test_continuity_and_effort_reach_the_fit_and_the_command(client: TestClient)
 
 
 def test_presets_are_those_of_the_shell(client: TestClient) -> None:
-    presets = client.get("/api/font").json()["presets"]
-    assert presets == PRESETS
-    assert all(set(values) <= {"corners", "margin", "continuity", "effort"} for values in presets.values())
+    font = client.get("/api/font").json()
+    assert font["presets"].keys() == PRESETS.keys()
+    for name, values in PRESETS.items():
+        amount = values.get("thousandths", 1.0) * font["metrics"]["units_per_em"] / 1000
+        usual = {key: value for key, value in font["defaults"].items() if key != "variant"} | {"amount": amount}
+        chosen = {key: value for key, value in values.items() if key != "thousandths"}
+        assert font["presets"][name] == usual | chosen
 
 
 def test_sliding_and_resting_draw_the_same(client: TestClient) -> None:
@@ -115,7 +119,7 @@ def test_sliding_and_resting_draw_the_same(client: TestClient) -> None:
 
 
 def test_other_variants_interpolate_the_same_polygon(client: TestClient) -> None:
-    results = ask(client, "compare", sampling="tolerance", amount=4)["results"]
+    results = ask(client, "compare", sampling="tolerance", amount=4, corners="smooth")["results"]
     assert [result["variant"] for result in results] == [1, 2, 3]
     assert results[0]["polygons"] == results[1]["polygons"] == results[2]["polygons"]
     assert results[1]["result"] != results[2]["result"]
@@ -166,7 +170,7 @@ def test_a_run_is_made_once_for_all_of_its_steps(variant: int, monkeypatch: pyte
 def test_opens_on_defaults_and_never_on_notdef(client: TestClient, tmp_path: Path) -> None:
     font = client.get("/api/font").json()
     assert font["defaults"] == {
-        "variant": 2, "margin": 0.02, "corners": "smooth", "continuity": "c2", "effort": "fast",
+        "variant": 2, "margin": 0.02, "corners": "sharp", "continuity": "c2", "effort": "fast",
         "sampling": "tolerance", "amount": 1.024,
     }  # fmt: skip
     units = {name: unit for name, _, unit, about in font["measures"] if about}

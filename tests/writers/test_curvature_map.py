@@ -109,7 +109,8 @@ def test_the_sources_comb_is_exact_and_stands_on_the_source() -> None:
 
 
 def test_the_turn_about_a_corner_has_no_teeth_unless_asked_for() -> None:
-    glyph = gs.convert(gs.Outline("L", 1, (), 600, (polygon_contour(L_SHAPE),), METRICS))
+    smooth = gs.Options(corners="smooth")
+    glyph = gs.convert(gs.Outline("L", 1, (), 600, (polygon_contour(L_SHAPE),), METRICS), smooth)
     assert not any(part.cut.any() for part in teeth(glyph, 0.004))
     assert any(part.cut.any() for part in teeth(glyph, 0.004, in_corners=True))
     plain, every = (to_curvature_svg(glyph, scale=0.004, in_corners=asked) for asked in (False, True))
@@ -140,7 +141,7 @@ def test_the_scale_is_that_of_the_sources() -> None:
     outline = gs.Outline("a", 1, (), 600, (source, disc_and_corners), METRICS)
     scales = [curvature_scale([gs.convert(outline, gs.Options(corners=kind))]) for kind in ("smooth", "sharp")]
     assert scales == pytest.approx([1 / 200] * 2, rel=1e-3), "the turns about corners do not count"
-    straight = gs.convert(gs.Outline("b", 1, (), 600, (source,), METRICS))
+    straight = gs.convert(gs.Outline("b", 1, (), 600, (source,), METRICS), gs.Options(corners="smooth"))
     assert curvature_scale([straight]) > 0, "the result's, where no source is curved"
     assert curvature_scale([]) == 0
 

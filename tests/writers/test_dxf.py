@@ -29,8 +29,8 @@ ezdxf: Any = pytest.importorskip("ezdxf")
 
 FONT = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
 LOOKS = {
-    "smooth": gs.Options(),
-    "sharp": gs.Options(corners="sharp"),
+    "smooth": gs.Options(corners="smooth"),
+    "sharp": gs.Options(),
     "g1": gs.Options(corners="sharp", continuity="g1"),
 }
 

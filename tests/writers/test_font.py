@@ -198,7 +198,7 @@ def test_a_written_font_does_not_pass_for_its_source() -> None:
 
 def test_without_room_for_whole_units_cff_has_fractions_and_truetype_says_so() -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
-    glyph = gs.convert(source.outline("O"), gs.Options(tolerance=fitting_tolerance(0.5, "otf")))
+    glyph = gs.convert(source.outline("O"), gs.Options(corners="smooth", tolerance=fitting_tolerance(0.5, "otf")))
     data, summary = to_font(source, [glyph], "otf", tolerance=0.5)
     assert summary.beyond == ()
     assert summary.largest_error is not None
@@ -242,7 +242,9 @@ def test_drawings_become_a_font(flavour: Flavour, tmp_path: Path) -> None:
         (tmp_path / f"{name}.svg").write_text(gs.to_svg(glyph), encoding="utf-8")
     source = open_source(tmp_path)
     summary = write_font(
-        source, [gs.convert(source.outline("a"), gs.Options(tolerance=2.0))], tmp_path / f"new.{flavour}"
+        source,
+        [gs.convert(source.outline("a"), gs.Options(corners="smooth", tolerance=2.0))],
+        tmp_path / f"new.{flavour}",
     )
     assert summary.replaced == 1
     font = open_font(tmp_path / f"new.{flavour}")

@@ -20,7 +20,8 @@ from tests.places import FONTS
 
 def test_every_contour_is_read_back_equal(tmp_path: Path) -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
-    results = [gs.convert(source.outline(name), gs.Options(tolerance=4.0)) for name in source.select(text="O a")]
+    options = gs.Options(corners="smooth", tolerance=4.0)
+    results = [gs.convert(source.outline(name), options) for name in source.select(text="O a")]
     count = write_table(source, results, tmp_path / "t.parquet")
     read = pq.read_table(tmp_path / "t.parquet")
     assert read.schema.metadata[b"glyphspline.schema"] == b"1"

@@ -24,7 +24,8 @@ from tests.places import FONTS
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[gs.GlyphResult]]:
     source = open_font(FONTS / "kouzan-gyosho.otf")
-    results = [gs.convert(source.outline(name), gs.Options(tolerance=3.0)) for name in source.select(text="O& A")]
+    options = gs.Options(corners="smooth", tolerance=3.0)
+    results = [gs.convert(source.outline(name), options) for name in source.select(text="O& A")]
     path = tmp_path_factory.mktemp("ufo") / "out.ufo"
     assert write_ufo(source, results, path) == 4
     return path, results

@@ -112,15 +112,6 @@ class SurveyJob(Job[Task, "list[Comb]"]):
         return []
 
 
-def corners_of(side: Side, tasks: Sequence[Task]) -> float:
-    """:func:`..outlines.joins.share_of_corners` of the glyphs that can be read, in a worker."""
-    from ...outlines.joins import share_of_corners
-    from ...outlines.outline import Outline
-
-    (read,) = readers(side)
-    return share_of_corners([each for each in read([task.head for task in tasks]) if isinstance(each, Outline)])
-
-
 def convert_font(
     source: Source,
     glyphs: Sequence[str],
@@ -181,8 +172,8 @@ def convert_font(
     summary.missing = getattr(glyphs, "missing", ())
     if not spec.options.is_fixed:
         each_its_em = spec.options.tolerance is None and isinstance(source, SvgDrawings)
-        tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
-        summary.aim = "1/1000 em" if each_its_em else f"{tolerance:.3g} units"
+        tolerance = spec.options.tolerance_for(1000.0 if each_its_em else source.metrics.units_per_em)
+        summary.aim = f"{tolerance:.3g}{'/1000 em' if each_its_em else ' units'}"
     summary.seconds = time.perf_counter() - started
     return summary
 
