@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv demo test test-extras test-browser test-package wheel docs lint check-reference check-topology bench paper clean
+.PHONY: venv demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -59,6 +59,10 @@ check-reference: .venv/.ready
 # What written glyphs of five installed faces cross that their sources do not, and are not flagged for: four minutes or so.
 check-topology: .venv/.ready
 	$(BIN)/python scripts/topology.py
+
+# Damaged fonts and drawings through the commands, each in limits of time and memory: MINUTES of it, ten if not given.
+fuzz: .venv/.test .venv/.warm
+	$(BIN)/python -m scripts.fuzz --minutes $(or $(MINUTES),10)
 
 bench: .venv/.bench .venv/.warm
 	$(BIN)/python -m scripts.benchmark

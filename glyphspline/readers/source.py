@@ -266,6 +266,17 @@ def opening(path: Path, kind: str = "font") -> Iterator[None]:
         raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
 
 
+@contextmanager
+def reusing(path: Path, kind: str = "font") -> Iterator[None]:
+    """Turn an unexpected exception within into a FontError: tables that were opened may be broken further inside."""
+    try:
+        yield
+    except (GlyphsplineError, OSError, MemoryError):
+        raise
+    except Exception as error:  # as in opening
+        raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
+
+
 def attempt(path: Path, name: str, read: Callable[[], Read]) -> Read | GlyphsplineError:
     """What ``read`` returns of a glyph; if it raises, an error that names file and glyph."""
     try:

@@ -51,7 +51,8 @@ class SvgDrawings(Source):
         path: file or folder, as given. face_index, location: 0 and empty.
         family, style: the name of the file or folder without suffix, and "Regular".
         metrics: of the first drawing.
-        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names.
+        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names;
+            broken drawings last.
         cmap: code point to glyph.
     """
 
@@ -60,15 +61,16 @@ class SvgDrawings(Source):
     def __init__(self, path: Path) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
         self._files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
-        outlines = [read_drawing(file) for file in self._files]
+        self._broken: dict[str, FontError] = {}
+        outlines = [outline for file in self._files if (outline := self._read_or_broken(file))]
         if not outlines:
-            raise FontError("a folder without SVG drawings")
+            raise next(iter(self._broken.values()), FontError("a folder without SVG drawings"))
         self._outlines: dict[str, Outline] = {}
         for outline in sorted(outlines, key=lambda outline: outline.gid):
             if outline.name in self._outlines:
                 raise FontError("two drawings of one name", glyph=outline.name)
             self._outlines[outline.name] = outline
-        self.glyph_names = tuple(self._outlines)
+        self.glyph_names = (*self._outlines, *(name for name in self._broken if name not in self._outlines))
         self.metrics = self._outlines[self.glyph_names[0]].metrics
         self.cmap = first_claims((outline.name, outline.unicodes) for outline in self._outlines.values())
 
@@ -77,7 +79,18 @@ class SvgDrawings(Source):
         """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
         return hashlib.sha256(b"".join(file.read_bytes() for file in self._files)).hexdigest()
 
+    def _read_or_broken(self, file: Path) -> Outline | None:
+        """A drawing. A broken one has its file's name, comes after the others, and is an error when it is read."""
+        try:
+            return read_drawing(file)
+        except FontError as error:
+            self._broken[file.stem] = error
+            return None
+
     def _outline(self, head: Head) -> Outline:
+        if head.name not in self._outlines:
+            error = self._broken[head.name]
+            raise FontError(error.message, font=error.font)
         return replace(self._outlines[head.name], gid=head.gid)
 
 

@@ -18,7 +18,7 @@ from fontTools.ufoLib.glifLib import GlyphSet
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
 from .pens import ContourPen
-from .source import Head, Source, first_claims, parsed
+from .source import Head, Source, first_claims, parsed, reason
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
 
@@ -58,7 +58,9 @@ class Ufo(Source):
         ordered = [name for name in dict.fromkeys(lib.get(ORDER_KEY, ())) if name in there]
         skipped = set(lib.get(SKIP_KEY, ()))
         self.glyph_names = tuple(n for n in [*ordered, *sorted(there - set(ordered))] if n not in skipped)
-        claims = {name: self._claims(name) for name in self.default_layer.contents}
+        broken: dict[str, str] = {}
+        self.default_layer.broken = broken
+        claims = {name: self._claims(name, broken) for name in self.default_layer.contents}
         self.cmap = first_claims((name, claims[name]) for name in self.glyph_names)
 
     @cached_property
@@ -95,13 +97,19 @@ class Ufo(Source):
             raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
         return glyphs
 
-    def _claims(self, name: str) -> list[int]:
-        """A glyph's code points. Its file is checked for entities here, before ufoLib reads it."""
+    def _claims(self, name: str, broken: dict[str, str]) -> list[int]:
+        """A glyph's code points. Its file is checked for entities here, before ufoLib reads it.
+
+        A broken glyph has none; ``broken`` gets the reason, for when it is read.
+        """
         try:
             root = parsed(self.default_layer.getGLIF(name))
             return [int(item.get("hex"), 16) for item in root.iter("unicode")]
         except GlyphsplineError as error:
-            raise FontError(error.message, glyph=name) from error
+            broken[name] = error.message
+        except Exception as error:  # as in opening
+            broken[name] = f"cannot be drawn: {reason(error)}"
+        return []
 
 
 class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
@@ -111,6 +119,8 @@ class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
 
     def __init__(self, name: str, glyphs: GlyphSet) -> None:
         super().__init__()
+        if name in getattr(glyphs, "broken", ()):
+            raise GlyphsplineError(glyphs.broken[name])
         glyphs.readGlyph(name, self, self, validate=True)
 
     def draw(self, pen: Any) -> None:

@@ -1,30 +1,34 @@
-"""A minute of damaged fonts; hours of them with ``python -m tests.fuzz.batch``."""
+"""A minute of damaged fonts and drawings; hours of them with ``make fuzz``."""
 
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 from pathlib import Path
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from glyphspline import Font, GlyphResult, Options, Outline, convert, open_font, to_svg
+from glyphspline import GlyphResult, Options, Outline, convert, to_svg
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.convert import convert_many
+from glyphspline.readers import Source, open_source
+from tests.places import ROOT
 
-from .batch import round_of
-from .mutants import mutant
+from .mutants import mutant, sources
 
 
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(seed=st.integers(0, 2**32))
 def test_a_damaged_font_raises_nothing_but_our_own_errors(seed: int, tmp_path_factory: object) -> None:
-    name, data = mutant(random.Random(seed))
+    rng = random.Random(seed)
+    name = rng.choice([name for name, files in sources().items() if name in files])
     path = Path(tmp_path_factory.mktemp("fuzz")) / name  # type: ignore[attr-defined]
-    path.write_bytes(data)
+    path.write_bytes(mutant(rng, sources()[name]).files[name])
     options = Options(step=60.0)
     try:
-        font = open_font(path)
+        font = open_source(path)
     except GlyphsplineError as error:
         blamed = error.font
     else:
@@ -33,7 +37,7 @@ def test_a_damaged_font_raises_nothing_but_our_own_errors(seed: int, tmp_path_fa
     assert blamed == str(path)
 
 
-def look_at_glyphs(font: Font, options: Options) -> None:
+def look_at_glyphs(font: Source, options: Options) -> None:
     """Convert some glyphs; those that fail say which they are. In a batch they have the same results."""
     batch = []
     for glyph in font.glyph_names[:20]:
@@ -51,8 +55,8 @@ def look_at_glyphs(font: Font, options: Options) -> None:
     assert [to_svg(item) if isinstance(item, GlyphResult) else item.glyph for item in found] == batch
 
 
-def test_damaged_fonts_through_the_batch_script() -> None:
-    outcome, broken = round_of(12, 1, ["--step", "80", "--format", "svg", "--jobs", "2", "--quiet"])
-    assert not broken
-    assert outcome["ok"] > 0
-    assert outcome["readable"] < outcome["fonts"]
+def test_damaged_sources_through_commands_with_limits_and_what_was_found_once(tmp_path: Path) -> None:
+    call = [sys.executable, "-m", "scripts.fuzz", "--commands", "60", "--seed", "1", "--out", str(tmp_path)]
+    done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr[-2000:]
+    assert done.stdout.endswith(" 0 kinds of faults\n")

@@ -162,3 +162,18 @@ def test_standard_input_is_a_source(tmp_path: Path, file: str) -> None:
     assert run.stdout.split()[0] == (b"18" if "." in file else b"1")
     empty = subprocess.run([sys.executable, "-c", code], input=b"", capture_output=True, check=False)
     assert b"standard input: nothing" in empty.stderr
+
+
+def test_a_broken_drawing_of_a_folder_costs_only_itself(tmp_path: Path) -> None:
+    for name in ("B", "C"):
+        drawing(tmp_path, '<path d="M0 0h9v9z"/>', name)
+    (tmp_path / "A.svg").write_text("<svg")
+    source = open_source(tmp_path)
+    assert source.glyph_names == ("B", "C", "A")
+    assert len(source.outline("C").contours) == 1
+    with pytest.raises(FontError, match=r"A\.svg.*: not well-formed XML"):
+        source.outline("A")
+    for name in ("B", "C"):
+        (tmp_path / f"{name}.svg").unlink()
+    with pytest.raises(FontError, match=r"A\.svg: not well-formed XML"):
+        open_source(tmp_path)

@@ -106,7 +106,7 @@ def test_what_is_broken_is_named(folder: Path) -> None:
         ufo.outline("lost")
     (folder / "glyphs" / "square.glif").write_text("<glyph")
     with pytest.raises(GlyphsplineError, match="not well-formed"):
-        Ufo.opened(folder)
+        Ufo.opened(folder).outline("square")
 
 
 @pytest.mark.parametrize("file", ["glyphs/curves.glif", "fontinfo.plist", "glyphs/contents.plist"])
@@ -142,3 +142,15 @@ def test_a_font_opened_through_open_source_is_the_font(tmp_path: Path) -> None:
     font = open_source(tmp_path / "font.svg", 0, {"wght": 700})
     assert font.location == {"wght": 700}
     assert font.glyph_names == open_font(FONTS / "variable.ttf").glyph_names
+
+
+@pytest.mark.parametrize("text", ["<glyph", '<glyph name="square" format="2"><unicode hex="no"/></glyph>'])
+def test_a_broken_glyph_costs_only_itself(folder: Path, text: str) -> None:
+    before = Ufo.opened(folder).outline("curves")
+    (folder / "glyphs" / "square.glif").write_text(text)
+    ufo = Ufo.opened(folder)
+    assert "square" in ufo.glyph_names
+    np.testing.assert_array_equal(ufo.outline("curves").contours[0].points, before.contours[0].points)
+    for broken in ("square", "pair"):  # which has it as a component
+        with pytest.raises(GlyphsplineError, match=rf"Small\.ufo, glyph '{broken}': "):
+            ufo.outline(broken)

@@ -227,14 +227,6 @@ def test_outer_contours_run_as_each_format_has_them() -> None:
         assert sum(area(c.cubics()) for c in oriented(contours, "ttf")) < 0
 
 
-def test_coordinates_that_no_font_can_hold_are_an_error_with_a_name() -> None:
-    source = open_font(FONTS / "edge-cases.ttf")
-    glyph = result(polygon_contour(L_SHAPE * 100), name="A", gid=source.glyph_names.index("A"))
-    for flavour in FLAVOURS:
-        with pytest.raises(GlyphsplineError, match=r"glyph 'A': coordinates beyond"):
-            to_font(source, [glyph], flavour)
-
-
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_drawings_become_a_font(flavour: Flavour, tmp_path: Path) -> None:
     for name, code in (("a", 0x61), ("b", 0x62)):
@@ -261,3 +253,47 @@ def test_the_suffix_says_which_format(tmp_path: Path) -> None:
     source = open_font(FONTS / "variable.ttf")
     with pytest.raises(GlyphsplineError, match=r"\.otf or \.ttf"):
         write_font(source, [], tmp_path / "font.woff")
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("shape", [L_SHAPE * 100, 30000.0 * np.array([[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0]])])
+def test_a_glyph_with_coordinates_or_steps_that_no_font_can_hold_is_not_replaced(
+    shape: Any, flavour: Flavour, caplog: pytest.LogCaptureFixture
+) -> None:
+    source = open_font(FONTS / "edge-cases.ttf")
+    glyph = result(polygon_contour(shape), name="A", gid=source.glyph_names.index("A"))
+    data, summary = to_font(source, [glyph], flavour)
+    assert summary.replaced == 0
+    assert "glyph 'A': coordinates beyond 32767 do not fit into a font: not replaced" in caplog.text
+    assert len(TTFont(BytesIO(data)).getGlyphOrder()) == len(source.glyph_names)
+
+
+def test_a_glyph_of_a_cff_table_that_cannot_be_drawn_costs_only_itself(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    font = TTFont(FONTS / "kouzan-gyosho.otf")
+    name = font.getGlyphOrder()[3]
+    strings = font["CFF "].cff.topDictIndex[0].CharStrings
+    strings[name].setProgram([5, "callsubr", "endchar"])
+    font.recalcBBoxes = False
+    font.save(tmp_path / "broken.otf")
+    source = open_font(tmp_path / "broken.otf")
+    whole = gs.convert(source.outline(source.glyph_names[5]), gs.Options(tolerance=TOLERANCE))
+    data, summary = to_font(source, [whole], "otf")
+    written = reopened(data, tmp_path)
+    assert summary.replaced == 1
+    assert f"glyph '{name}' cannot be drawn" in caplog.text
+    assert [len(written.outline(glyph).contours) for glyph in written.glyph_names[3:5]] == [
+        0,
+        len(source.outline(source.glyph_names[4]).contours),
+    ]
+
+
+def test_tables_that_are_broken_inside_are_an_error_that_names_the_font(tmp_path: Path) -> None:
+    data = bytearray((FONTS / "kouzan-gyosho.ttf").read_bytes())
+    entry = data.index(b"hmtx")
+    data[entry + 12 : entry + 16] = (4).to_bytes(4, "big")
+    (tmp_path / "broken.ttf").write_bytes(data)
+    source = open_font(tmp_path / "broken.ttf")
+    with pytest.raises(GlyphsplineError, match=r"broken\.ttf: a broken font: "):
+        to_font(source, [], "ttf")

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.basePen import NullPen
 from fontTools.ttLib import TTFont, newTable
 from fontTools.varLib.instancer import instantiateVariableFont
 
@@ -25,6 +26,7 @@ from ...errors import FontError, GlyphsplineError
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from ...readers import Font, Source
+from ...readers.source import reason, reusing
 from .font_glyphs import Drawn, Flavour, decomposed, drawn_outline, drawn_result, users
 
 log = logging.getLogger(__name__)
@@ -79,25 +81,30 @@ def to_font(
         extrema: whether points are added at horizontal and vertical extrema of the new outlines.
 
     Raises:
-        GlyphsplineError: the source has no outlines, or a coordinate does not fit into a font.
+        GlyphsplineError: the source has no outlines, or is broken.
     """
     family = family or f"{source.family} Spline"
-    font = base_tables(source)
-    in_place = ("glyf" if flavour == "ttf" else "CFF ") in font
-    target = _InPlace(font, flavour) if in_place else _Rebuilt(font, source, flavour, family)
     beyond, errors, added = [], [], 0
-    for result in glyphs:
-        allowed = result.options.tolerance_for(source.metrics.units_per_em) if tolerance is None else tolerance
-        drawn = target.replace(result, allowed, extrema)
-        errors.append(drawn.error)
-        added += drawn.extrema
-        if drawn.error is not None and drawn.error > allowed:
-            beyond.append(result.outline.name)
-    target.finish()
-    rename(font, family, source.style)
+    with reusing(source.path, source.kind):
+        font = base_tables(source)
+        in_place = ("glyf" if flavour == "ttf" else "CFF ") in font
+        target = _InPlace(font, flavour) if in_place else _Rebuilt(font, source, flavour, family)
+        for result in glyphs:
+            allowed = result.options.tolerance_for(source.metrics.units_per_em) if tolerance is None else tolerance
+            try:
+                drawn = target.replace(result, allowed, extrema)
+            except GlyphsplineError as error:
+                log.warning("%s: not replaced", error)
+                continue
+            errors.append(drawn.error)
+            added += drawn.extrema
+            if drawn.error is not None and drawn.error > allowed:
+                beyond.append(result.outline.name)
+        target.finish()
+        rename(font, family, source.style)
+        file = BytesIO()
+        font.save(file, reorderTables=False)
     largest = max((error for error in errors if error is not None), default=None)
-    file = BytesIO()
-    font.save(file, reorderTables=False)
     return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond), added)
 
 
@@ -109,8 +116,12 @@ class _InPlace:
         self.names: list[str] = font.getGlyphOrder()
         self.new: dict[str, Any] = {}  # for "glyf", which is read until all glyphs are known
         if flavour == "otf":
-            font["CFF "].cff.remove_hints()
             self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
+            try:
+                font["CFF "].cff.remove_hints()
+            except Exception:  # of a broken glyph, as in readers
+                _empty_broken(self.strings)
+                font["CFF "].cff.remove_hints()
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
@@ -150,6 +161,16 @@ class _InPlace:
             glyf[name] = glyph
 
 
+def _empty_broken(strings: Any) -> None:
+    """Empty the glyphs of a CFF table that cannot be drawn."""
+    for name in strings.keys():  # noqa: SIM118 (CharStrings iterates by numbers)
+        try:
+            strings[name].draw(NullPen())
+        except Exception as error:  # as in readers
+            log.warning("glyph %r cannot be drawn: %s: left empty in the written font", name, reason(error))
+            strings[name].setProgram(["endchar"])
+
+
 class _Rebuilt:
     """All glyphs drawn again in the other format."""
 
@@ -174,20 +195,22 @@ class _Rebuilt:
     def finish(self) -> None:
         for name in self.source.glyph_names:
             if self.of_name[name] not in self.glyphs:
-                outline = self._readable(name)
-                self._put(drawn_outline(outline, self.flavour), outline)
+                self._put(*self._drawn(name))
         if ".notdef" not in self.glyphs:
             empty = Outline(".notdef", advance=self.source.metrics.units_per_em / 2)
             self.of_name[".notdef"] = ".notdef"
             self._put(drawn_outline(empty, self.flavour), empty)
         become(self.font, self.flavour, {name: self.glyphs[name] for name in self.font.getGlyphOrder()}, self.family)
 
-    def _readable(self, name: str) -> Outline:
+    def _drawn(self, name: str) -> tuple[Drawn, Outline]:
+        """A glyph that was not converted."""
         try:
-            return self.source.outline(name)
+            outline = self.source.outline(name)
+            return drawn_outline(outline, self.flavour), outline
         except GlyphsplineError as error:
             log.warning("%s: left empty in the written font", error)
-            return Outline(name, metrics=self.source.metrics)
+            empty = Outline(name, metrics=self.source.metrics)
+            return drawn_outline(empty, self.flavour), empty
 
 
 def set_bearings(font: TTFont, name: str, drawn: Drawn, outline: Outline) -> None:

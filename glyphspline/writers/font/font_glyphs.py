@@ -148,8 +148,8 @@ def char_string(contours: Sequence[Contour], width: float | None, parts: int, na
     pen = T2CharStringPen(width, None, roundTolerance=0.5 if parts == 1 else 0)  # ints are shorter than floats
     raised = [Contour.from_segments(segments) for segments in map(as_stored, contours)]
     stored = [Contour(on_grid(contour.points, parts), contour.degrees) for contour in raised]
+    check_size([point for contour in stored for point in (*contour.points, contour.points[0])], name)
     for contour in stored:
-        check_size(contour.points, name)
         contour.draw(pen)
     return pen.getCharString(optimize=not any(map(doubles_back, stored)))
 
@@ -174,16 +174,16 @@ def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
     collected = TTGlyphPen(None)
     pen = Cu2QuPen(collected, step, all_quadratic=True)
     for contour in contours:
-        check_size(contour.points, name)
         contour.draw(pen)
     # What is equal but for rounding errors rounds alike: a handle and its point at an extremum half a unit from whole.
     collected.points = [(round(x, 6), round(y, 6)) for x, y in collected.points]
+    check_size(collected.points, name)
     return collected.glyph()
 
 
-def check_size(points: Any, name: str) -> None:
-    """Refuse coordinates that a font cannot hold."""
-    if len(points) and np.abs(points).max() > LIMIT:
+def check_size(points: Sequence[Any], name: str) -> None:
+    """Refuse coordinates that a font cannot hold; it stores steps from point to point."""
+    if len(points) and max(np.abs(points).max(), np.abs(np.diff(points, axis=0, prepend=0.0)).max()) > LIMIT:
         raise GlyphsplineError(f"coordinates beyond {LIMIT} do not fit into a font", glyph=name)
 
 
