@@ -19,6 +19,9 @@ BoolArray: TypeAlias = "NDArray[np.bool_]"
 Names: TypeAlias = Literal["glyph", "unicode", "gid", "char"]
 """What the files of glyphs are called after."""
 
+INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0, "pt": 1 / 72, "pc": 1 / 6, "px": 1 / 96}
+"""Units of lengths in CSS and SVG, in inches."""
+
 T = TypeVar("T", covariant=True)
 Value = TypeVar("Value")
 

@@ -53,7 +53,7 @@ def common(version: opt.Version = False) -> None:
 def convert(
     fonts: opt.FontFiles,
     out: opt.Out,
-    spec: Annotated[RunSpec, without("em")],
+    spec: RunSpec,
     subset: opt.Subset,
     instance: opt.Instance,
     single: opt.SingleFonts,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
@@ -111,9 +110,11 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     try:
         return cast(Value, kind(**found))  # not "replace": what is not given may depend on what is
     except OptionError as error:
-        first, *rest = re.split(" (?=is |and .* are )", error.message, maxsplit=1)
-        named = rest and first in known
-        raise OptionError(f"{known[first].flags[0]} {rest[0]}" if named else error.message) from None
+        words = error.message.split(" ")
+        for k, between in ((0, ("is", "and")), (2, ("and",))):
+            if len(words) > 2 and words[k] in known and words[1] in between:
+                words[k] = known[words[k]].flags[0]
+        raise OptionError(" ".join(words)) from None
 
 
 def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path as File
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import GlyphsplineError, OptionError
 from ..fields import WRITTEN, About
 from ..fitting.options import Options
-from ..writers.settings import Settings
+from ..types import INCHES
+from ..writers.settings import Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
 from .messages import say
@@ -77,13 +79,14 @@ def text(
 
         content = words_of(words, lines.text_file)
         source = open_source(font, instance.face_index or 0, instance.place)
-        em, look = source.metrics.units_per_em, settings.look
+        em, settings = source.metrics.units_per_em, replace(settings, look=sized(settings.look, lines, source))
+        look = settings.look
         curve = curve_of(lines, along, em, look)
         layout = laid_out(source, content, lines, curve is not None, look)
-        align: Any = lines.align  # "justify" is refused with the path
         drawn = draw(TextJob(
-            layout, options, names, settings, drawings.each_glyph, curve, along.bend, align, along.side,
-            length("offset", along.offset, em, look) or 0.0,
+            layout, options, names, replace(settings, title=layout.text), drawings.each_glyph, curve, along.bend,
+            lines.align or ("center" if along.circle else "start"), along.side,
+            length("offset", along.offset, em, look) or 0.0, lines.fit_width,
         ), executor)  # fmt: skip
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":
@@ -139,21 +142,52 @@ def words_of(words: str | None, file: File | None) -> str:
     return opt.as_typed(words)
 
 
+def sized(look: Appearance, lines: opt.TextOptions, source: AnySource) -> Appearance:
+    """The look with the length of an em that the heights of letters ask for.
+
+    Raises:
+        OptionError: two sizes are given, or the font has no such height.
+    """
+    given = {name: value for name in ("cap_height", "x_height", "fit_width") if (value := getattr(lines, name))}
+    options = [f"--{name.replace('_', '-')}" for name in (["size"] if look.em else []) + list(given)]
+    if len(options) > 1:
+        raise OptionError(f"give one of --size, --cap-height, --x-height and --fit-width, not {' and '.join(options)}")
+    for name, text in given.items():
+        (value, unit), height = paper_length(options[0], text) or (0.0, ""), getattr(source, name, 1.0)
+        if height is None:
+            letter = "H" if name == "cap_height" else "x"
+            raise OptionError(
+                f"{options[0]}: {source.path} has no {letter} to measure, and its OS/2 table no such height"
+            )
+        if name != "fit_width":  # which the worker measures
+            return replace(look, em=f"{value * source.metrics.units_per_em / height:.9f}{unit}")
+    return look
+
+
 def curve_of(lines: opt.TextOptions, along: opt.PathOptions, em: float, look: Appearance) -> Path | None:
     """The path that the text follows, in font units; None for text on lines.
 
     Raises:
         GlyphsplineError: it cannot be read, or options clash.
     """
-    if along.path is None:
+    if along.circle is None and along.at != "top":
+        raise GlyphsplineError("--at is for text on a --circle")
+    if along.path is None and along.circle is None:
         for name in ("bend", "offset", "side"):
             if getattr(along, name) != getattr(opt.PathOptions, name):
                 raise GlyphsplineError(f"--{name} is for text on a --path")
         return None
-    if lines.width is not None:
-        raise GlyphsplineError("--width is for lines; text on a --path is one")
+    if along.path is not None and along.circle is not None:
+        raise GlyphsplineError("give a --path or a --circle, not both")
+    for name in ("width", "fit_width"):
+        if getattr(lines, name) is not None:
+            raise GlyphsplineError(f"--{name.replace('_', '-')} is for lines; text on a --path is one")
     if lines.direction in ("ttb", "btt"):
         raise GlyphsplineError("columns cannot stand on a --path")
+    if along.path is None:
+        from ..typesetting.path import Path
+
+        return Path.circle(length("circle", along.circle, em, look) or 0.0, along.at)
     from ..typesetting.path_file import open_path
 
     return open_path(along.path).scaled(pixel(em, look))
@@ -173,14 +207,13 @@ def laid_out(source: AnySource, text: str, lines: opt.TextOptions, on_path: bool
         source, text, fallbacks=[open_source(file) for file in lines.fallbacks or ()], features=lines.features,
         script=lines.script, language=lines.language, direction=lines.direction,
         width=length("width", lines.width, em, look), line_height=length("line_height", lines.line_height, em, look),
-        align="start" if on_path else lines.align,
+        align="start" if on_path else lines.align or "start",
+        letter_spacing=length("letter_spacing", lines.letter_spacing, em, look) or 0.0,
     )  # fmt: skip
 
 
 def pixel(em: float, look: Appearance) -> float:
     """Font units in a user unit of a path's drawing, which is 1/96 inch; without ``--size``, one."""
-    from ..writers.settings import INCHES
-
     found = look.scale(1.0, em)
     return 1.0 if found is None else INCHES["px"] / (found[0] * INCHES[found[1]])
 
@@ -191,8 +224,6 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
     Raises:
         OptionError: it is none.
     """
-    from ..writers.settings import INCHES
-
     if text is None:
         return None
     option = f"--{name.replace('_', '-')}"
@@ -202,7 +233,7 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
     value, unit = float(found[1]), found[2]
     if unit in INCHES:
         if look.em is None:
-            raise OptionError(f"{option} {text} needs --size, which says how large an em is")
+            raise OptionError(f"{option} {text} needs --size, --cap-height or --x-height: how large is an em?")
         return value * INCHES[unit] / INCHES["px"] * pixel(em, look)
     return value * em if unit else value
 

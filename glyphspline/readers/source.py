@@ -101,6 +101,30 @@ class Source(ABC):
     def sha256(self) -> str:
         """Hash of the bytes read, in hexadecimal."""
 
+    @cached_property
+    def cap_height(self) -> float | None:
+        """Height of H as it is drawn, in font units at the location; without one, as the font says; None: neither."""
+        return self._height_of("H", "CAP_HEIGHT")
+
+    @cached_property
+    def x_height(self) -> float | None:
+        """Height of x, likewise."""
+        return self._height_of("x", "X_HEIGHT")
+
+    def _height_of(self, letter: str, tag: str) -> float | None:
+        if ord(letter) in self.cmap:
+            from fontTools.pens.boundsPen import BoundsPen
+
+            pen = BoundsPen(None)
+            self.outline(self.cmap[ord(letter)]).draw(pen)
+            if pen.bounds and pen.bounds[3] > 0:
+                return float(pen.bounds[3])
+        if self.shaper is not None:
+            from uharfbuzz import OTMetricsTag
+
+            return float(self.shaper.get_metric_position(OTMetricsTag[tag]) or 0.0) or None
+        return None
+
     def counts(self) -> tuple[int, int]:
         """The numbers of glyphs and of characters."""
         return len(self.glyph_names), len(self.cmap)

@@ -22,7 +22,7 @@ from fontTools import agl
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
-from ..types import FloatArray
+from ..types import INCHES, FloatArray
 from .pens import ContourPen
 from .source import Head, Source, first_claims, opening, parsed
 
@@ -143,17 +143,52 @@ def _metrics(root: Any) -> tuple[FontMetrics, float]:
         keys = ("units-per-em", "ascender", "descender", "advance")
         em, ascender, descender, advance = (float(root.get(f"data-{key}", "nan")) for key in keys)
     else:
-        box = [float(part) for part in root.get("viewBox", "").replace(",", " ").split()]
-        left, top, width, height = box if len(box) == 4 else (0, 0, _length(root, "width"), _length(root, "height"))
+        box = view_box(root) or (0.0, 0.0, pixels(root, "width") or 1000.0, pixels(root, "height") or 1000.0)
+        left, top, width, height = box
         em, ascender, descender, advance = height, -top, -top - height, left + width
     if not (all(map(math.isfinite, (em, ascender, descender, advance))) and em > 0):
         raise GlyphsplineError("a view box or metrics that are no numbers, or of no height")
     return FontMetrics(em, ascender + 0.0, descender + 0.0), advance
 
 
-def _length(root: Any, name: str) -> float:
-    number = re.match(r"\s*([0-9.]+(?:[eE][+-]?[0-9]+)?)", root.get(name, ""))
-    return float(number[1]) if number and not root.get(name).strip().endswith("%") else 1000.0
+def view_box(element: Any) -> tuple[float, float, float, float] | None:
+    """Left, top, width and height of an element's ``viewBox`` in user units; None without one."""
+    box = [float(part) for part in element.get("viewBox", "").replace(",", " ").split()]
+    return (box[0], box[1], box[2], box[3]) if len(box) == 4 else None
+
+
+def pixels(element: Any, name: str) -> float | None:
+    """A length of an element, with or without a unit, in CSS pixels; None if it has none, or a share of the page.
+
+    Raises:
+        GlyphsplineError: a length in another unit.
+    """
+    found = re.match(r"\s*([0-9.]+(?:[eE][+-]?[0-9]+)?)\s*([A-Za-z%]*)", element.get(name, ""))
+    if found is None or found[2] == "%":
+        return None
+    if found[2] and found[2].lower() not in INCHES:
+        raise GlyphsplineError(f"its {name} is in {found[2]}: there are {', '.join(INCHES)}")
+    return float(found[1]) * (INCHES[found[2].lower() or "px"] / INCHES["px"])
+
+
+def viewport(element: Any) -> FloatArray:
+    """(3, 3) from the user units within an ``svg`` element to those around it, CSS pixels at the root.
+
+    Without a width or height, or without a view box, they are the same.
+    """
+    x, y = (pixels(element, name) or 0.0 for name in ("x", "y"))
+    box, width, height = view_box(element), pixels(element, "width"), pixels(element, "height")
+    if box is None or not (width or height) or min(box[2:]) <= 0:
+        return np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
+    width, height = width or height / box[3] * box[2], height or width / box[2] * box[3]  # type: ignore[operator]
+    across, down = width / box[2], height / box[3]
+    align, _, fit = (element.get("preserveAspectRatio") or "xMidYMid").strip().partition(" ")
+    if align != "none":
+        across = down = max(across, down) if fit.strip() == "slice" else min(across, down)
+    shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+    x += (width - across * box[2]) * shares.get(align[1:4], 0.0) - across * box[0]
+    y += (height - down * box[3]) * shares.get(align[5:8], 0.0) - down * box[1]
+    return np.array([[across, 0.0, x], [0.0, down, y], [0.0, 0.0, 1.0]])
 
 
 def shapes(
@@ -161,7 +196,8 @@ def shapes(
 ) -> Iterator[tuple[Any, FloatArray, bool]]:
     """Each shape with the (3, 3) matrix to font space, and whether it is filled.
 
-    Those that are only defined or not displayed, and lines, are among them with ``everywhere``.
+    Those that are only defined or not displayed, and lines, are among them with ``everywhere``, and the matrix is from
+    the root's :func:`viewport`.
     """
     if depth > DEEPEST:
         raise GlyphsplineError(f"groups nested more than {DEEPEST} deep")
@@ -176,6 +212,8 @@ def shapes(
         from svgpathtools.parser import parse_transform  # imports SciPy, which fonts do not need
 
         matrix = matrix @ np.asarray(parse_transform(element.get("transform")), dtype=np.float64)
+    if tag == "svg" and (depth or everywhere):
+        matrix = matrix @ viewport(element)
     filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
     if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline") or (everywhere and tag == "line"):
         yield element, matrix, filled

@@ -128,6 +128,7 @@ class RunSpec:
                 raise OptionError(f"no format {name}: there are {', '.join(available())}")
             format_named(name)  # raises where a plug-in is broken
         check(self)
+        self.settings.look.line(1.0)  # raises for a width on paper without a size
         for name, kind in (("options", Options), ("settings", Settings), ("limits", Limits), ("maps", Maps)):
             if not isinstance(getattr(self, name), kind):
                 raise GlyphsplineError(f"{name} are {kind.__name__}")

@@ -11,7 +11,7 @@ from ..errors import GlyphsplineError, is_number, require, require_choice
 from ..types import FloatArray, IntArray, counted
 from .path import Path
 from .placed import Layout
-from .setting import PathAlign, Side
+from .setting import Align, Side
 
 ROUNDING = 1e-9
 """Share of the path's length by which a text may be too long."""
@@ -40,9 +40,7 @@ class Letters(NamedTuple):
         return (self.left + self.right) / 2
 
 
-def along(
-    layout: Layout, path: Path, *, offset: float = 0.0, align: PathAlign = "start", side: Side = "left"
-) -> Layout:
+def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "start", side: Side = "left") -> Layout:
     """Put a line of text on a path, as SVG's ``textPath`` does.
 
     The middle of a letter's advance comes to the path at its arc length, and the letter is turned by the path's tangent
@@ -52,7 +50,7 @@ def along(
         layout: of one horizontal line. path: in font units; see :meth:`.Path.scaled`.
         offset: font units by which the text is moved forward along the path.
         align: where the text stands on an open path, and about which point of a closed one: its start or, half-way
-            round or all the way round, its middle or end.
+            round or all the way round, its middle or end; "justify" spaces the letters out over the path's length.
         side: "left" of the path, or "right", where the text runs along the reversed path.
 
     Returns:
@@ -70,7 +68,7 @@ def along(
         >>> upwards.origin.round(6).tolist()
         [[0.0, 0.0], [0.0, 1024.0]]
     """
-    path, letters, start = laid(layout, path, offset, align, side)
+    layout, path, letters, start = laid(layout, path, offset, align, side)
     if not len(layout):
         return layout
     middle = letters.middle
@@ -89,14 +87,14 @@ def along(
     return replace(layout, origin=origin, angle=layout.angle + angle[letters.of], box=(left, low, right, high))
 
 
-def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side) -> tuple[Path, Letters, float]:
-    """The path in the text's direction, the letters, and the arc length of the path where x = 0 of the line comes.
+def laid(layout: Layout, path: Path, offset: float, align: Align, side: Side) -> tuple[Layout, Path, Letters, float]:
+    """The line, the path in its direction, the letters, and the arc length of the path where x = 0 of the line comes.
 
     Raises:
         GlyphsplineError, OptionError: as for :func:`along`.
     """
     require(is_number(offset), "offset is a finite distance along the path", offset)
-    require_choice("align", align, get_args(PathAlign))
+    require_choice("align", align, get_args(Align))
     require_choice("side", side, get_args(Side))
     if (lines := len(np.unique(layout.line))) > 1:
         raise GlyphsplineError(f"a text of {lines} lines; on a path there is one", font=path.name)
@@ -106,10 +104,17 @@ def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side
         path = path.reversed()
     letters = letters_of(layout)
     if not len(layout):
-        return path, letters, offset
+        return layout, path, letters, offset
     left, right = float(letters.left.min()), float(letters.right.max())
     spare = path.length - (right - left)
-    start = offset - left + {"start": 0.0, "center": spare / 2, "end": spare}[align]
+    start = offset - left + {"center": spare / 2, "end": spare}.get(align, 0.0)
+    count = len(letters.left)
+    if align == "justify" and spare > 0 and count > 1 - path.closed:
+        gap = spare / (count if path.closed else count - 1)
+        shift = np.arange(count) * gap
+        letters = letters._replace(left=letters.left + shift, right=letters.right + shift)
+        layout = replace(layout, origin=layout.origin + np.stack([shift, 0 * shift], axis=1)[letters.of])
+        start += gap / 2 if path.closed else 0.0
     ink = np.array([not layout.text[k : k + 1].isspace() for k in letters.character.tolist()])
     middle = letters.middle
     if path.closed:
@@ -126,7 +131,7 @@ def laid(layout: Layout, path: Path, offset: float, align: PathAlign, side: Side
             f"{number} of {counted(int(ink.sum()), 'letter')} {'does' if number == 1 else 'do'} not fit, {named!r}",
             font=path.name,
         )
-    return path, letters, start
+    return layout, path, letters, start
 
 
 def letters_of(layout: Layout) -> Letters:
@@ -158,7 +163,7 @@ def letters_of(layout: Layout) -> Letters:
     counts = wide | ~standing[kept][of]
     np.minimum.at(left, of[counts], np.minimum(pens, ends)[counts])
     np.maximum.at(right, of[counts], np.maximum(pens, ends)[counts])
-    return Letters(of, left + begin, right + begin, character[kept])
+    return Letters(of, left + begin, right + begin - layout.letter_spacing, character[kept])
 
 
 def _turned(arms: FloatArray, tangents: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .along_path import MOST_NAMED, Letters, laid
 from .path import SMOOTH, Path
 from .placed import Layout
-from .setting import PathAlign, Side
+from .setting import Align, Side
 
 SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
@@ -50,7 +50,7 @@ def bend(
     tolerance: float,
     *,
     offset: float = 0.0,
-    align: PathAlign = "start",
+    align: Align = "start",
     side: Side = "left",
 ) -> Outline:
     """Deform the outlines of a line of text so that its baseline becomes the path.
@@ -86,7 +86,7 @@ def bend(
         (True, 11)
     """
     require(is_positive(tolerance), "the tolerance of a bend is a positive distance", tolerance)
-    path, letters, start = laid(layout, path, offset, align, side)
+    layout, path, letters, start = laid(layout, path, offset, align, side)
     flat = layout.outline()
     if not len(flat.contours):
         return flat

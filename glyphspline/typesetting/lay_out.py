@@ -14,7 +14,7 @@ from ..readers import Source
 from ..types import FloatArray
 from .paragraph import Line, Paragraph
 from .placed import Layout
-from .setting import Align, Direction, Orientation, Setting, check_features
+from .setting import END, Align, Direction, Feature, Orientation, Setting, check_features
 from .shaping import HarfBuzzShaper, PlainShaper, Run, Shaped, Shaper
 
 LONGEST = 1_000_000
@@ -22,6 +22,9 @@ LONGEST = 1_000_000
 
 PARAGRAPH = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 """What ends a line of the text."""
+
+APART = tuple(Feature(tag, 0, 0, END) for tag in ("liga", "clig"))
+"""Ligatures of which spaced letters are none."""
 
 WIDENED = frozenset(" \t\u00a0\u3000")
 """Spaces that justified lines widen."""
@@ -40,6 +43,7 @@ def layout(
     align: Align = "start",
     line_height: float | None = None,
     orientation: Orientation = "mixed",
+    letter_spacing: float = 0.0,
 ) -> Layout:
     """Lay out a text: HarfBuzz shapes it, and lines are broken by the Unicode rules (UAX #14).
 
@@ -61,6 +65,8 @@ def layout(
         line_height: distance of baselines, in units of the first font; None: the font's own.
         orientation: of characters in columns: "mixed" turns those that are not written upright, such as Latin;
             "upright" turns none.
+        letter_spacing: added between grapheme clusters, in units of the first font; letters that join come apart, and
+            optional ligatures are not made unless ``features`` ask for them.
 
     Raises:
         OptionError: the text is empty, too long, or has control characters or halves of surrogate pairs; an argument
@@ -72,7 +78,7 @@ def layout(
         >>> gs.layout(font, "龍好")
         <Layout '龍好': 2 glyphs, 1 line, 2048 by 1024 units>
     """
-    setting = Setting(features, script, language, direction, width, align, line_height, orientation)
+    setting = Setting(features, script, language, direction, width, align, line_height, orientation, letter_spacing)
     check_text(text)
     fonts = (font, *fallbacks)
     for each in fonts:
@@ -104,7 +110,7 @@ def layout(
     scale = np.array([shaper.scale for shaper in shapers])[of_font]
     return Layout(
         text, fonts, of_font, gid, cluster, number, origin, angles, advance, box, tuple(missing), scale, tuple(notes),
-        setting.vertical,
+        setting.vertical, letter_spacing=letter_spacing,
     )  # fmt: skip
 
 
@@ -136,10 +142,11 @@ def paragraphs(text: str) -> Sequence[tuple[int, int]]:
 def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
     shapers: list[Shaper] = []
     notes = []
+    features = (*(APART if setting.letter_spacing else ()), *setting.parsed_features)
     for source in fonts:
         scale = fonts[0].metrics.units_per_em / source.metrics.units_per_em
         if source.shaper is not None:
-            shapers.append(HarfBuzzShaper(source, scale, setting.language, setting.parsed_features))
+            shapers.append(HarfBuzzShaper(source, scale, setting.language, features))
             continue
         if setting.vertical or setting.features:
             what = "vertical text" if setting.vertical else "features"

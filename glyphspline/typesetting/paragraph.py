@@ -112,8 +112,12 @@ class Paragraph:
     def _shape(self, codes: Sequence[int], run: Run) -> Shaped:
         directions = ("ttb", "btt") if run.upright else ("ltr", "rtl")
         glyphs = self._shapers[run.font].shape(codes, run, directions[run.level % 2], self._origin)
-        if run.upright or not self._setting.vertical:
-            return glyphs
+        vertical, spacing = self._setting.vertical, self._setting.letter_spacing
+        if vertical and not run.upright:
+            glyphs = self._turned(glyphs)
+        return glyphs.spaced(np.array([0.0, -spacing] if vertical else [spacing, 0.0])) if spacing else glyphs
+
+    def _turned(self, glyphs: Shaped) -> Shaped:
         # Turned clockwise, with the middle between ascender and descender of the first font on the column's centre.
         metrics = self._shapers[0].source.metrics
         turned = glyphs.offset[:, ::-1] * [1.0, -1.0] - [(metrics.ascender + metrics.descender) / 2, 0.0]
@@ -124,8 +128,9 @@ class Paragraph:
         return -advances[:, 1] if self._setting.vertical else advances[:, 0]
 
     def length(self, line: Line) -> float:
-        """The length of a line's glyphs."""
-        return float(sum(self._along(glyphs.advance).sum() for _, glyphs in line.pieces))
+        """The length of a line's glyphs, without the letter spacing behind the last."""
+        behind = self._setting.letter_spacing if line.pieces else 0.0
+        return float(sum(self._along(glyphs.advance).sum() for _, glyphs in line.pieces)) - behind
 
     @cached_property
     def _ends(self) -> FloatArray:
@@ -160,7 +165,7 @@ class Paragraph:
         """The longest line from a place on that is not longer than ``width``, and where the next begins."""
         places, seen, lengths = self._breaks
         first = int(np.searchsorted(places, at, side="right"))
-        fits = width + self._ends[at] + 1e-6
+        fits = width + self._ends[at] + 1e-6 + max(self._setting.letter_spacing, 0.0)
         for k in range(int(np.searchsorted(lengths, fits, side="right")) - 1, first - 1, -1):
             line = self._line(at, max(int(seen[k]), at), k == len(places) - 1)
             if self.length(line) <= width + 1e-6:

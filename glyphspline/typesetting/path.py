@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from ..curves.bezier import as_cubic, cross, cubic_approximation, derivative_points, split
 from ..curves.bspline import Spline
 from ..curves.integrals import NODES, WEIGHTS
-from ..errors import GlyphsplineError, OptionError, is_positive, require
+from ..errors import GlyphsplineError, OptionError, is_positive, require, require_choice
 from ..outlines.outline import Contour
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
+from .setting import Place
 
 RELATIVE = 2e-7
 """A part of the table is halved while its control polygon is longer than its chord by more than this share."""
@@ -158,6 +159,26 @@ class Path:
             extent = np.ptp(array.reshape(-1, 2), axis=0).max()
             closed = bool(np.abs(array[-1, 3] - array[0, 0]).max() <= COINCIDENT * extent)
         return cls(array, bool(closed), name)
+
+    @classmethod
+    def circle(cls, diameter: float, at: Place = "top") -> Path:
+        """A circle about the origin, for text whose middle is at its top, clockwise, or at its bottom, the other way.
+
+        It begins opposite, so that text aligned to its center stands upright there: at the top on the outside, at the
+        bottom on the inside. It is of 24 cubics, with an error of 6e-9 of the radius.
+
+        Raises:
+            OptionError: the diameter is not a positive number, or the place is another.
+        """
+        require(is_positive(diameter), "the diameter of a circle is a positive number", diameter)
+        require_choice("at", at, get_args(Place))
+        way = -1.0 if at == "top" else 1.0
+        angles = way * np.linspace(np.pi / 2, 5 * np.pi / 2, 25)
+        points = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        points[-1] = points[0]
+        handles = way * 4 / 3 * np.tan(np.pi / 48) * np.stack([-points[:, 1], points[:, 0]], axis=1)
+        cubics = np.stack([points[:-1], (points + handles)[:-1], (points - handles)[1:], points[1:]], axis=1)
+        return cls(cubics * (diameter / 2), True, "the circle")
 
     def __repr__(self) -> str:
         kind, count = "closed" if self.closed else "open", len(self.cubics)

@@ -24,7 +24,9 @@ MOST_NAMED = 8
 
 
 def open_path(given: str | FilePath) -> Path:
-    """Read a path from an SVG file, y up, in the drawing's user units with all transforms applied.
+    """Read a path from an SVG file, y up, in CSS pixels (1/96 inch), with view box, units and transforms applied.
+
+    A drawing of 200 mm is 755.9 wide, whatever its view box; in one without a width and height, a user unit is a pixel.
 
     Shapes are paths, rectangles, circles, ellipses, polygons, polylines and lines, in ``defs`` too; they begin and run
     as SVG has it. A path whose ends meet is closed.

@@ -48,6 +48,7 @@ class Layout:
         notes: remarks, such as that a source has no tables for shaping.
         vertical: whether lines are columns.
         unusable: glyphs that are not read: font and index, and why.
+        letter_spacing: what of ``advance`` is space behind each letter.
     """
 
     text: str
@@ -65,6 +66,7 @@ class Layout:
     notes: tuple[str, ...] = ()
     vertical: bool = False
     unusable: Mapping[tuple[int, int], str] = field(default_factory=dict)
+    letter_spacing: float = 0.0
 
     def __repr__(self) -> str:
         said = f"{self.text[:24]}…" if len(self.text) > 25 else self.text

@@ -6,16 +6,17 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
-from ..errors import OptionError, is_positive, require, require_choice
+from ..errors import OptionError, is_number, is_positive, require, require_choice
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
-PathAlign: TypeAlias = Literal["start", "center", "end"]
-Align: TypeAlias = Literal[PathAlign, "justify"]
+Align: TypeAlias = Literal["start", "center", "end", "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
 Side: TypeAlias = Literal["left", "right"]
 """The side of a path that letters are on."""
+Place: TypeAlias = Literal["top", "bottom"]
+"""Where on a circle a text has its middle."""
 
 LANGUAGE = re.compile(r"(?:[A-Za-z]{2,3}|[A-Za-z]{5,8}|x)(?:-[A-Za-z0-9]{1,8})*")
 """Language tags (BCP 47), and HarfBuzz's private ones, as in "x-hbot-ABCD"."""
@@ -90,6 +91,7 @@ class Setting:
     align: Align = "start"
     line_height: float | None = None
     orientation: Orientation = "mixed"
+    letter_spacing: float = 0.0
     parsed_features: tuple[Feature, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -108,7 +110,9 @@ class Setting:
         for name in ("width", "line_height"):
             value = getattr(self, name)
             require(value is None or is_positive(value), f"{name} is a positive length in font units", value)
-        require_choice("align", self.align, ("start", "center", "end", "justify"))
+        spacing = self.letter_spacing
+        require(is_number(spacing), "letter_spacing is a finite length in font units", spacing)
+        require_choice("align", self.align, get_args(Align))
         require_choice("orientation", self.orientation, ("mixed", "upright"))
 
     @cached_property

@@ -62,6 +62,17 @@ class Shaped(NamedTuple):
     offset: FloatArray
     unsafe: BoolArray
 
+    def spaced(self, step: FloatArray) -> Shaped:
+        """With a step (2,) of the pen more behind each cluster; marks stay on their letters."""
+        cluster = np.concatenate([[0], np.cumsum(np.diff(self.cluster) != 0)])[: len(self.cluster)]
+        wide = self.advance.any(axis=1)
+        last = np.full(len(cluster), -1)
+        np.maximum.at(last, cluster[wide], np.flatnonzero(wide))
+        last = last[cluster]  # of each glyph's cluster, the last one with an advance
+        own = np.arange(len(cluster))
+        advance = self.advance + (own == last)[:, None] * step
+        return self._replace(advance=advance, offset=self.offset - ((own > last) & (last >= 0))[:, None] * step)
+
     def part(self, first: int, last: int) -> Shaped:
         """The glyphs of the characters from ``first`` up to ``last``."""
         clusters, ends = self.cluster, [first, last]

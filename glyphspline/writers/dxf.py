@@ -29,14 +29,14 @@ from ..extras import need
 from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.outline import Contour
 from ..outlines.polygons import flattened, polygons_of
-from ..types import BoolArray, FloatArray
-from .settings import INCHES, NO_HANDLE, SMOOTH, Appearance, DxfKind, Settings
+from ..types import INCHES, BoolArray, FloatArray
+from .settings import NO_HANDLE, SMOOTH, Appearance, DxfKind, Settings
 
 VERSION = "R2000"
 """The oldest version that has SPLINE, LWPOLYLINE and $INSUNITS; programs read it, whatever their age."""
 
 UNITS = {None: 0, "in": 1, "mm": 4, "cm": 5}
-"""Values of $INSUNITS. Other units of :data:`.settings.INCHES` are written as millimetres."""
+"""Values of $INSUNITS. Other units of lengths are written as millimetres."""
 
 OUTLINES, HOLES = LAYERS = ("outlines", "holes")
 COLOURS = (7, 1)

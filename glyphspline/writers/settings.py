@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 from ..errors import OptionError, is_positive, require
 from ..fields import LOOK, WRITTEN, check, option, positive
+from ..types import INCHES
 
 if TYPE_CHECKING:
     from ..outlines.outline import FontMetrics
@@ -32,13 +33,13 @@ RELATIVE_FLATNESS = 1 / 2000
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
 
-INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0, "pt": 1 / 72, "pc": 1 / 6, "px": 1 / 96}
-"""Units of lengths in CSS and SVG, in inches."""
-
 LARGEST = 200.0
 """Maximum height of a drawing, and of its em, in inches: five metres, which is what a cutter's roll takes."""
 
-_LENGTH = re.compile(rf"(\d{{1,6}}(?:\.\d{{1,6}})?)({'|'.join(INCHES)})")
+STROKE = 1 / 1000
+"""Width in em of a line along the outline that says none: cutters follow its middle."""
+
+_LENGTH = re.compile(r"(\d{1,6}(?:\.\d{1,9})?)([a-z]*)")
 _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
 _NAME = re.compile(r"[a-z]{3,20}")
 
@@ -57,34 +58,63 @@ class Appearance:
         view_box: the region shown; see :func:`.svg.document.to_svg`.
         size: height of the drawing with its unit (mm, cm, in, pt, pc, px), its width in proportion; None: no size.
         fill: colour of the ink: "currentColor", "none", #rgb, #rrggbb or a name of CSS.
-        stroke: colour of a line of 1/1000 em along the outline, likewise.
+        stroke: colour of a line along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit, which is the size that type has.
+        stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em.
 
     Raises:
-        OptionError: one of these is none of what it can be, or both sizes are given.
+        OptionError: one of these is none of what it can be, both sizes are given, or a width without a line.
     """
 
     view_box: ViewBox = option("em", "Show this region.", LOOK)
-    size: str | None = option(None, "Set the height with its unit, as 20mm; the width is in proportion.", LOOK)
+    size: str | None = option(
+        None, "Set the drawing's height instead, as 20mm; the width is in proportion.", LOOK, "LENGTH", flags="--height"
+    )  # fmt: skip
     fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", LOOK)
     stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", LOOK)
     em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", LOOK, "LENGTH", flags="--size")
+    stroke_width: str | None = option(
+        None, "Set the width of that line: font units, 0.01em, or 0.1mm of a drawing with a size.", LOOK, "LENGTH"
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         check(self)
-        require(self.size is None or self.em is None, "size and em exclude each other", (self.size, self.em))
+        if self.size is not None and self.em is not None:
+            raise OptionError(f"size and em exclude each other: {self.size}, {self.em}")
         for name in ("size", "em"):
-            _length_of(name, getattr(self, name))
+            paper_length(name, getattr(self, name))
+        if self.stroke_width is not None:
+            require(self.stroke != "none", "stroke_width is of a line: colour it by stroke", self.stroke_width)
+            found = _LENGTH.fullmatch(str(self.stroke_width))
+            known = found is not None and float(found[1]) > 0 and found[2] in ("", "em", *INCHES)
+            require(known, "stroke_width is font units, 0.01em or 0.1mm", self.stroke_width)
         for name in ("fill", "stroke"):
             rule = f"{name} is a colour: a name of CSS, #rgb, #rrggbb, currentColor or none"
             require(is_colour(getattr(self, name)), rule, getattr(self, name))
 
     def scale(self, height: float, units_per_em: float) -> tuple[float, str] | None:
         """Length of a font unit in a drawing, by its height in font units, and its unit; None without ``size``."""
-        size, em = _length_of("size", self.size), _length_of("em", self.em)
+        size, em = paper_length("size", self.size), paper_length("em", self.em)
         if size:
             return size[0] / height, size[1]
         return em and (em[0] / units_per_em, em[1])
+
+    def line(self, units_per_em: float, height: float = 1.0) -> float:
+        """Width of the line along the outline in font units, by the drawing's height in font units.
+
+        Raises:
+            OptionError: it is a length on paper, and the drawing has no size.
+        """
+        if self.stroke_width is None:
+            return STROKE * units_per_em
+        number, unit = _LENGTH.findall(self.stroke_width)[0]
+        width = float(number)
+        if unit in INCHES:
+            scale = self.scale(height, units_per_em)
+            if scale is None:
+                raise OptionError(f"stroke_width is {self.stroke_width} of a drawing with a size, and there is none")
+            return width * INCHES[unit] / (scale[0] * INCHES[scale[1]])
+        return width * units_per_em if unit else width
 
     def inches(self, height: float, units_per_em: float, default: float) -> float:
         """Height in inches of a drawing, by its height in font units; ``default`` without ``size``."""
@@ -92,8 +122,8 @@ class Appearance:
         return default if found is None else height * found[0] * INCHES[found[1]]
 
 
-def _length_of(name: str, value: str | None) -> tuple[float, str] | None:
-    """A length and its unit.
+def paper_length(name: str, value: str | None) -> tuple[float, str] | None:
+    """A length on paper and its unit.
 
     Raises:
         OptionError: it is none, or too long.
@@ -101,7 +131,7 @@ def _length_of(name: str, value: str | None) -> tuple[float, str] | None:
     if value is None:
         return None
     found = _LENGTH.fullmatch(value) if isinstance(value, str) else None
-    if found is None or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
+    if found is None or found[2] not in INCHES or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
         units = ", ".join(INCHES)
         raise OptionError(f"{name} is a length above 0 and up to 5 m with its unit ({units}), not {value!r}")
     return float(found[1]), found[2]
@@ -132,7 +162,7 @@ class Settings:
         look: of drawings. scale: length of a font unit in the drawing, in ``unit``.
         unit: "mm", "cm", "in", "pt", "pc" or "px"; None: a font unit.
         flatness: largest distance of a polyline from its curve, in font units; None: 1/2000 em.
-        dxf: contours as splines, or flattened.
+        dxf: contours as splines, or flattened. title: of SVG drawings; None: the glyph's name and code points.
 
     Raises:
         OptionError: a scale or flatness that is not positive, or an unknown kind of DXF.
@@ -146,6 +176,7 @@ class Settings:
         WRITTEN, "UNITS", rule=positive("distance in font units"),
     )  # fmt: skip
     dxf: DxfKind = option("spline", "Write contours in a DXF as splines, which are exact, or as polylines.", WRITTEN)
+    title: str | None = None
 
     def __post_init__(self) -> None:
         require(is_positive(self.scale), "scale is a positive number", self.scale)

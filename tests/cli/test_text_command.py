@@ -8,17 +8,21 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import numpy as np
 import pytest
+from svgpathtools import parse_path
 from typer.testing import CliRunner, Result
 
 import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.cli.text_command import BY_SUFFIX
+from glyphspline.types import FloatArray
 from tests.places import FONTS
 
 BRUSH = FONTS / "kouzan-gyosho.ttf"
 EM = 1024
+SANS = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 SVG = "{http://www.w3.org/2000/svg}"
 
 runner = CliRunner()
@@ -113,6 +117,82 @@ def test_size_is_that_of_an_em() -> None:
     assert said == pytest.approx([width * 12 / EM, height * 12 / EM], abs=1e-3)
 
 
+def ink(file: Path) -> FloatArray:
+    """(n, 2) points on the curves of a written SVG or DXF, in millimetres, y up."""
+    if file.suffix == ".dxf":
+        entities = pytest.importorskip("ezdxf").readfile(file).modelspace()
+        found = [
+            [entity.dxf.start, entity.dxf.end]
+            if entity.dxftype() == "LINE"
+            else list(entity.construction_tool().approximate(2000))
+            for entity in entities
+        ]
+        return np.concatenate([np.array([list(point)[:2] for point in own]) for own in found])
+    root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
+    scale = float(root.attrib["width"].removesuffix("mm")) / box_of(root)[2]
+    segments = [segment for path in root.iter(f"{SVG}path") for segment in parse_path(path.attrib["d"])]
+    points = np.concatenate([[segment.point(t) for t in np.linspace(0, 1, 65)] for segment in segments])
+    return np.stack([points.real, -points.imag], axis=1) * scale
+
+
+def measured(folder: Path, *arguments: str) -> list[FloatArray]:
+    """The ink of a text of DejaVu Sans with sharp corners, as written in SVG and in DXF."""
+    files = [folder / f"sign{suffix}" for suffix in (".svg", ".dxf")]
+    outs = [word for file in files for word in ("-o", str(file))]
+    result = runner.invoke(app, ["text", str(SANS), *arguments, "--corners", "sharp", *outs])
+    assert result.exit_code in (0, 1), result.output
+    return [ink(file) for file in files]
+
+
+def test_sizes_are_those_of_what_is_written(tmp_path: Path) -> None:
+    for points in measured(tmp_path, "HE", "--cap-height", "50mm"):
+        assert np.ptp(points[:, 1]) == pytest.approx(50, rel=1e-3)
+    for points in measured(tmp_path, "xz", "--x-height", "20mm"):
+        assert np.ptp(points[:, 1]) == pytest.approx(20, rel=1e-3)
+    for words, more in (("oSo", ()), ("fire\nexit", ("--letter-spacing", "0.2em")), ("i", ())):
+        for points in measured(tmp_path, words, "--fit-width", "300mm", *more):
+            assert np.ptp(points[:, 0]) == pytest.approx(300, rel=1e-3)
+
+
+RING = """<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="20cm" viewBox="0 0 200 200">
+<g transform="translate(10 10)"><circle id="r" cx="90" cy="90" r="60"/></g></svg>"""
+
+
+def test_rings_have_the_radius_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "ring.svg").write_text(RING, encoding="utf-8")
+    drawing = ("--path", str(tmp_path / "ring.svg"), "--align", "center")
+    for place, centre, (low, high) in (
+        (("--circle", "120mm"), (0, 0), (60, 72)),
+        (("--circle", "12cm", "--at", "bottom"), (0, 0), (48, 60)),
+        (drawing, (100, -100), (60, 72)),
+    ):
+        for points in measured(tmp_path, "HELIHE", "--cap-height", "12mm", "--bend", *place):
+            radii = np.hypot(*(points - centre).T)
+            assert (radii.min(), radii.max()) == pytest.approx((low, high), rel=1e-3)
+            middle = points.mean(axis=0) - centre
+            across, up = {"--path": (-1, 0), "--circle": (0, -1 if "--at" in place else 1)}[place[0]]
+            assert middle @ (across, up) > 0.99 * np.hypot(*middle)
+
+
+def test_a_justified_text_goes_all_round(tmp_path: Path) -> None:
+    points = measured(tmp_path, "HOTEL PARIS", "--cap-height", "12mm", "--circle", "120mm", "--align", "justify")[0]
+    turns = np.sort(np.arctan2(*points.T))
+    assert np.diff(turns, append=turns[0] + 2 * np.pi).max() < np.radians(70), "a space and two gaps at most"
+
+
+def test_the_title_is_the_text(tmp_path: Path) -> None:
+    for form, title in (("svg", "A & g"), ("source", "A & g"), ("curvature", "Curvature of A & g")):
+        root = root_of(text("A & g", "-o", "-", "--format", form))
+        assert root.find(f"{SVG}title").text == title
+
+
+def test_a_line_is_as_wide_as_asked_for() -> None:
+    look = ("-o", "-", "--format", "svg", "--fill", "none", "--stroke", "red")
+    for width, units in (("0.5mm", 0.05 * EM), ("0.02em", 0.02 * EM), ("7", 7)):
+        root = root_of(text("A", *look, "--size", "10mm", "--stroke-width", width))
+        assert float(next(root.iter(f"{SVG}path")).attrib["stroke-width"]) == pytest.approx(units, abs=1e-3)
+
+
 def test_lengths_are_font_units_ems_or_of_paper() -> None:
     def lines(*arguments: str) -> int:
         root = root_of(text("AgAg AgAg AgAg", "-o", "-", "--format", "svg", "--each-glyph", *arguments))
@@ -180,6 +260,18 @@ def test_letters_stand_along_a_path(curves: Path) -> None:
         (("A", "-o", "a.svg", "--width", "nan"), "--width is a length"),
         (("A", "-o", "a.svg", "--width", "-3em"), "width is a positive length"),
         (("A", "-o", "a.svg", "--width", "80mm"), "needs --size"),
+        (("A", "-o", "a.svg", "--size", "9mm", "--fit-width", "9mm"), "give one of --size, --cap-height"),
+        (("A", "-o", "a.svg", "--cap-height", "9mm", "--x-height", "9mm"), "not --cap-height and --x-height"),
+        (("A", "-o", "a.svg", "--cap-height", "9mm"), "no H to measure"),
+        (("A", "-o", "a.svg", "--cap-height", "9"), "--cap-height is a length"),
+        ((" ", "-o", "a.svg", "--fit-width", "9mm"), "no ink"),
+        (("A", "-o", "a.svg", "--fit-width", "9mm", "--circle", "9em"), "--fit-width is for lines"),
+        (("A", "-o", "a.svg", "--circle", "9mm"), "--circle 9mm needs --size"),
+        (("A", "-o", "a.svg", "--circle", "9em", "--path", "CURVES#w"), "not both"),
+        (("A", "-o", "a.svg", "--at", "bottom"), "--at is for text on a --circle"),
+        (("A", "-o", "a.svg", "--stroke-width", "0.1mm"), "--stroke-width is of a line"),
+        (("A", "-o", "a.svg", "--stroke", "red", "--stroke-width", "0.1mm"), "there is none"),
+        (("A", "-o", "a.svg", "--stroke", "red", "--stroke-width", "thin"), "--stroke-width is font units"),
         (("A", "-o", "a.svg", "--bend"), "--bend is for text on a --path"),
         (("A", "-o", "a.svg", "--path", "CURVES#dot"), "length"),
         (("A", "-o", "a.svg", "--path", "CURVES#none"), "none"),

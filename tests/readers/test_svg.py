@@ -67,6 +67,10 @@ def test_names_and_metrics_come_from_file_name_and_view_box(tmp_path: Path) -> N
     assert drawing(tmp_path, square, "龍").unicodes == (ord("龍"),)
     assert drawing(tmp_path, square, "nonsense").unicodes == ()
     assert drawing(tmp_path, square, "B", 'width="300px" height="400px"').metrics.units_per_em == 400
+    in_inches = drawing(tmp_path, square, "in", 'width="2in" height="2.54cm"')
+    assert (in_inches.advance, in_inches.metrics.units_per_em) == pytest.approx((192, 96))
+    with pytest.raises(FontError, match="its width is in vw"):
+        drawing(tmp_path, square, "vw", 'width="3vw" height="400px"')
 
 
 def test_y_is_turned_up_and_orientation_with_it(tmp_path: Path) -> None:

@@ -317,6 +317,31 @@ def test_alignment(font: gs.Font, text: str) -> None:
         assert found.box[0::2] == (0.0, width)
 
 
+@pytest.mark.parametrize(("text", "direction"), [("aaa", None), ("\u05d0\u05d0\u05d0", None), ("\u300c\u300c", "ttb")])
+def test_letters_are_spaced_but_not_the_ends_of_lines(font: gs.Font, text: str, direction: Any) -> None:
+    plain, spaced = (gs.layout(font, text, direction=direction, letter_spacing=space) for space in (0.0, 100.0))
+    shift = (spaced.origin - plain.origin) @ ([0, -1] if direction else [1, 0])
+    assert shift.tolist() == [100.0 * k for k in range(len(text))]
+    side = 3 if direction else 2
+    size = [found.box[side] - found.box[side - 2] for found in (plain, spaced)]
+    assert size[1] - size[0] == 100 * (len(text) - 1)
+    if not direction:
+        line = gs.Path.of([[0, 0], [9000, 0]])
+        ends = [gs.along(found, line, align="end").origin[-1, 0] for found in (plain, spaced)]
+        assert ends[0] == pytest.approx(ends[1]), "no space behind the last letter"
+
+
+def test_spaced_letters_keep_their_marks_and_are_no_ligatures(font: gs.Font) -> None:
+    plain, spaced = (gs.layout(font, "a\u0301a", letter_spacing=space) for space in (0.0, 100.0))
+    assert (spaced.origin - plain.origin)[:, 0].tolist() == [0.0, 0.0, 100.0]
+    assert names(gs.layout(font, "fi")) == ["f_i"]
+    assert names(gs.layout(font, "fi", letter_spacing=50)) == ["f", "i"]
+    assert names(gs.layout(font, "fi", letter_spacing=50, features="liga")) == ["f_i"]
+    wide = 2 * advance("a") + 100
+    assert words(gs.layout(font, "aaaa", width=wide, letter_spacing=100)) == ["aa", "aa"]
+    assert gs.layout(font, "a", letter_spacing=-50).box[2] == advance("a")
+
+
 def test_justified_lines_fill_the_width_but_the_last(font: gs.Font) -> None:
     width = 5 * advance("a") + 2 * advance("space")
     found = gs.layout(font, "aa aa aa a aa aa", width=width, align="justify")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path as FilePath
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from glyphspline.typesetting.bent import SHARE, bend
 from glyphspline.typesetting.path import Path
 from glyphspline.typesetting.path_file import open_path
 from glyphspline.typesetting.placed import Layout
-from glyphspline.typesetting.setting import PathAlign
+from glyphspline.typesetting.setting import Align
 from tests.drawings import circle
 from tests.places import FONTS
 from tests.text_fonts import text_font
@@ -252,13 +253,66 @@ def test_letters_stand_with_their_middles_on_a_circle() -> None:
 def test_text_is_aligned_moved_and_reversed() -> None:
     layout = placed([400, 600], [0, 1])
     path = Path.of([[0, 0], [3000, 0]])
-    aligned: tuple[tuple[PathAlign, float], ...] = (("start", 0), ("center", 1000), ("end", 2000))
+    aligned: tuple[tuple[Align, float], ...] = (("start", 0), ("center", 1000), ("end", 2000))
     for align, first in aligned:
         assert along(layout, path, align=align).origin[:, 0].tolist() == [first, first + 400]
     assert along(layout, path, offset=50, align="center").origin[0].tolist() == [1050, 0]
     other = along(layout, path, side="right")
     np.testing.assert_allclose(other.origin, [[3000, 0], [2600, 0]], atol=1e-9)
     np.testing.assert_allclose(np.abs(other.angle), np.pi)
+
+
+def test_justified_letters_take_the_paths_length() -> None:
+    layout = placed([400, 600, 500], [0, 1, 2])
+    line = along(layout, Path.of([[0, 0], [2500, 0]]), align="justify")
+    assert line.origin[:, 0].tolist() == [0, 900, 2000]
+    assert along(layout, Path.of([[0, 0], [1500, 0]]), align="justify").origin[:, 0].tolist() == [0, 400, 1000]
+    ring = Path.of(circle(1000, 64, turn=-1), closed=True)
+    turns = np.diff(np.unwrap(along(layout, ring, align="justify").angle))
+    gap = (ring.length - 1500) / 3
+    np.testing.assert_allclose(-1000 * turns, [500 + gap, 550 + gap], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("at", "up"), [("top", 1), ("bottom", -1)])
+def test_a_circle_begins_opposite_the_place_of_its_text(at: Any, up: int) -> None:
+    path = Path.circle(2000, at)
+    assert path.closed
+    assert path.length == pytest.approx(2000 * np.pi, rel=1e-8)
+    points, tangents = path.at([0, path.length / 2, 3 * path.length / 4])
+    np.testing.assert_allclose(points[:2], [[0, -1000 * up], [0, 1000 * up]], atol=1e-4)
+    np.testing.assert_allclose(tangents[1], [1, 0], atol=1e-8)
+    np.testing.assert_allclose(np.hypot(*points.T), 1000, rtol=1e-7)
+    for wrong in ((0, "top"), (2, "left")):
+        with pytest.raises(OptionError):
+            Path.circle(*wrong)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "start", "end"),
+    [
+        ('width="200mm" height="200mm" viewBox="0 0 200 200"', (0, 0), (100, 0)),
+        ('width="20cm" viewBox="10 0 200 100"', (-10, 0), (90, 0)),
+        ('height="200mm" viewBox="0 0 100 100"', (0, 0), (200, 0)),
+        ('width="400mm" height="200mm" viewBox="0 0 100 100"', (100, 0), (300, 0)),
+        ('width="400mm" height="200mm" viewBox="0 0 100 100" preserveAspectRatio="xMinYMax"', (0, 0), (200, 0)),
+        ('width="400mm" height="200mm" viewBox="0 0 100 100" preserveAspectRatio="none"', (0, 0), (400, 0)),
+        ('width="400mm" height="200mm" viewBox="0 0 100 100" preserveAspectRatio="xMaxYMin slice"', (0, 0), (400, 0)),
+        ('width="200mm" height="100%" viewBox="0 0 200 200" transform="scale(2)"', (0, 0), (200, 0)),
+    ],
+)
+def test_view_box_and_units_of_a_drawing_are_read(
+    tmp_path: FilePath, attributes: str, start: tuple[float, float], end: tuple[float, float]
+) -> None:
+    file = tmp_path / "curve.svg"
+    file.write_text(f'<svg {NAMESPACE} {attributes}><path d="M0 0H100"/></svg>')
+    points, _ = (path := open_path(file)).at([0, path.length])
+    np.testing.assert_allclose(points * 25.4 / 96, [start, end], atol=1e-9)
+
+
+def test_a_drawing_in_a_drawing_has_a_view_of_its_own(tmp_path: FilePath) -> None:
+    inner = '<svg x="30" y="20" width="50" height="50" viewBox="0 0 100 100"><path id="p" d="M0 0H100"/></svg>'
+    path = open_path(drawing(tmp_path, inner))
+    np.testing.assert_allclose(path.at([0, path.length])[0], [[30, -20], [80, -20]], atol=1e-9)
 
 
 def test_marks_stay_on_their_letters() -> None:

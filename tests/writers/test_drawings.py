@@ -101,7 +101,7 @@ def test_what_is_no_size_or_colour_is_refused(wrong: dict[str, Any]) -> None:
 
 def test_from_the_shell(tmp_path: Path) -> None:
     given = [
-        "--size",
+        "--height",
         "20mm",
         "--fill",
         "none",
@@ -121,6 +121,14 @@ def test_from_the_shell(tmp_path: Path) -> None:
     assert media_box(files["pdf"])[3] == pytest.approx(20 / 25.4 * 72, abs=0.01)
     assert media_box(files["curvature-pdf"])[3] == 432, "the map has its own size"
     assert "curvature of the" not in files["svg"].decode()
+    run = CliRunner().invoke(app, [*call, "--size", "20mm", "--format", "svg", "--restart"])
+    assert run.exit_code == 0, run.output
+    root = root_of((tmp_path / "svg" / "O.svg").read_text(encoding="utf-8"))
+    ascent = float(root.attrib["viewBox"].split()[3])
+    assert float(root.attrib["height"].removesuffix("mm")) == pytest.approx(20 * ascent / 1024), "the size is an em's"
+    run = CliRunner().invoke(app, [*call, "--size", "20mm", "--height", "20mm", "--restart"])
+    assert run.exit_code == 2
+    assert "--height and --size exclude each other" in run.output
     comb = ["--format", "curvature", "--comb", "source", "--corner-teeth", "--restart"]
     run = CliRunner().invoke(app, [*call, *comb])
     assert run.exit_code == 0, run.output

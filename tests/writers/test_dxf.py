@@ -20,9 +20,10 @@ from scipy.spatial import cKDTree
 import glyphspline as gs
 from glyphspline.errors import OptionError
 from glyphspline.fitting.results import as_glyph
+from glyphspline.types import INCHES
 from glyphspline.writers import dxf
 from glyphspline.writers.formats import format_named
-from glyphspline.writers.settings import INCHES, DxfKind, Settings
+from glyphspline.writers.settings import DxfKind, Settings
 from tests.places import ROOT
 
 ezdxf: Any = pytest.importorskip("ezdxf")

@@ -305,7 +305,7 @@ def test_source_with_a_gallery_has_no_polygon(font: gs.Font, tmp_path: Path) -> 
 
 def test_source_looks_as_drawings_do(font: gs.Font, tmp_path: Path) -> None:
     call = ["convert", str(TTF), "--text", "龍", "--out", str(tmp_path), "--format", "source", "--jobs", "0"]
-    look = ["--view-box", "ink", "--size", "20mm", "--fill", "none", "--stroke", "red", "--names", "char"]
+    look = ["--view-box", "ink", "--height", "20mm", "--fill", "none", "--stroke", "red", "--names", "char"]
     result = runner.invoke(app, [*call, *look])
     assert result.exit_code == 0, result.output
     assert "corners" not in result.stderr

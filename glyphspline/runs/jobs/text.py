@@ -9,13 +9,13 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...errors import GlyphsplineError
+from ...errors import GlyphsplineError, OptionError
 from ...fitting.options import Options
 from ...typesetting.placed import Layout
-from ...typesetting.setting import Side
-from ...writers.settings import Settings
+from ...typesetting.setting import Align, Side
+from ...writers.settings import Settings, paper_length
 from ..engine import Item, Job, reason, run, work
 from ..pool import TimeLimitError, WorkerLostError, sign_of_life
 from ..schedule import Place, place_of, sources
@@ -36,6 +36,7 @@ class TextJob:
         layout: the text on its lines. options: of the fit. formats: names, one for each drawing.
         settings: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
         path: in font units, that the text is to follow, or None. bend: its letters too. align, side, offset: on it.
+        fit_width: length of all ink of the lines with its unit, which makes the size; None: that of ``settings``.
     """
 
     layout: Layout
@@ -45,9 +46,10 @@ class TextJob:
     each_glyph: bool = False
     path: Path | None = None
     bend: bool = False
-    align: Literal["start", "center", "end"] = "start"
+    align: Align = "start"
     side: Side = "left"
     offset: float = 0.0
+    fit_width: str | None = None
 
 
 class Drawings(NamedTuple):
@@ -135,6 +137,8 @@ def drawings(job: TextJob) -> Drawings:
     from ...writers.formats import format_named
 
     layout, bent, options = job.layout, None, job.options
+    if job.path is not None and job.settings.look.view_box == "em":  # there is no line from 0 to the advance
+        job = replace(job, settings=replace(job.settings, look=replace(job.settings.look, view_box="ink")))
     metrics = layout.fonts[0].metrics
     if job.path is not None and job.bend:
         from ...typesetting.bent import SHARE, bend
@@ -168,7 +172,8 @@ def drawings(job: TextJob) -> Drawings:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
         results = layout.results(options, fitted) if fit else layout.unfitted(options)
         notes.update(dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)]))
-        return text_document(layout, results, job.settings.look)
+        settings = sized(job, layout.placed(results)) if job.fit_width else job.settings
+        return text_document(layout, results, settings.look)
 
     contents = []
     for name in job.formats:
@@ -176,7 +181,25 @@ def drawings(job: TextJob) -> Drawings:
         if job.each_glyph and name in ("svg", "source"):
             contents.append(each_glyph(form.fitted))
         else:
-            made = form.write(whole(form.fitted), job.settings.scaled(metrics))
+            result = whole(form.fitted)
+            settings = sized(job, result) if job.fit_width else job.settings
+            made = form.write(result, settings.scaled(metrics))
             contents.append(made.encode() if isinstance(made, str) else made)
         sign_of_life()
     return Drawings(contents, list(notes))
+
+
+def sized(job: TextJob, result: GlyphResult) -> Settings:
+    """The settings with the length of an em with which the ink of a result is as wide as the job says.
+
+    Raises:
+        OptionError: there is no ink.
+    """
+    from ...writers.svg.path_data import curves_data
+
+    box = curves_data(result.arrays.curves, result.options.precision)[0].box
+    found = paper_length("--fit-width", job.fit_width)
+    if box is None or found is None:
+        raise OptionError("--fit-width: the text has no ink")
+    em = found[0] * result.outline.metrics.units_per_em / (box[2] - box[0])
+    return replace(job.settings, look=replace(job.settings.look, em=f"{em:.9f}{found[1]}"))

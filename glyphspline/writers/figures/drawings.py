@@ -9,7 +9,7 @@ import numpy as np
 from ...fitting.results import GlyphResult
 from ..settings import CURRENT, PLAIN, Appearance, ImageKind, Settings, Whose
 from ..svg.comb import LONGEST, SIDES, Teeth, colour_classes, curvature_scale, palette, teeth
-from ..svg.document import STROKE, em_box, shown_box
+from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
 from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, saved
 
@@ -49,7 +49,7 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height))
     axes.set_axis_off()
     fill, stroke = ("black" if colour == CURRENT else colour for colour in (look.fill, look.stroke))
-    line = STROKE * outline.metrics.units_per_em * inches * 72 / height
+    line = look.line(outline.metrics.units_per_em, height) * inches * 72 / height
     curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
     for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
         patch.set_clip_on(False)

@@ -65,7 +65,8 @@ def to_curvature_svg(
 
 def write_map(result: GlyphResult, settings: Settings) -> str:
     """The file of a result."""
-    return to_curvature_svg(result)
+    path = curves_data(result.arrays.curves, result.options.precision)[0]
+    return map_document(result, path, curvature_scale([result]), words=settings.title).decode()
 
 
 def map_document(
@@ -77,8 +78,12 @@ def map_document(
     vertices: bool = True,
     control_polygon: bool = False,
     in_corners: bool = False,
+    words: str | None = None,
 ) -> bytes:
-    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves under the comb."""
+    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves under the comb.
+
+    ``words``: what the title names instead of the glyph.
+    """
     outline, arrays = glyph.outline, glyph.arrays
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
@@ -113,8 +118,8 @@ def map_document(
         f'{data_attributes(outline, precision)} data-scale="{scale:.6g}" fill="none" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
-    name, words = f"{prefix}-map-title", f"Curvature of {title(outline)}{drawn}"
-    return document([head(view_box_value(box, precision), name, words, attributes), *layers])
+    name, named = f"{prefix}-map-title", f"Curvature of {title(outline, words)}{drawn}"
+    return document([head(view_box_value(box, precision), name, named, attributes), *layers])
 
 
 def _comb(

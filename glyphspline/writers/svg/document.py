@@ -17,9 +17,6 @@ from ...outlines.outline import FontMetrics, Outline
 from ..settings import CURRENT, PLAIN, VIEW_BOXES, Appearance, Settings, ViewBox
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
-STROKE = 1 / 1000
-"""Width in em of a line along the outline: cutters follow its middle."""
-
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
 
@@ -39,6 +36,7 @@ def to_svg(
     fill: str = CURRENT,
     stroke: str = "none",
     em: str | None = None,
+    stroke_width: str | None = None,
 ) -> str:
     """The interpolated glyph as an SVG document.
 
@@ -54,8 +52,9 @@ def to_svg(
         size: height of the drawing with its unit, as in "20mm", its width in proportion: the attributes ``width`` and
             ``height``. Units are mm, cm, in, pt, pc and px. None: as large as the page makes it.
         fill: colour of the ink: a name of CSS, #rgb, #rrggbb, "none", or "currentColor", that of the text around it.
-        stroke: colour of a line of 1/1000 em along the outline, likewise.
+        stroke: colour of a line along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit: the size that type has, as in "12pt".
+        stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em.
 
     Raises:
         OptionError: a view box, a size or a colour that is none of these.
@@ -67,28 +66,30 @@ def to_svg(
         True
     """
     path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
-    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke, em)).decode()
+    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke, em, stroke_width)).decode()
 
 
 def write_svg(result: GlyphResult, settings: Settings) -> bytes:
     """The file of a result."""
-    return svg_document(result, curves_data(result.arrays.curves, result.options.precision)[0], settings.look)
+    path = curves_data(result.arrays.curves, result.options.precision)[0]
+    return svg_document(result, path, settings.look, settings.title)
 
 
 def write_source(result: GlyphResult, settings: Settings) -> bytes:
     """The file of the outline that a result was made of."""
-    return svg_document(result, source_data([result])[0], settings.look)
+    return svg_document(result, source_data([result])[0], settings.look, settings.title)
 
 
-def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN) -> bytes:
-    """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves."""
+def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN, words: str | None = None) -> bytes:
+    """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves; ``words`` are its title."""
     outline, precision = glyph.outline, glyph.options.precision
     em = outline.metrics.units_per_em
     box = shown_box(em_box(outline), path.box, look.view_box)
     prefix = id_prefix(outline.name, outline.gid)
     value, shape = shown_as(box, look, em, precision)
-    begin = head(value, f"{prefix}-title", title(outline), data_attributes(outline, precision), shape)
-    return document([begin, f'<path id="{prefix}-outline" {painting(look, em)} d="{path.text}"/>\n</svg>\n'])
+    begin = head(value, f"{prefix}-title", title(outline, words), data_attributes(outline, precision), shape)
+    paint = painting(look, em, float(value.split()[3]))
+    return document([begin, f'<path id="{prefix}-outline" {paint} d="{path.text}"/>\n</svg>\n'])
 
 
 def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str, str]:
@@ -103,9 +104,9 @@ def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str
     return value, f' width="{number(width * scale, 4)}{unit}" height="{number(height * scale, 6)}{unit}"{overflow}'
 
 
-def painting(look: Appearance, em: float) -> str:
-    """How outlines are filled and stroked, as attributes."""
-    line = number(STROKE * em, 3)
+def painting(look: Appearance, em: float, height: float) -> str:
+    """How outlines are filled and stroked, as attributes; ``height`` of the drawing in font units."""
+    line = number(look.line(em, height), 3)
     stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
     return f'fill="{text(look.fill)}"{stroke} fill-rule="nonzero"'
 
@@ -125,9 +126,9 @@ def shown_box(box: Box, ink: Box | None, choice: ViewBox) -> Box:
     return ink or (0.0, 0.0, 0.0, 0.0)
 
 
-def title(outline: Outline) -> str:
-    """The accessible title of a drawing, escaped: the glyph's name and code points."""
-    return text(f"{outline.name} {code_points(outline)}".strip())
+def title(outline: Outline, words: str | None = None) -> str:
+    """The accessible title of a drawing, escaped: these words, or the glyph's name and code points."""
+    return text(f"{outline.name} {code_points(outline)}".strip() if words is None else words)
 
 
 def source_data(glyphs: Sequence[GlyphResult]) -> list[PathData]:

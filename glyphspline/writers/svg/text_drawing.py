@@ -45,7 +45,7 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     for name, path in zip(ids, paths, strict=True):
         if path.text:
             parts.append(f'<path id="{name}" d="{path.text}"/>\n')
-    parts.append(f"</defs>\n<g {painting(look, em)}>\n")
+    parts.append(f"</defs>\n<g {painting(look, em, float(value.split()[3]))}>\n")
     drawn = [bool(path.text) for path in paths]
     places = zip(
         range(len(layout)), layout.line.tolist(), layout.which.tolist(), layout.cluster.tolist(),
