@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -34,13 +35,24 @@ from .ufo import Ufo
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """Where a glyph is drawn: a UFO, a layer of it (None: its default), and the normalised place of the master."""
+
+    ufo: Path
+    layer: str | None
+    place: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class _Master:
-    """A source of a designspace: its name, where it is by axis tag, normalised, and its glyphs."""
+    """A source of a designspace: its name, where it is by axis tag, normalised, its glyphs, and its UFO and layer."""
 
     name: str
     at: dict[str, float]
     glyphs: GlyphSet
     muted: frozenset[str]
+    ufo: Path
+    layer: str | None
 
 
 class Designspace(Source):
@@ -83,7 +95,8 @@ class Designspace(Source):
             name = source.styleName or source.name or Path(source.path).stem
             glyphs = ufo.default_layer if source.layerName is None else ufo.layer(source.layerName)
             name = name if source.layerName is None else f"{name}, layer {source.layerName}"
-            self._masters_of_all.append(_Master(name, at, glyphs, frozenset(source.mutedGlyphNames)))
+            muted = frozenset(source.mutedGlyphNames)
+            self._masters_of_all.append(_Master(name, at, glyphs, muted, ufo.path, source.layerName))
         self._ufos, at_default = tuple(ufos.values()), ufos[default.path]
         self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
         self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
@@ -156,6 +169,39 @@ class Designspace(Source):
         )  # fmt: skip
         if above:  # components are asked for again
             self._components[name] = found
+        return found
+
+    @property
+    def folders(self) -> list[Path]:
+        """Its UFOs."""
+        return [ufo.path for ufo in self._ufos]
+
+    def drawings(self, name: str) -> list[Drawing]:
+        """Where a glyph is drawn itself, the default master first."""
+        found = [
+            Drawing(each.ufo, each.layer, tuple(round(each.at[axis.tag] * 16384) / 16384 + 0.0 for axis in self.axes))
+            for each in self._masters_of_all
+            if name in each.glyphs and name not in each.muted
+        ]
+        return sorted(found, key=lambda each: any(each.place))
+
+    def own_contours(self, name: str) -> list[int | None]:
+        """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
+        drawn = [_drawing(each, name)[0] for each in self._masters_of_all if name in each.glyphs]
+        found: list[int | None] = []
+        count = 0
+        for number, part in enumerate(drawn[0]):
+            if part.base is not None:
+                count += len(self._mixed(part.base, [name]).contours)
+                continue
+            pen, at = ContourPen(masters=len(drawn)), 0
+            points = np.array([parts[number].points for parts in drawn], dtype=np.float64)
+            for operation, size in part.operations:
+                getattr(pen, operation)(*[points[:, n].T for n in range(at, at + size)])
+                at += size
+            pen.finish()
+            found.append(count if pen.stacks else None)
+            count += len(pen.stacks)
         return found
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
@@ -263,3 +309,8 @@ class GlyphsFile(Designspace):
     def sha256(self) -> str:
         """Hash of the file's bytes, in hexadecimal."""
         return hashlib.sha256(self.path.read_bytes()).hexdigest()
+
+    def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
+        """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""
+        key = "com.schriftgestaltung.fontMasterOrder"
+        return {ufo.path: ids[ufo.lib.get(key, 0)] for ufo in self._ufos}

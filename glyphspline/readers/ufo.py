@@ -33,7 +33,7 @@ class Ufo(Source):
         glyph_names: in the order of ``public.glyphOrder``, then the rest by name. Glyphs of
             ``public.skipExportGlyphs`` are left out; they may still be components.
         cmap: code point to the first glyph that has it.
-        default_layer: the glyphs of the default layer.
+        default_layer: the glyphs of the default layer. lib: that of the font.
     """
 
     format = kind = "UFO"
@@ -54,7 +54,8 @@ class Ufo(Source):
         descender = -0.2 * em if info.descender is None else info.descender
         self.metrics = FontMetrics(em, float(ascender), float(descender))
         self.default_layer = self._glyph_set(None)
-        lib, there = reader.readLib(), set(self.default_layer.contents)
+        self.lib = lib = reader.readLib()
+        there = set(self.default_layer.contents)
         ordered = [name for name in dict.fromkeys(lib.get(ORDER_KEY, ())) if name in there]
         skipped = set(lib.get(SKIP_KEY, ()))
         self.glyph_names = tuple(n for n in [*ordered, *sorted(there - set(ordered))] if n not in skipped)
@@ -77,6 +78,23 @@ class Ufo(Source):
         glyph.draw(pen)
         pen.finish()
         return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
+
+    def own_contours(self, name: str) -> list[int | None]:
+        """The number in :meth:`outline` of each contour that a glyph draws itself; None: left out there."""
+        found: list[int | None] = []
+        count, calls = 0, list[Any]()
+        for call in self.default_layer[name].value:
+            calls.append(call)
+            if call[0] not in ("endPath", "addComponent"):
+                continue
+            pen, part = ContourPen(self.default_layer, name), RecordingPointPen()
+            part.value, calls = calls, []
+            part.replay(PointToSegmentPen(pen))
+            pen.finish()
+            if call[0] == "endPath":
+                found.append(count if pen.stacks else None)
+            count += len(pen.stacks)
+        return found
 
     def layer(self, name: str) -> GlyphSet:
         """The glyphs of another layer. Their files are not checked for entities; see :func:`.source.parsed`.

@@ -92,6 +92,7 @@ class RunSpec:
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
         masters: all masters of a variable font at once; see :mod:`.jobs.masters`.
+        in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -117,7 +118,19 @@ class RunSpec:
         WRITTEN,
     )  # fmt: skip
 
+    in_place: bool = option(
+        False, "Write new outlines into the source, a UFO, designspace or Glyphs file. Nothing else in it changes.",
+        WRITTEN,
+    )  # fmt: skip
+    layer: str | None = option(
+        None, "Write new outlines into this layer of the source, beside the old ones.", WRITTEN, "NAME"
+    )
+
     def __post_init__(self) -> None:
+        if self.in_place and self.layer is not None:
+            raise OptionError("give --in-place or --layer, not both")
+        if self.is_back and self.options.remove_overlaps:
+            raise OptionError("--remove-overlaps makes other contours, which cannot go back into the source")
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
         if not self.formats:
@@ -136,16 +149,21 @@ class RunSpec:
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))
 
+    @property
+    def is_back(self) -> bool:
+        """Whether outlines are written into the source."""
+        return self.in_place or self.layer is not None
+
     @cached_property
     def is_fitted(self) -> bool:
         """Whether anything is fitted: any of the formats shows more than outlines as the font has them."""
-        return needs_fit(self.formats)
+        return self.is_back or needs_fit(self.formats)
 
     @cached_property
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.whole else []))
+        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.whole or self.is_back else []))
 
     @property
     def whole(self) -> tuple[str, ...]:
@@ -201,6 +219,7 @@ def describe(
         **asdict(spec.maps),
         "flatness": spec.settings.flatness,
         "dxf": spec.settings.dxf,
+        **({"in_place": spec.in_place, "layer": spec.layer} if spec.is_back else {}),
         "names": spec.names,
         "curvature_scale": curvature_scale,
         **({"masters": True} if spec.masters else {}),

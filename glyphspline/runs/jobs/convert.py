@@ -6,7 +6,7 @@ import json
 import re
 import shlex
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,7 +22,7 @@ from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
 from ...report.data import row_of
 from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
-from ...types import Names, rounded_up
+from ...types import Names, counted, rounded_up
 from ...writers.formats import format_named
 from ..engine import Item, Job, Observer, Part, reason, run
 from ..file_names import file_names
@@ -45,10 +45,13 @@ from ..folder import (
 from ..result_text import stored
 from ..schedule import Side, kinds_for, readers, side_of, workers
 from ..spec import MAPS, OF_RUNS, REQUEST, RESULTS, RUN_FILE, RunSpec, describe, differences, read_run, write_run
-from ..summary import Summary
+from ..summary import NAMED, Summary
 
 if TYPE_CHECKING:
     from ...curves.curvature import Comb
+    from ...readers.designspace import Designspace
+    from ...readers.ufo import Ufo
+    from ...writers.back.back import New
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -145,6 +148,7 @@ def convert_font(
     started = time.perf_counter()
     spec = spec or RunSpec()
     require_libraries(spec)
+    check_back(source, spec)
     with locked(out):
         record = prepare(source, glyphs, out, spec, restart)
         finished = record.finished()
@@ -169,6 +173,8 @@ def convert_font(
             summary = record.counts
         if left or not all(path.exists() for path in font_files(source, out, spec)):
             summary.remarks += write_fonts(source, out, spec)
+        if spec.is_back:
+            summary.remarks += results_to_source(source, results_of(source, out, spec), spec)
     summary.missing = getattr(glyphs, "missing", ())
     if not spec.options.is_fixed:
         each_its_em = spec.options.tolerance is None and isinstance(source, SvgDrawings)
@@ -318,7 +324,9 @@ def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
     for path in font_files(source, out, spec):
         glyphs = results_of(source, out, spec)
         with writing(path):
-            if path.suffix == ".ufo":
+            if path.suffix == ".ufo" and source.format == "UFO":
+                remarks += results_to_source(source, glyphs, spec, path)
+            elif path.suffix == ".ufo":
                 from ...writers.ufo_folder import write_ufo
 
                 remarks.append(f"{path.name}: {write_ufo(source, glyphs, path)} glyphs")
@@ -329,6 +337,47 @@ def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
                     remarks.append(f"{path.name}: {write_table(source, glyphs, file)} contours")
             else:
                 remarks.append(_write_font(source, glyphs, path, spec))
+    return remarks
+
+
+def check_back(source: Source, spec: RunSpec) -> None:
+    """Raise before the run if outlines cannot go back into the source."""
+    if not spec.is_back or source.format == "UFO":
+        return
+    if source.format in ("designspace", "Glyphs"):
+        raise OutputError("the outlines of a designspace go back in all masters: add --masters", font=str(source.path))
+    raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
+
+
+def results_to_source(
+    source: Source, glyphs: Iterable[GlyphResult], spec: RunSpec, copy: Path | None = None
+) -> list[str]:
+    """Write results into a UFO; see :func:`back_to_source`."""
+    from ...readers.ufo import Ufo
+    from ...writers.back.back import of_results
+
+    assert isinstance(source, Ufo)
+    return back_to_source(source, of_results(source, glyphs), spec, copy)
+
+
+def back_to_source(
+    source: Ufo | Designspace, glyphs: Iterable[New], spec: RunSpec, copy: Path | None = None
+) -> list[str]:
+    """Write new outlines into the source, or a copy of it; returns remarks for the summary.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    from ...writers.back.back import write_back
+
+    with writing(copy or source.path):
+        found = write_back(source, glyphs, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
+    where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
+    remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, nothing else changed"]
+    for name, why in list(found.kept.items())[:NAMED]:
+        remarks.append(f"{name}: {why}, and stays as it was")
+    if len(found.kept) > NAMED:
+        remarks.append(f"{len(found.kept) - NAMED} more glyphs with contours that stay as they were")
     return remarks
 
 

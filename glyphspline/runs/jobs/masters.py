@@ -20,6 +20,7 @@ from ...files import make_folder, remove_partials, write_whole, writing
 from ...fitting.convert_masters import MastersResult, check_options
 from ...fitting.options import Options
 from ...readers import Font, Source
+from ...readers.designspace import Designspace, GlyphsFile
 from ...readers.single_fonts import axis_of
 from ...types import MadeOnDemand, counted, rounded_up
 from ...writers.font.font_glyphs import Flavour
@@ -30,7 +31,7 @@ from ..result_text import stored
 from ..schedule import Place, place_of, sources
 from ..spec import RESULTS, RunSpec, describe, write_run
 from ..summary import CHANGED, NAMED, listed
-from .convert import font_files, prepare, recorded, tasks_of
+from .convert import back_to_source, check_back, font_files, prepare, recorded, tasks_of
 
 if TYPE_CHECKING:
     from ...fitting.convert_masters import MastersContourResult
@@ -259,9 +260,12 @@ def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:
 def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
     """Raise before the run if its options are not for masters, or a format cannot be written."""
     font = sources[0]
-    if unknown := [name for name in spec.formats if name not in FORMATS]:
+    given = () if spec.is_back and spec.formats == RunSpec().formats else spec.formats
+    if unknown := [name for name in given if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
+    if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
+        check_back(font, spec)
     if axis is not None:
         axis_of(axis, len(sources))
         if "otf" in spec.formats:
@@ -325,7 +329,15 @@ def _write_fonts(
             remark += f", stored within {rounded_up(facts.largest_distance, 3):g} units of the curves"
         summary.remarks.append(remark)
         stays |= facts.left
-    if "ufo" in spec.formats:
+    if isinstance(source, Designspace) and ("ufo" in spec.formats or spec.is_back):
+        from ...writers.back.back import of_masters
+
+        copy = paths.get("ufo")
+        if copy and isinstance(source, GlyphsFile):
+            copy = copy.with_suffix(".glyphs")
+        for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
+            summary.remarks += back_to_source(source, of_masters(source, redrawn), spec, to)
+    elif "ufo" in spec.formats:
         from ...writers.ufo_folder import write_designspace
 
         left = write_designspace(source, redrawn, paths["ufo"])

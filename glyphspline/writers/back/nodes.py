@@ -1,0 +1,89 @@
+"""The nodes of a contour as font editors store them, and new ones in the place of old ones.
+
+A contour begins at the point where it did. Points that something refers to (a name, an identifier, an anchor at the
+same place) stay; a contour that a fit leaves without such a point stays as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from ...outlines.outline import Contour
+from ..ufo_folder import as_number, smooth_ends
+
+KINDS = (None, "line", "qcurve", "curve")
+"""Kinds of points on the curve by the degree of the segment that ends there; None is a control point."""
+
+Position = tuple[float, float]
+
+
+class Node(NamedTuple):
+    """A point of a contour.
+
+    Attributes:
+        at: its place. kind: one of ``KINDS``, or "move" where an open contour begins. smooth: its flag.
+        extra: what else the file says of it, as text; "" for most.
+    """
+
+    at: Position
+    kind: str | None
+    smooth: bool = False
+    extra: str = ""
+
+
+def replaced(
+    old: Sequence[Sequence[Node]], new: Sequence[Contour], held: Sequence[frozenset[Position]], digits: int
+) -> list[list[Node]] | str | None:
+    """The nodes of a contour in each master; a reason why it stays as it is; or None where nothing changes.
+
+    Args:
+        old: its nodes, by master. new: its new curves, rounded here to ``digits`` decimals.
+        held: places at which a point has to stay, by master.
+    """
+    if any(node.kind == "move" for nodes in old for node in nodes):
+        return "is open"
+    if any(node.kind == "qcurve" for nodes in old for node in nodes):
+        return "is drawn in quadratics"
+    rounded = [contour.rounded(digits) for contour in new]
+    first = next((node.at for node in old[0] if node.kind), None)
+    starts = rounded[0].points[rounded[0].offsets]
+    shift = 0 if first is None else int(np.hypot(*(starts - first).T).argmin())
+    # The flag of a point is one for all masters, as it is in editors: smooth where it is in each.
+    smooth = np.all([smooth_ends(contour) for contour in rounded], axis=0)
+    made = [_nodes(contour, smooth, shift) for contour in rounded]
+    before = [_from_the_curve(nodes) for nodes in old]
+    if [[node[:2] for node in nodes] for nodes in made] == [[node[:2] for node in nodes] for nodes in before]:
+        return None
+    found = []
+    for nodes, its, places in zip(made, before, held, strict=True):
+        there = {node.at: node for node in its if node.kind}
+        extras = {at: node.extra for at, node in there.items()}
+        found.append([n._replace(extra=extras.get(n.at, "")) if n.kind else n for n in nodes])
+        on_curve = {node.at for node in nodes if node.kind}
+        for node in its:
+            if node.extra and (not node.kind or node.at not in on_curve):
+                return f"would lose the point at {node.at[0]:g} {node.at[1]:g}, which something refers to"
+        for at in places & there.keys():
+            if at not in on_curve:
+                return f"would lose the point at {at[0]:g} {at[1]:g}, where an anchor is"
+    return found
+
+
+def _nodes(contour: Contour, smooth: Sequence[bool], shift: int) -> list[Node]:
+    """The nodes of a contour that begins with its segment number ``shift``."""
+    points, nodes = iter([(as_number(x), as_number(y)) for x, y in contour.points.tolist()]), list[list[Node]]()
+    arriving = np.roll(contour.degrees, 1).tolist()
+    for before, degree, flag in zip(arriving, contour.degrees.tolist(), smooth, strict=True):
+        own = [Node(next(points), KINDS[before], bool(flag))]
+        nodes.append(own + [Node(point, None) for point in islice(points, degree - 1)])
+    return [node for part in (*nodes[shift:], *nodes[:shift]) for node in part]
+
+
+def _from_the_curve(nodes: Sequence[Node]) -> list[Node]:
+    """The nodes of a closed contour from the first one on the curve."""
+    first = next((k for k, node in enumerate(nodes) if node.kind), 0)
+    return [*nodes[first:], *nodes[:first]]
