@@ -127,9 +127,10 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
 
     def edges(entity: Any) -> list[Any]:
         if entity.dxftype() == "LWPOLYLINE":
-            return [edge for line in entity.virtual_entities() for edge in edges(line)]
-        if entity.dxftype() == "LINE":
-            return [BRepBuilderAPI_MakeEdge(gp_Pnt(*entity.dxf.start), gp_Pnt(*entity.dxf.end)).Edge()]
+            return [
+                BRepBuilderAPI_MakeEdge(gp_Pnt(*line.dxf.start), gp_Pnt(*line.dxf.end)).Edge()
+                for line in entity.virtual_entities()
+            ]
         values, counts = np.unique(np.array(entity.knots), return_counts=True)
         poles = TColgp_Array1OfPnt(1, len(entity.control_points))
         knots, multiplicities = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
@@ -155,19 +156,15 @@ def _occt(job: dict[str, Any]) -> dict[str, Any]:
         return np.concatenate(found)
 
     document = ezdxf.readfile(job["path"])  # type: ignore[attr-defined]
-    grouped: list[list[Any]] = [list(group) for _, group in document.groups]
-    alone = set(document.modelspace()) - {entity for group in grouped for entity in group}
-    contours: list[list[Any]] = [*grouped, *([entity] for entity in document.modelspace() if entity in alone)]
     wires: dict[str, list[Any]] = {"outlines": [], "holes": []}
     count = 0
-    for contour in contours:
+    for entity in document.modelspace():
         builder, parts = BRepBuilderAPI_MakeWire(), TopTools_ListOfShape()
-        for entity in contour:
-            for edge in edges(entity):
-                parts.Append(edge)
-                count += 1
+        for edge in edges(entity):
+            parts.Append(edge)
+            count += 1
         builder.Add(parts)
-        wires[contour[0].dxf.layer].append(builder.Wire())
+        wires[entity.dxf.layer].append(builder.Wire())
     area, volume, said, valid, closed = 0.0, 0.0, 0.0, True, True
     for layer, sign in (("outlines", 1.0), ("holes", -1.0)):  # each contour a solid: holes are not told whose they are
         for wire in wires[layer]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,16 +15,26 @@ from ..types import FloatArray, IntArray, counted
 from . import DEGREES
 from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
 
+Side: TypeAlias = Literal["left", "right"]
+"""From where a derivative is taken at a knot."""
+
 
 @dataclass(frozen=True, eq=False)
 class Spline:
     """A B-spline curve in the plane, or in R^d. Curvature and drawing are for the plane.
 
+    A knot may be repeated up to ``degree`` times: with multiplicity k the curve has degree - k continuous derivatives
+    there. At a cubic's triple knot it has a corner, in a control point.
+
     Attributes:
         control_points: (n, d) if closed, d ≥ 2, where row i belongs to vertex p_i; (m + degree - 1, d) if open.
         knots: (n + 1,) from 0 to the period if closed; the m break points if open, where the ends have multiplicity
-            degree + 1.
+            degree + 1. They do not decrease. A multiple knot at the seam of a closed curve may stand in part at the
+            end: with 0, 0, …, T, T the knot 0 is triple, and the control point 0 in the middle of it.
         degree: 2 to 6. closed: periodic; otherwise clamped at both ends.
+
+    Raises:
+        ValueError: another number of control points, a degree or knots that are none.
 
     Example:
         >>> from glyphspline import Spline
@@ -52,6 +62,11 @@ class Spline:
         expected = len(u) - 1 if self.closed else len(u) + self.degree - 1
         if P.ndim != 2 or len(P) != expected or P.shape[1] < 2:
             raise ValueError(f"{len(u)} knots ask for ({expected}, d) control points with d >= 2, not {P.shape}")
+        full = full_knots(u, self.degree, self.closed)
+        inner = full if self.closed else full[1:-1]  # the ends of an open curve have one more
+        rising = np.isfinite(u).all() and (np.diff(u) >= 0.0).all() and u[0] < u[-1]
+        if not (rising and (inner[self.degree :] > inner[: -self.degree]).all()):
+            raise ValueError(f"knots are finite, do not decrease, and have multiplicity {self.degree} at most")
         object.__setattr__(self, "control_points", P)
         object.__setattr__(self, "knots", u)
 
@@ -79,27 +94,41 @@ class Spline:
         return full_knots(self.knots, self.degree, self.closed)
 
     @cached_property
+    def spans(self) -> IntArray:
+        """(pieces,) index in ``knots`` of where each span begins; between equal knots there is none."""
+        return np.flatnonzero(np.diff(self.knots))
+
+    @cached_property
     def span_controls(self) -> IntArray:
-        """(spans, degree + 1) indices of the control points of each span."""
-        return span_controls(len(self.knots) - 1, self.degree, self.closed)
+        """(pieces, degree + 1) indices of the control points of each span."""
+        return span_controls(len(self.knots) - 1, self.degree, self.closed)[self.spans]
+
+    def _pieces(self, controls: FloatArray) -> FloatArray:
+        return bezier_pieces(self.full_knots, controls, self.spans)
 
     @cached_property
     def _bezier(self) -> FloatArray:
-        return bezier_pieces(self.full_knots, self.control_points[self.span_controls])
+        return self._pieces(self.control_points[self.span_controls])
 
     def to_bezier(self) -> FloatArray:
         """The curve as Bézier pieces, one per knot span, in curve order: (pieces, degree + 1, d)."""
         return self._bezier.copy()
 
-    def _locate(self, t: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Span, local parameter in [0, 1] and span length for each t (wrapped if closed, clamped if open)."""
-        u = self.knots
-        t = u[0] + np.mod(t - u[0], self.period) if self.closed else np.clip(t, u[0], u[-1])
-        span = np.clip(np.searchsorted(u, t, side="right") - 1, 0, len(u) - 2)
-        h = u[span + 1] - u[span]
-        return span, (t - u[span]) / h, h
+    def _locate(self, t: FloatArray, side: Side = "right") -> tuple[IntArray, FloatArray, FloatArray]:
+        """Piece, local parameter in [0, 1] and span length for each t (wrapped if closed, clamped if open)."""
+        u, spans = self.knots, self.spans
+        if side not in ("left", "right"):
+            raise OptionError(f"a side is left or right, not {side!r}")
+        if self.closed:
+            t = u[0] + np.mod(t - u[0], self.period)
+            t = np.where(t == u[0], u[-1], t) if side == "left" else t
+        t = np.clip(t, u[0], u[-1])
+        piece = np.clip(np.searchsorted(u[spans], t, side=side) - 1, 0, len(spans) - 1)
+        a = u[spans[piece]]
+        h = u[spans[piece] + 1] - a
+        return piece, (t - a) / h, h
 
-    def __call__(self, t: ArrayLike, derivative: int = 0) -> FloatArray:
+    def __call__(self, t: ArrayLike, derivative: int = 0, side: Side = "right") -> FloatArray:
         """The curve or one of its derivatives at t: shape ``t.shape + (d,)``.
 
         The domain is from ``knots[0]`` to ``knots[-1]``. Beyond it a closed curve repeats itself with its
@@ -107,24 +136,31 @@ class Spline:
 
         Args:
             t: parameters, of any shape. derivative: 0 for points, 1 for the first derivative by t, and so on.
+            side: of a knot where the derivative jumps, the one from which it is taken.
+
+        Example:
+            >>> from glyphspline import Spline
+            >>> corner = Spline([[0, 0], [1, 0], [2, 0], [2, 1], [2, 2]], [0, 1, 1, 2], 2, closed=False)
+            >>> corner(1, derivative=1).tolist(), corner(1, derivative=1, side="left").tolist()
+            ([0.0, 2.0], [2.0, 0.0])
         """
         t = np.asarray(t, dtype=np.float64)
         if derivative > self.degree:
             return np.zeros((*t.shape, self.control_points.shape[1]))
-        span, x, h = self._locate(t.ravel())
+        span, x, h = self._locate(t.ravel(), side)
         values = evaluate(derivative_points(self._bezier, derivative)[span], x) / h[:, None] ** derivative
         return values.reshape(*t.shape, self.control_points.shape[1])
 
-    def curvature(self, t: ArrayLike) -> FloatArray:
+    def curvature(self, t: ArrayLike, side: Side = "right") -> FloatArray:
         """Signed curvature at t, in 1/unit: positive where the curve turns left, infinite where the speed is zero.
 
-        The domain, and what lies beyond it, are as for calling the spline.
+        The domain, what lies beyond it, and the side are as for calling the spline.
 
         Raises:
             OptionError: the spline is not in the plane.
         """
         self._require_plane("curvature with a sign")
-        return signed_curvature(self(t, derivative=1), self(t, derivative=2))
+        return signed_curvature(self(t, 1, side), self(t, 2, side))
 
     def _require_plane(self, what: str) -> None:
         d = self.control_points.shape[1]
@@ -161,7 +197,7 @@ class Spline:
         """(len(t), degree + 1) which basis functions are not zero at t, by control point, and their values there."""
         span, x, _ = self._locate(np.asarray(t, dtype=np.float64).ravel())
         d = self.degree
-        local = bezier_pieces(self.full_knots, np.broadcast_to(np.eye(d + 1), (len(self.knots) - 1, d + 1, d + 1)))
+        local = self._pieces(np.broadcast_to(np.eye(d + 1), (len(self.spans), d + 1, d + 1)))
         return self.span_controls[span], evaluate(local[span], x)
 
     def basis(self, t: ArrayLike) -> FloatArray:
@@ -210,14 +246,16 @@ class Spline:
         """
         if not self.closed:
             return self
-        d, n = self.degree, len(self.control_points)
-        target = full_knots(self.knots, d, False)
-        index = np.arange(n + d)
-        span = np.minimum(index, n - 1)  # one of those that control point i has a share in
+        d, u = self.degree, self.knots
+        knots = u[self.spans[0] : self.spans[-1] + 2]  # the seam once at both ends
+        target = full_knots(knots, d, False)
+        index = np.arange(len(knots) + d - 1)
+        piece = np.searchsorted(u[self.spans], target[index + d + 1]) - 1  # the last one with a share of point i
         arguments = [target[index + r] for r in range(1, d + 1)]
-        controls = _blossom(self.full_knots, self.control_points[self.span_controls[span]], span, arguments)
+        own = self.control_points[self.span_controls[piece]]
+        controls = _blossom(self.full_knots, own, self.spans[piece], arguments)
         controls[-1] = controls[0]
-        return Spline(controls, self.knots, d, closed=False)
+        return Spline(controls, knots, d, closed=False)
 
     def to_scipy(self) -> Any:
         """The same curve as a ``scipy.interpolate.BSpline``, periodic if closed."""
@@ -247,17 +285,18 @@ def span_controls(spans: int, degree: int, closed: bool) -> IntArray:
     return (index - degree + (degree + 1) // 2) % spans if closed else index
 
 
-def bezier_pieces(full: FloatArray, controls: FloatArray) -> FloatArray:
+def bezier_pieces(full: FloatArray, controls: FloatArray, span: IntArray | None = None) -> FloatArray:
     """Exact Bézier points of every knot span, by blossoming.
 
     Args:
-        full: (spans + 1 + 2 degree,) knots of :func:`full_knots`. controls: (spans, degree + 1, k) of each span.
+        full: knots of :func:`full_knots`. controls: (pieces, degree + 1, k) of each span.
+        span: (pieces,) where each begins in the knots; None if no knot is multiple.
 
     Returns:
-        (spans, degree + 1, k): Bézier point j of span [a, b] is the blossom at a (degree - j times) and b (j times).
+        (pieces, degree + 1, k): Bézier point j of span [a, b] is the blossom at a (degree - j times) and b (j times).
     """
-    spans, d = controls.shape[0], controls.shape[1] - 1
-    span = np.arange(spans)
+    d = controls.shape[1] - 1
+    span = np.arange(len(controls)) if span is None else span
     a, b = full[span + d], full[span + d + 1]
     return np.stack([_blossom(full, controls, span, [a] * (d - j) + [b] * j) for j in range(d + 1)], axis=1)
 

@@ -1,4 +1,4 @@
-"""The columns of a data set's rows, their types and units, and what they hold in words: schema version 1.
+"""The columns of a data set's rows, their types and units, and what they hold in words: schema version 2.
 
 With ``rows="glyph"`` each column of a contour is a list with an item for each contour; with ``rows="contour"`` it is
 that item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever way the font has them.
@@ -17,8 +17,8 @@ from ..fitting.results import QUANTITIES
 from ..writers.parquet import POWERS, arrow, fit_columns, measure_types, source_columns, types_of
 from .spec import DatasetSpec
 
-SCHEMA_VERSION = 1
-"""Of the rows. A program reads the rows of its own version and of all before."""
+SCHEMA_VERSION = 2
+"""Of the rows. A program reads the rows of its own version and of all before; the first has no ``spline_…``."""
 
 OF_GLYPHS = {
     "schema_version": ("uint16", "of the row"),
@@ -52,6 +52,8 @@ OF_CONTOURS = {
     "knots": "of each spline",
     "control_points": "(x, y), of each spline",
     "footpoints": "of each spline: the parameter of each vertex of the polygon",
+    "spline_knots": "of the contour as one closed cubic spline, lines included; triple at corners",
+    "spline_points": "its control points (x, y)",
     "bezier_degrees": "of the Bézier segments of the fit, as an SVG has them",
     "bezier_points": "their points (x, y), each shared end once",
 }
@@ -88,7 +90,7 @@ ABOUT: dict[str, str] = {
 
 LENGTHS = (
     "advance", "em", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
-    "bezier_points", "ascender", "descender",
+    "spline_knots", "spline_points", "bezier_points", "ascender", "descender",
 )  # fmt: skip
 """Columns in the unit of length, beside the measures."""
 

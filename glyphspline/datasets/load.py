@@ -22,12 +22,14 @@ class Loaded:
     Attributes:
         outline: the glyph, or the one contour of the row, as :func:`.canonical_outlines` has it.
         splines: of each contour, in curve order; None where nothing was fitted.
+        whole_splines: one of each contour, see :attr:`.ContourResult.spline`; None also for rows of schema version 1.
         points: (n, 2) of each contour.
     """
 
     outline: Outline
     splines: tuple[tuple[Spline, ...], ...] | None
     points: tuple[FloatArray, ...]
+    whole_splines: tuple[Spline | None, ...] | None = None
 
     def __repr__(self) -> str:
         splines = "no splines" if self.splines is None else counted(sum(map(len, self.splines)), "spline")
@@ -81,7 +83,7 @@ def _loaded(row: Mapping[str, Any]) -> Loaded:
         metrics = FontMetrics(em, float(ascender), float(descender))
     unicodes = tuple([int(code) for code in row["codepoints"]])
     outline = Outline(row["glyph"], int(row["gid"]), unicodes, float(row["advance"]), contours, metrics)
-    splines = None
+    splines = whole = None
     if not (row["knots"] is None or isinstance(row["knots"], float)):  # pandas: None or NaN
         columns = zip(*map(each, ("control_points", "knots", "degree", "closed")), strict=True)
         splines = tuple([
@@ -91,7 +93,13 @@ def _loaded(row: Mapping[str, Any]) -> Loaded:
             ])
             for of_contour in columns
         ])  # fmt: skip
-    return Loaded(outline, splines, tuple([_points(points) for points in each("points")]))
+        if int(row["schema_version"]) > 1:
+            columns = zip(each("spline_points"), each("spline_knots"), strict=True)
+            whole = tuple([
+                Spline(_points(rows), np.array(list(knots), dtype=np.float64)) if len(rows) else None
+                for rows, knots in columns
+            ])  # fmt: skip
+    return Loaded(outline, splines, tuple([_points(points) for points in each("points")]), whole)
 
 
 def _points(rows: Any) -> FloatArray:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..curves.bspline import Spline
 from ..interpolation.result import Interpolation
 from ..outlines.contour_arrays import (
     NO_POLYLINES,
@@ -23,6 +25,7 @@ from ..outlines.contour_arrays import (
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
 from ..types import FloatArray, IntArray, Views, counted, rounded_up
 from .options import Options
+from .whole_splines import whole_splines
 
 PER_EM = "1/em"
 """Unit of all curvature that people look at: a measure in 1/unit, times the units per em."""
@@ -146,6 +149,15 @@ class ContourResult:
     curve: Contour
     measures: Measures
 
+    @cached_property
+    def spline(self) -> Spline | None:
+        """The contour as one closed spline, lines included; None if it has no length.
+
+        In "smooth" it is the interpolation's. With corners, knots are triple at the ends of arcs and of straight lines,
+        where the curve is in its control points; between them it is C2. Curves are those of ``curve``, up to rounding.
+        """
+        return _end_to_end([self]).splines()[0]
+
     def __repr__(self) -> str:
         return f"<ContourResult: {_told([self.measures])}>"
 
@@ -190,6 +202,19 @@ class ConvertedContours:
             self.arc_offsets[first : last + 1] - a,
             {name: column[first:last] for name, column in self.measures.items()},
         )
+
+    def splines(self) -> list[Spline | None]:
+        """One closed spline a contour: :attr:`ContourResult.spline`."""
+        knots, controls = self.whole_splines
+        return [
+            Spline.trusted(controls.points[a:b], knots[a + c : b + c + 1], 3, True) if a < b else None
+            for c, (a, b) in enumerate(pairwise(controls.offsets.tolist()))
+        ]
+
+    @property
+    def whole_splines(self) -> tuple[FloatArray, Polylines]:
+        """Knots and control points of these splines end to end; see :func:`.whole_splines`."""
+        return whole_splines(self.curves, self.arcs, self.controls, self.arc_offsets)
 
     def contour_results(self) -> list[ContourResult]:
         """An object for each contour."""

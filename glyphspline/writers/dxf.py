@@ -2,13 +2,14 @@
 
 What is written, so that all programs read the same curve:
 
-- A closed smooth contour is one SPLINE entity: the spline itself with the knot of its seam inserted until it is clamped
-  (:meth:`..curves.bspline.Spline.clamped`), first and last control point equal, flags (group code 70) planar only. The
-  closed and the periodic flag are left away: with either of them one program or another wraps the control points once
-  more, replaces the knots, or reads no curve. docs/formats.md says which. Knots have the scale of the drawing.
-- Of a contour with corners each arc is a SPLINE and each straight line a LINE. Cubics that only share tangents, and
-  contours kept from the source, are one SPLINE from corner to corner, with triple knots where cubics meet. Quadratics
-  are raised to cubics. The entities of a contour follow each other, end in the same coordinates, and are a GROUP.
+- A contour is one SPLINE entity, a cubic, lines and corners included (:attr:`..fitting.results.ContourResult.spline`),
+  with the knot of its seam inserted until it is clamped (:meth:`..curves.bspline.Spline.clamped`), first and last
+  control point equal, flags (group code 70) planar only. The closed and the periodic flag are left away: with either of
+  them one program or another wraps the control points once more, replaces the knots, or reads no curve.
+  docs/formats.md says which. Knots have the scale of the drawing.
+- ``--dxf arcs``: each straight line is a LINE, and what is between corners and lines a SPLINE. The entities of a
+  contour follow each other, end in the same coordinates, and are a GROUP.
+- Spurs are left out, which solid modellers refuse: lines that run back over the line before them.
 - Coordinates are doubles in full, not rounded to ``precision``.
 - No text of the font is in the file, nor a date: the same result has the same bytes.
 """
@@ -16,9 +17,10 @@ What is written, so that all programs read the same curve:
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from io import StringIO
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,8 +28,8 @@ import numpy as np
 from ..curves.bspline import Spline
 from ..errors import require
 from ..extras import need
-from ..fitting.results import ContourResult, GlyphResult
-from ..outlines.outline import Contour
+from ..fitting.results import GlyphResult
+from ..outlines.outline import Contour, Contours
 from ..outlines.polygons import flattened, polygons_of
 from ..types import INCHES, BoolArray, FloatArray
 from .settings import NO_HANDLE, SMOOTH, Appearance, DxfKind, Settings
@@ -45,14 +47,17 @@ COLOURS = (7, 1)
 PLANAR = 8
 """The flag of a SPLINE in a plane."""
 
+STRAIGHT = 1e-9
+"""Largest sine of the angle between two lines that run over each other."""
+
 _metadata = threading.Lock()
 
 
 class Piece(NamedTuple):
-    """An entity to be: a LINE if ``degree`` is 1, else a clamped SPLINE.
+    """An entity to be: a LINE if ``degree`` is 1, a clamped SPLINE if it is 3, or a closed LWPOLYLINE if 0.
 
     Attributes:
-        points: (n, 2) control points in font units. knots: (n + degree + 1,), the first one 0.
+        points: (n, 2) control points in font units. knots: (n + degree + 1,) of a SPLINE.
     """
 
     degree: int
@@ -65,15 +70,17 @@ def to_dxf(
 ) -> str:
     """A glyph, or a text, as a DXF drawing (R2000), y up.
 
-    Contours are in the layers "outlines" and "holes"; a hole is a contour about which there is ink. A smooth contour is
-    exactly one SPLINE. The origin of the glyph is that of the drawing.
+    Contours are in the layers "outlines" and "holes"; a hole is a contour about which there is ink. The origin of the
+    glyph is that of the drawing.
 
     Args:
         result: of :func:`convert`.
         size: height from descender to ascender with its unit, as in "20mm", "2cm" or "1in"; DXF has no pt, pc and px:
             these become millimetres. None: a unit of the drawing is a font unit, and the drawing has no unit of length.
-        dxf: "spline" writes the curves as they are: within ``deviation_bound`` of the source, and the rounding to
-            ``precision`` that this bound counts and the file does not have, at most 0.71 of the last decimal.
+        dxf: "spline" writes a contour as one SPLINE, with triple knots at corners; "arcs" as one from corner to corner
+            each, and straight lines as LINEs. Both are the curves as they are: within ``deviation_bound`` of the
+            source, and the rounding to ``precision`` that this bound counts and the file does not have, at most 0.71 of
+            the last decimal.
             "polyline" writes closed LWPOLYLINEs, within ``flatness`` of these curves.
         flatness: in font units; None is 1/2000 em.
 
@@ -100,12 +107,13 @@ def write(result: GlyphResult, settings: Settings) -> str:
     unit, scale = settings.unit, float(settings.scale)
     if unit not in UNITS:
         scale, unit = scale * INCHES[unit] / INCHES["mm"], "mm"  # type: ignore[index]
-    g1 = (result.options.corners, result.options.continuity) == ("sharp", "g1")
-    drawn: Iterator[Sequence[Piece] | FloatArray]
-    drawn = (pieces(contour, g1) for contour in result.contours)
+    curves = Contours(without_spurs(contour.curve) for contour in result.contours).arrays
     if settings.dxf == "polyline":
         flatness = settings.flatness_for(result.outline.metrics.units_per_em)
-        drawn = iter(polygons_of(flattened(result.arrays.curves, flatness)[0]))
+        drawn = [[Piece(0, points, np.empty(0))] for points in polygons_of(flattened(curves, flatness)[0])]
+    else:
+        draw = _arcs if settings.dxf == "arcs" else _whole
+        drawn = [draw(spline) if spline else [] for spline in replace(result.arrays, curves=curves).splines()]
     ezdxf = need("cad")
     with _metadata:  # the option is the process's: no date, no random number for the time of this drawing
         before = ezdxf.options.write_fixed_meta_data_for_testing
@@ -123,27 +131,22 @@ def write(result: GlyphResult, settings: Settings) -> str:
     return text.getvalue()
 
 
-def _fill(document: Any, drawn: Iterator[Sequence[Piece] | FloatArray], counters: BoolArray, scale: float) -> None:
+def _fill(document: Any, drawn: Sequence[Sequence[Piece]], counters: BoolArray, scale: float) -> None:
     space = document.modelspace()
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for number, (contour, hole) in enumerate(zip(drawn, counters.tolist(), strict=True), 1):
-        layer = {"layer": HOLES if hole else OUTLINES}
-        if isinstance(contour, np.ndarray):
-            points = contour * scale + 0.0
-            space.add_lwpolyline(points.tolist(), "xy", close=True, dxfattribs=layer)
-            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-            continue
-        entities = []
+        layer, entities = {"layer": HOLES if hole else OUTLINES}, []
         for piece in contour:
             points = piece.points * scale + 0.0
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-            if piece.degree == 1:
-                start, end = points.tolist()
-                entities.append(space.add_line(start, end, dxfattribs=layer))
-                continue
-            spline = space.add_spline(degree=piece.degree, dxfattribs={**layer, "flags": PLANAR})
-            spline.control_points, spline.knots = points.tolist(), (piece.knots * scale).tolist()
-            entities.append(spline)
+            if piece.degree == 0:
+                entities.append(space.add_lwpolyline(points.tolist(), "xy", close=True, dxfattribs=layer))
+            elif piece.degree == 1:
+                entities.append(space.add_line(*points.tolist(), dxfattribs=layer))
+            else:
+                spline = space.add_spline(degree=piece.degree, dxfattribs={**layer, "flags": PLANAR})
+                spline.control_points, spline.knots = points.tolist(), (piece.knots * scale).tolist()
+                entities.append(spline)
         if len(entities) > 1:
             document.groups.new(f"CONTOUR-{number}").extend(entities)
     if np.isfinite(low).all():  # control points are around the curve: a box a little larger than the drawing's
@@ -165,62 +168,54 @@ def holes(result: GlyphResult) -> BoolArray:
     return ink_sides(curves) * areas < 0.0
 
 
-def pieces(contour: ContourResult, g1: bool = False) -> list[Piece]:
-    """The entities of a contour in order, each from the very point where the one before ends.
-
-    Args:
-        g1: whether its cubics only share tangents. They are drawn from corner to corner, as are contours that have no
-            interpolations.
-    """
-    splines = [arc.spline for arc in contour.interpolations]
-    spans = sum(len(spline.knots) - 1 for spline in splines)
-    if g1 or spans == 0 or spans != np.count_nonzero(contour.curve.degrees > 1):
-        return _chains(contour.curve)
-    if splines[0].closed:
-        return [_clamped(splines[0].clamped())]
-    return _arcs(contour.curve, splines)
+def _whole(spline: Spline) -> list[Piece]:
+    clamped = spline.clamped()
+    return [Piece(clamped.degree, clamped.control_points, clamped.full_knots)]
 
 
-def _clamped(spline: Spline) -> Piece:
-    return Piece(spline.degree, spline.control_points, spline.full_knots - spline.knots[0])
-
-
-def _line(ends: FloatArray) -> Piece:
-    return Piece(1, ends, np.array([0.0, 0.0, 1.0, 1.0]))
-
-
-def _arcs(curve: Contour, splines: Sequence[Spline]) -> list[Piece]:
-    """Arcs and lines, in the order of the curve, which passes through the same ends up to rounding."""
-    found, left = [], iter(splines)
-    segments = curve.segments()
-    for segment in segments:
-        if len(segment) == 2:
-            found.append(_line(segment))
-            continue
-        spline = next(left)
-        for last in islice(segments, len(spline.knots) - 2):
-            segment = np.concatenate([segment[:1], last[1:]])
-        piece = _clamped(spline)
-        found.append(piece._replace(points=np.concatenate([segment[:1], piece.points[1:-1], segment[-1:]])))
-    return found
-
-
-def _chains(curve: Contour) -> list[Piece]:
-    """Lines, and from corner to corner or line one spline of all cubics, in knots as long as their control polygons."""
+def _arcs(spline: Spline) -> list[Piece]:
+    """The spline cut at corners and at the ends of lines, which are among its triple knots, and at its seam."""
     from ..curves.cubics import turns  # here and not above: the package opens without a compiler
 
-    cubics = curve.cubics()
-    legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
-    cubics, lines, legs = cubics[legs > 0.0], (curve.degrees == 1)[legs > 0.0], legs[legs > 0.0]
+    ((_, points, knots),) = _whole(spline)
+    cubics, starts = spline.to_bezier(), spline.knots[spline.spans]
+    bends = np.abs(np.diff(cubics, 2, axis=1)).max(axis=(1, 2))
+    lines = bends <= STRAIGHT * np.abs(cubics[:, 3] - cubics[:, 0]).max(axis=1)
     broken = lines | np.roll(lines, 1) | (np.abs(turns(cubics, NO_HANDLE)) > SMOOTH)
-    first = int(np.argmax(broken))
-    cubics, lines, legs, broken = (np.roll(each, -first, axis=0) for each in (cubics, lines, legs, broken))
+    broken[0] = True
+    joints = np.flatnonzero(knots[1:-3] == knots[3:-1])
+    at = np.searchsorted(starts, knots[joints + 1])
     found = []
-    for a, b in pairwise([*np.flatnonzero(broken | (np.arange(len(broken)) == 0)).tolist(), len(broken)]):
-        if lines[a]:
-            found.append(_line(cubics[a, [0, 3]]))
-            continue
-        ends = np.concatenate([[0.0], np.cumsum(legs[a:b])])
-        knots = np.concatenate([ends[:1], np.repeat(ends, 3), ends[-1:]])
-        found.append(Piece(3, np.concatenate([cubics[a:b, :3].reshape(-1, 2), cubics[b - 1, 3:]]), knots))
+    for (a, first), (b, last) in pairwise([
+        (j, k) for j, k in zip(joints.tolist(), at.tolist(), strict=True) if k == len(cubics) or broken[k]
+    ]):  # fmt: skip
+        if last - first == 1 and lines[first]:
+            found.append(Piece(1, points[[a, b]], np.empty(0)))
+        else:
+            found.append(Piece(3, points[a : b + 1], knots[[a + 1, *range(a + 1, b + 4), b + 3]] - knots[a + 1]))
     return found
+
+
+def without_spurs(contour: Contour) -> Contour:
+    """The contour without lines that run back over the line before them, nor the part of it that they run over.
+
+    These enclose nothing, and a modeller takes a face whose edge lies on itself for invalid. A contour that is nothing
+    else is returned as it is.
+    """
+    kept: list[FloatArray] = []
+    for segment in contour.segments():
+        while kept and _runs_back(kept[-1], segment):
+            segment = np.stack([kept.pop()[0], segment[1]])
+        if len(segment) > 2 or (segment[0] != segment[1]).any():
+            kept.append(segment)
+    while len(kept) > 1 and _runs_back(kept[-1], kept[0]):  # at the seam
+        last = np.stack([kept.pop()[0], kept.pop(0)[1]])
+        kept += [last] if (last[0] != last[1]).any() else []
+    return contour if not kept or len(kept) == len(contour) else Contour.from_segments(kept)
+
+
+def _runs_back(one: FloatArray, other: FloatArray) -> bool:
+    if len(one) > 2 or len(other) > 2:
+        return False
+    (dx, dy), (ex, ey) = (one[1] - one[0]).tolist(), (other[1] - other[0]).tolist()
+    return bool(abs(dx * ey - dy * ex) <= -STRAIGHT * (dx * ex + dy * ey))

@@ -28,8 +28,8 @@ def to_json(glyph: GlyphResult) -> str:
         >>> import json
         >>> import glyphspline as gs
         >>> glyph = gs.convert(gs.open_font("fonts_test/kouzan-gyosho.ttf").outline("O"))
-        >>> spline = gs.Spline(**json.loads(gs.to_json(glyph))["contours"][0]["splines"][0])
-        >>> bool((spline.knots == glyph.contours[0].interpolations[0].spline.knots).all())
+        >>> spline = gs.Spline(**json.loads(gs.to_json(glyph))["contours"][0]["spline"])
+        >>> bool((spline.knots == glyph.contours[0].spline.knots).all())
         True
     """
     return json_text(glyph, Settings())
@@ -68,6 +68,7 @@ def _contour(contour: ContourResult, scale: float) -> dict[str, Any]:
     return {
         "source": [(segment * scale).tolist() for segment in contour.source.segments()],
         "points": (contour.polygon * scale).tolist(),
+        "spline": None if contour.spline is None else _spline(contour.spline, scale),
         "splines": [_spline(each.spline, scale) for each in contour.interpolations],
         "beziers": [(segment * scale).tolist() for segment in contour.curve.segments()],
         "measures": measures,

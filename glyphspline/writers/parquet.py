@@ -1,6 +1,7 @@
 """Outlines, polygons, splines and measures as a Parquet table with one row per contour.
 
-Columns of schema version 1. Lists are in curve order, points are pairs (x, y) in font units, y up.
+Columns of schema version 2; the first had no ``spline_…``. Lists are in curve order, points are pairs (x, y) in font
+units, y up.
 
 ==================== ============================= ==================================================================
 font, style          string                        family and style of the source
@@ -15,6 +16,9 @@ degree               list<uint8>                   of each spline
 knots                list<list<double>>            of each spline
 control_points       list<list<point>>             of each spline
 footpoints           list<list<double>>            parameter at which each spline passes its vertices
+spline_knots         list<double>                  of the contour as one closed cubic spline, lines included, with
+                                                   triple knots at corners: :attr:`.ContourResult.spline`
+spline_points        list<point>                   its control points, one less than knots
 bezier_degrees       list<uint8>                   of the segments of the exact Bézier form, 1 to 3
 bezier_points        list<point>                   their control points, each shared end once; the last segment ends
                                                    on the first point
@@ -40,7 +44,7 @@ from ..outlines.contour_arrays import offsets_of
 from ..readers import Source
 from ..types import FloatArray, IntArray
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 POWERS = {
     "residual": 1, "deviation": 1, "deviation_bound": 1, "overshoot": 1, "length": 1, "area_change": 2,
@@ -169,7 +173,9 @@ def fit_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]
     vertices = polygons.points * np.repeat(factors, np.diff(polygons.offsets))[:, None]
     beziers = curves.points * np.repeat(factors, np.diff(curves.starts))[:, None]
     rows = controls.points * np.repeat(each, np.diff(controls.offsets))[:, None]
-    arcs = found.arc_offsets
+    arcs, (whole, wholes) = found.arc_offsets, found.whole_splines
+    whole_points = wholes.points * np.repeat(factors, np.diff(wholes.offsets))[:, None]
+    at_whole = wholes.offsets + np.arange(len(wholes.offsets))
     return {
         "polygon": nested(pairs(vertices), polygons.offsets),
         "closed": nested(pa.array(controls.closed), arcs),
@@ -177,6 +183,8 @@ def fit_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]
         "knots": nested(knots, at_knots, arcs),
         "control_points": nested(pairs(rows), controls.offsets, arcs),
         "footpoints": nested(feet, at_feet, arcs),
+        "spline_knots": nested(pa.array(whole * np.repeat(factors, np.diff(at_whole))), at_whole),
+        "spline_points": nested(pairs(whole_points), wholes.offsets),
         "bezier_degrees": nested(pa.array(curves.degrees.astype(np.uint8)), curves.offsets),
         "bezier_points": nested(pairs(beziers), curves.starts),
     }

@@ -13,7 +13,7 @@ from ..types import INCHES
 if TYPE_CHECKING:
     from ..outlines.outline import FontMetrics
 
-DxfKind = Literal["spline", "polyline"]
+DxfKind = Literal["spline", "arcs", "polyline"]
 
 ImageKind = Literal["png", "pdf"]
 """Of drawings."""
@@ -162,7 +162,8 @@ class Settings:
         look: of drawings. scale: length of a font unit in the drawing, in ``unit``.
         unit: "mm", "cm", "in", "pt", "pc" or "px"; None: a font unit.
         flatness: largest distance of a polyline from its curve, in font units; None: 1/2000 em.
-        dxf: contours as splines, or flattened. title: of SVG drawings; None: the glyph's name and code points.
+        dxf: contours as one spline each, as arcs and lines, or flattened. title: of SVG drawings; None: the glyph's name
+            and code points.
 
     Raises:
         OptionError: a scale or flatness that is not positive, or an unknown kind of DXF.
@@ -175,7 +176,9 @@ class Settings:
         None, "Keep polylines within this distance of their curves, in font units. Without it, 1/2000 em.",
         WRITTEN, "UNITS", rule=positive("distance in font units"),
     )  # fmt: skip
-    dxf: DxfKind = option("spline", "Write contours in a DXF as splines, which are exact, or as polylines.", WRITTEN)
+    dxf: DxfKind = option(
+        "spline", "Write contours in a DXF as one spline each, as arcs and lines, or as polylines.", WRITTEN
+    )
     title: str | None = None
 
     def __post_init__(self) -> None:

@@ -7,7 +7,7 @@ import pytest
 from fontTools.pens.recordingPen import RecordingPen
 
 import glyphspline as gs
-from glyphspline.curves.bezier import evaluate
+from glyphspline.curves.bezier import derivative_points, evaluate
 from glyphspline.interpolation.polygon import closed_knots, vertex_centres, vertex_parameters
 from glyphspline.types import FloatArray
 from tests.polygons import ellipse, random_polygon
@@ -51,6 +51,51 @@ def test_pieces_join_with_all_derivatives_but_the_last(degree: int, closed: bool
         jump = s(joins + step, derivative=order) - s(joins - step, derivative=order)
         slope = np.abs(s(np.linspace(0, s.period, 300), derivative=order + 1)).max()
         assert np.abs(jump).max() <= 4 * step * slope
+
+
+def with_multiple_knots(degree: int, seam: int) -> gs.Spline:
+    """A closed spline with knots of all multiplicities; ``seam`` of those at 0 stand at the end."""
+    rng = np.random.default_rng([degree, seam])
+    breaks = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 2, degree + 2))])
+    times = [max(seam + 1, 2), *range(1, degree + 1), 1]
+    knots = np.concatenate([np.repeat(breaks[:-1], times)[seam:], np.full(seam + 1, breaks[-1])])
+    return gs.Spline(rng.normal(size=(sum(times), 2)), knots, degree)
+
+
+@pytest.mark.parametrize(("degree", "seam"), [(d, s) for d in range(2, 7) for s in range(d)])
+def test_multiple_knots_from_both_sides(degree: int, seam: int) -> None:
+    s = with_multiple_knots(degree, seam)
+    clamped, oracle, pieces = s.clamped(), s.to_scipy(), s.to_bezier()
+    breaks = np.unique(s.knots)
+    t = np.concatenate([np.linspace(0, s.period, 200, endpoint=False), breaks[:-1]])
+    assert len(pieces) == len(breaks) - 1
+    np.testing.assert_allclose(s.basis(t) @ s.control_points, s(t), atol=1e-12)
+    for order in range(degree + 1):
+        scale = np.abs(oracle(t, order)).max()
+        np.testing.assert_allclose(s(t, order), oracle(t, order), atol=1e-11 * scale)
+        np.testing.assert_allclose(clamped(t, order), s(t, order), atol=1e-10 * scale)
+        of_pieces = derivative_points(pieces, order) / np.diff(breaks)[:, None, None] ** order
+        np.testing.assert_allclose(s(breaks[:-1], order), of_pieces[:, 0], atol=1e-11 * scale)
+        np.testing.assert_allclose(s(breaks[1:], order, side="left"), of_pieces[:, -1], atol=1e-11 * scale)
+        np.testing.assert_allclose(s(0.0, order, side="left"), of_pieces[-1, -1], atol=1e-11 * scale)
+        for at in breaks[:-1]:  # degree - multiplicity derivatives are continuous
+            times = np.count_nonzero(s.knots[:-1] == at) + (np.count_nonzero(s.knots == s.period) - 1) * (at == 0)
+            jump = np.abs(s(at, order) - s(at, order, side="left")).max()
+            assert (jump < 1e-10 * scale) == (order <= degree - times)
+
+
+def test_the_control_point_of_a_triple_knot_is_on_the_curve() -> None:
+    square = [[0, 0], [1, 0], [2, 0], [3, 0], [3, 1], [3, 2], [3, 3], [2, 3], [1, 3], [0, 3], [0, 2], [0, 1]]
+    s = gs.Spline(np.array(square), np.array([0, 0, 3, 3, 3, 6, 6, 6, 9, 9, 9, 12, 12.0]))
+    assert s([0, 3, 6, 9]).tolist() == [[0, 0], [3, 0], [3, 3], [0, 3]]
+    assert s(3, 1).tolist() == [0, 1]
+    assert s(3, 1, side="left").tolist() == [1, 0]
+    assert s.curvature([0, 1, 3]).tolist() == [0, 0, 0]
+    pen = RecordingPen()
+    s.draw(pen)
+    assert len(pen.value) == 6
+    with pytest.raises(gs.OptionError, match="left or right"):
+        s(0, side="up")  # type: ignore[arg-type]
 
 
 def test_closed_curve_wraps_and_open_curve_ends_on_its_control_points() -> None:
@@ -130,6 +175,11 @@ def test_wrong_shapes_and_degrees_are_refused() -> None:
         gs.Spline(np.zeros((4, 2)), np.arange(4.0))
     with pytest.raises(ValueError, match="degree"):
         gs.Spline(np.zeros((7, 2)), np.arange(8.0), 7)
+    for knots in ([0, 1, 1, 1, 1, 2], [0, 1, 2, 1, 3, 4], [0, 1, 2, np.nan, 3, 4], [0, 0, 1, 2, 2, 2], [0.0] * 6):
+        with pytest.raises(ValueError, match="knots are finite, do not decrease, and have multiplicity 3 at most"):
+            gs.Spline(np.zeros((5, 2)), np.array(knots))
+    with pytest.raises(ValueError, match="multiplicity"):  # an end has multiplicity 4 as it is
+        gs.Spline(np.zeros((7, 2)), np.array([0, 0, 1, 2, 3.0]), 3, closed=False)
 
 
 @pytest.mark.parametrize(("name", "power"), [("chord", 1.0), ("centripetal", 0.5), ("uniform", 0.0)])

@@ -276,6 +276,10 @@ def test_rows_are_read_back(
             assert len(splines) == len(one.interpolations)
             for spline, arc in zip(splines, one.interpolations, strict=True):
                 np.testing.assert_allclose(spline.to_bezier() * scale, arc.spline.to_bezier(), rtol=1e-12, atol=1e-9)
+        assert (got.whole_splines is not None) == (again.whole_splines is not None) == fit
+        for whole_spline, one in zip(got.whole_splines or (), its, strict=False):
+            assert whole_spline is not None
+            np.testing.assert_allclose(whole_spline.to_bezier() * scale, one.curve.cubics(), rtol=1e-12, atol=1e-9)
         for own, one in zip(got.points, its, strict=True):
             if points is not None:
                 assert own.shape == (points, 2)
@@ -360,6 +364,7 @@ def test_rows_of_the_first_schema_are_read() -> None:
     assert (loaded.outline.name, loaded.outline.unicodes) == ("O", (79,))
     for one, other in zip(loaded.outline.arrays, expected.arrays, strict=True):
         np.testing.assert_array_equal(one, other)
+    assert loaded.whole_splines is None
     assert loaded.splines is not None
     assert [[len(spline.control_points) for spline in own] for own in loaded.splines] == [
         [len(points) for points in own] for own in row["control_points"]

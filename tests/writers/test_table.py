@@ -24,7 +24,7 @@ def test_every_contour_is_read_back_equal(tmp_path: Path) -> None:
     results = [gs.convert(source.outline(name), options) for name in source.select(text="O a")]
     count = write_table(source, results, tmp_path / "t.parquet")
     read = pq.read_table(tmp_path / "t.parquet")
-    assert read.schema.metadata[b"glyphspline.schema"] == b"1"
+    assert read.schema.metadata[b"glyphspline.schema"] == b"2"
     rows = read.to_pylist()
     expected = [(glyph, k, contour) for glyph in results for k, contour in enumerate(glyph.contours)]
     assert len(rows) == len(expected) == count > 3
@@ -34,6 +34,8 @@ def test_every_contour_is_read_back_equal(tmp_path: Path) -> None:
         (one,) = contour.interpolations
         spline = gs.Spline(row["control_points"][0], row["knots"][0], row["degree"][0], row["closed"][0])
         np.testing.assert_array_equal(spline.to_bezier(), one.spline.to_bezier())
+        whole = gs.Spline(row["spline_points"], row["spline_knots"])
+        np.testing.assert_array_equal(whole.to_bezier(), one.spline.to_bezier())
         np.testing.assert_array_equal(row["footpoints"][0], one.parameters)
         np.testing.assert_array_equal(row["polygon"], contour.polygon)
         np.testing.assert_array_equal(row["bezier_points"], contour.curve.points)
