@@ -162,8 +162,8 @@ class Settings:
         look: of drawings. scale: length of a font unit in the drawing, in ``unit``.
         unit: "mm", "cm", "in", "pt", "pc" or "px"; None: a font unit.
         flatness: largest distance of a polyline from its curve, in font units; None: 1/2000 em.
-        dxf: contours as one spline each, as arcs and lines, or flattened. title: of SVG drawings; None: the glyph's name
-            and code points.
+        dxf: contours as one spline each, as arcs and lines, or flattened. title: of SVG drawings; None: the glyph's
+            name and code points.
 
     Raises:
         OptionError: a scale or flatness that is not positive, or an unknown kind of DXF.
