@@ -59,7 +59,16 @@ def bend_findings(
                 values[i] = np.nan
         least = TURN / extent
         found, at, sizes = np.empty(n + 2, dtype=np.int64), np.empty(n + 2), np.empty(n + 2)
-        start, whole = start_of(values, n, least)
+        # From a curvature between bends, or else from behind an inflection: the first of another sign than the last.
+        start, last = first_of(values, n), 0.0
+        whole = not np.isnan(values[start])
+        for i in range(start, start + (n if whole else 0)):
+            value = values[i % n]
+            if abs(value) >= least:
+                if value * last < 0:
+                    start, whole = i, False
+                    break
+                last = value
         first, sign = start, 0.0
         for i in range(start, start + n + 1):
             value = values[i % n]
@@ -80,25 +89,6 @@ def bend_findings(
             elif sign == 0.0 and abs(value) >= least:
                 sign = 1.0 if value > 0 else -1.0
     return table[:count]
-
-
-@compiled
-def start_of(values: FloatArray, n: int, least: float) -> tuple[int, bool]:
-    """Which of n curvatures comes first: one between bends, or else behind an inflection; and whether there is neither.
-
-    Args:
-        least: curvature that is significant: an inflection lies between two such of different signs.
-    """
-    start, sign = first_of(values, n), 0.0
-    if np.isnan(values[start]):
-        return start, False
-    for i in range(start, start + n):
-        value = values[i % n]
-        if abs(value) >= least:
-            if value * sign < 0:
-                return i, False
-            sign = value
-    return start, True
 
 
 @compiled

@@ -208,12 +208,6 @@ def is_whole(a: complex) -> bool:
 
 
 @compiled
-def all_whole(cubic: ComplexArray) -> bool:
-    """Whether all control points are in whole units."""
-    return is_whole(cubic[0]) and is_whole(cubic[1]) and is_whole(cubic[2]) and is_whole(cubic[3])
-
-
-@compiled
 def end_curvature(a: complex, b: complex, c: complex) -> float:
     """Curvature of a cubic at the first of its first three points; not finite where the handle has no length."""
     own = b - a
@@ -264,7 +258,8 @@ def reaches_beyond(cubic: ComplexArray, limits: Limits) -> tuple[float, bool]:
     first, second, size = length(u), length(v), length(chord)
     if first == 0 or second == 0 or size == 0:
         return 0.0, False
-    rounding = 2 * ROUNDING if all_whole(cubic) else 0.0
+    whole = is_whole(cubic[0]) and is_whole(cubic[1]) and is_whole(cubic[2]) and is_whole(cubic[3])
+    rounding = 2 * ROUNDING if whole else 0.0
     most, alone = 0.0, False
     cross = (u.conjugate() * v).imag
     sine = abs(cross) / (first * second)
@@ -317,7 +312,7 @@ def bends_back(segments: Segments, j: int, limits: Limits) -> tuple[float, float
     if turns[1] * sign > 0 and last == 2:
         return back, other, (low + high) / 2
     at_start = turns[0] * sign > turns[last] * sign
-    if all_whole(cubic):
+    if is_whole(cubic[0]) and is_whole(cubic[1]) and is_whole(cubic[2]) and is_whole(cubic[3]):
         corner = turn_of(a, b) if at_start else turn_of(b, c)
         if sign * corner < ROUNDING * (1 / length(b) + 1 / length(a if at_start else c)):
             return 0.0, 0.0, 0.0

@@ -146,13 +146,16 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                     continue
                 deepest = DEEPER if kind else 0
                 ended, other_ended = marks[top, 0] >= deep[s] + deepest, marks[top, 1] >= deep[t] + deepest
-                on_each_other = 0 if kind else same_points(A[top], B[top])
+                same = back = not kind  # whether both pieces have the same Bézier points, or in reverse
+                for k in range(0 if kind else 4):
+                    same = same and A[top, k, 0] == B[top, k, 0] and A[top, k, 1] == B[top, k, 1]
+                    back = back and A[top, k, 0] == B[top, 3 - k, 0] and A[top, k, 1] == B[top, 3 - k, 1]
                 if kind & SELF:
                     top = top - 1 if ended else halve_itself(A, B, marks, begins, top)
-                elif on_each_other or (ended and other_ended):
+                elif same or back or (ended and other_ended):
                     x, y, x_end, y_end = -1.0, 0.0, 0.0, 0.0
-                    if on_each_other:
-                        x, x_end, y = 0.0, 1.0, 0.0 if on_each_other > 0 else 1.0
+                    if same or back:
+                        x, x_end, y = 0.0, 1.0, 0.0 if same else 1.0
                         y_end = 1.0 - y
                     elif kind == 0:
                         finer = max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
@@ -215,16 +218,6 @@ def parameter_at(cubic: FloatArray, share: float) -> float:
         else:
             high = t
     return (low + high) / 2
-
-
-@compiled
-def same_points(A: FloatArray, B: FloatArray) -> int:
-    """1 if two pieces have the same Bézier points, -1 if in reverse, or else 0."""
-    same = back = True
-    for k in range(4):
-        same = same and A[k, 0] == B[k, 0] and A[k, 1] == B[k, 1]
-        back = back and A[k, 0] == B[3 - k, 0] and A[k, 1] == B[3 - k, 1]
-    return 1 if same else -1 if back else 0
 
 
 @compiled

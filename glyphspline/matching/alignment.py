@@ -123,27 +123,22 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
                     bound = np.sqrt(a * b)
                     if before + bound <= best[i, j]:
                         continue
-                    total = before + bound * _mean(one, other, alike, i - di, j - dj, a, b)
+                    p, q, mean, done = i - di, j - dj, 0.0, 0.0  # of ``alike``, both sides run at constant speed
+                    x, y = one[p] / a, other[q] / b
+                    while done < 1.0 - 1e-9:
+                        step = min(x, y)
+                        mean += step * alike[p, q]
+                        done += step
+                        x, y = x - step, y - step
+                        if x < 1e-9 and p + 1 < n:
+                            p += 1
+                            x += one[p] / a
+                        if y < 1e-9 and q + 1 < m:
+                            q += 1
+                            y += other[q] / b
+                        if step == 0.0:
+                            break
+                    total = before + bound * mean
                     if total > best[i, j]:
                         best[i, j], came[i, j] = total, di * (reach + 1) + dj
     return _followed(came, reach)
-
-
-@compiled
-def _mean(one: FloatArray, other: FloatArray, alike: FloatArray, p: int, q: int, a: float, b: float) -> float:
-    """The mean of ``alike`` along pieces of the lengths a and b, from p and from q on, each at constant speed."""
-    x, y, total, done = one[p] / a, other[q] / b, 0.0, 0.0
-    while done < 1.0 - 1e-9:
-        step = min(x, y)
-        total += step * alike[p, q]
-        done += step
-        x, y = x - step, y - step
-        if x < 1e-9 and p + 1 < len(one):
-            p += 1
-            x += one[p] / a
-        if y < 1e-9 and q + 1 < len(other):
-            q += 1
-            y += other[q] / b
-        if step == 0.0:
-            break
-    return total

@@ -51,30 +51,36 @@ def sampled(
         table = length_table(pieces, WEIGHTS)
         corners = table[:-1:TABLE][np.abs(turns(pieces, 0.0)) >= corner_angle]
         if count > 0:
-            at = _even(corners, table[-1], count, max_ratio)
+            at = table[-1] * np.arange(count) / count
+            for corner in corners:  # the nearest moves onto it where spacings stay within max_ratio
+                moved = at.copy()
+                moved[np.argmin(np.abs(at - corner))] = corner
+                gaps = np.append(moved[1:], moved[0] + table[-1]) - moved
+                before = np.roll(gaps, 1)
+                if np.all(np.maximum(gaps, before) <= max_ratio * np.minimum(gaps, before)):
+                    at = moved
         else:
             at = _stepped(corners, table[-1], step, max_ratio, most)
         n = len(at)
         refused[k] = n < 3
         found = grown(found, used + n)
-        _evaluate(pieces, table, at, found[used : used + n])
+        cell, last = 0, len(table) - 2
+        for i in range(n):
+            while cell < last and table[cell + 1] <= at[i]:
+                cell += 1
+            width = table[cell + 1] - table[cell]
+            place = (cell + ((at[i] - table[cell]) / width if width > 0.0 else 0.0)) / TABLE
+            j = min(int(place), len(pieces) - 1)
+            found[used + i, 2] = place
+            t = place - j
+            s = 1.0 - t
+            for axis in range(2):
+                a, b, c, d = pieces[j, 0, axis], pieces[j, 1, axis], pieces[j, 2, axis], pieces[j, 3, axis]
+                ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
+                found[used + i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)
         used += n
         ends[k + 1] = used
     return found[:used, :2].copy(), found[:used, 2].copy(), ends, refused
-
-
-@compiled
-def _even(corners: FloatArray, length: float, count: int, max_ratio: float) -> FloatArray:
-    """Even distances; the nearest to each corner moves onto it where spacings stay within ``max_ratio``."""
-    at = length * np.arange(count) / count
-    for corner in corners:
-        moved = at.copy()
-        moved[np.argmin(np.abs(at - corner))] = corner
-        gaps = np.append(moved[1:], moved[0] + length) - moved
-        before = np.roll(gaps, 1)
-        if np.all(np.maximum(gaps, before) <= max_ratio * np.minimum(gaps, before)):
-            at = moved
-    return at
 
 
 @compiled
@@ -107,22 +113,3 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
             break
         at = np.sort(np.append(at, at[wide] + 0.5 * gaps[wide]))
     return np.empty(0)
-
-
-@compiled
-def _evaluate(pieces: FloatArray, table: FloatArray, at: FloatArray, found: FloatArray) -> None:
-    """Write points and places at ascending distances along the contour to ``found`` (n, 3)."""
-    cell, last = 0, len(table) - 2
-    for i in range(len(at)):
-        while cell < last and table[cell + 1] <= at[i]:
-            cell += 1
-        width = table[cell + 1] - table[cell]
-        place = (cell + ((at[i] - table[cell]) / width if width > 0.0 else 0.0)) / TABLE
-        j = min(int(place), len(pieces) - 1)
-        found[i, 2] = place
-        t = place - j
-        s = 1.0 - t
-        for axis in range(2):
-            a, b, c, d = pieces[j, 0, axis], pieces[j, 1, axis], pieces[j, 2, axis], pieces[j, 3, axis]
-            ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
-            found[i, axis] = s * (s * ab + t * bc) + t * (s * bc + t * cd)

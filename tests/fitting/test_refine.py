@@ -16,6 +16,7 @@ from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.smooth import steps
 from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import smooth_fits
+from glyphspline.fitting.smooth.spacing import growth_of
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
@@ -109,7 +110,7 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
-    _, places, offsets = steps.first_places(canonical, np.radians(12), 4.0, 1.0, 2)
+    _, places, offsets = steps.first_places(canonical, np.radians(12), 4.0, growth_of(4.0, 2), 1.0, 2)
     points = steps.polygons(canonical, np.arange(2), places, offsets)
     square = points[: offsets[1]]
     h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)

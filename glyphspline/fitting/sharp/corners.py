@@ -98,27 +98,16 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
     if masters > 1:
         for j in range(m):
             if line[j] != line[j - 1] and not corner[j] and bends[j] < SMOOTH_KINK:
-                s = j if line[j] else (j - 1) % m
-                tied[j] = tie_to_line(cubics[:, s].copy(), arriving[:, j], leaving[:, j])
+                first_way, turn, straight = leaving[0, j], 0.0, cubics[:, j if line[j] else (j - 1) % m].copy()
+                for v in range(masters):
+                    turn = max(turn, abs(leaving[v, j, 0] * first_way[1] - leaving[v, j, 1] * first_way[0]))
+                tied[j], size = not turn < ONE_DIRECTION, chord(straight, 0, 3)
+                for v in range(masters if tied[j] else 0):  # the line's vectors in the masters
+                    for axis in range(2):
+                        arriving[v, j, axis] = (straight[v, 3, axis] - straight[v, 0, axis]) / size
+                        leaving[v, j, axis] = arriving[v, j, axis]
         arriving[:, m], leaving[:, m], tied[m] = arriving[:, 0], leaving[:, 0], tied[0]
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
-
-
-@compiled
-def tie_to_line(line: FloatArray, arriving: FloatArray, leaving: FloatArray) -> bool:
-    """Whether a joint beside a line (K, 4, 2) is tied, see :class:`Joints`; then the line's vectors in the masters take
-    the place of its tangents (K, 2).
-    """
-    turn = 0.0
-    for v in range(len(line)):
-        turn = max(turn, abs(leaving[v, 0] * leaving[0, 1] - leaving[v, 1] * leaving[0, 0]))
-    if turn < ONE_DIRECTION:
-        return False
-    size = chord(line, 0, 3)
-    for v in range(len(line)):
-        for axis in range(2):
-            arriving[v, axis] = leaving[v, axis] = (line[v, 3, axis] - line[v, 0, axis]) / size
-    return True
 
 
 @compiled

@@ -157,7 +157,15 @@ def fit_contour(joints: Joints, c: int, settings: Settings) -> Pieces:
                             fit_spline(joints, near, settings, False, pieces, count - 1)
                         a = b
             if cut:
-                count = keep_cheaper(pieces, first, count, near)
+                whole, numbers, worst = count - 1, 0, 0.0
+                for q in range(first, whole):
+                    numbers += 2 * pieces.spans[q] + (4 if pieces.spans[q] > 0 else 2)
+                    worst = max(worst, pieces.errors[q])
+                # Those cut at corners are kept if they store as little: a corner that is rounded is a peak of curvature
+                if worst <= near and (numbers <= 2 * pieces.spans[whole] + 4 or pieces.errors[whole] > near):
+                    count = whole
+                else:
+                    count = copy_piece(pieces, whole, pieces, first, 0)
         i = j
     owned.contour[:] = c
     return used(owned, count)
@@ -179,24 +187,6 @@ def add_simplest(joints: Joints, i: int, j: int, settings: Settings, pieces: Pie
     add_piece(pieces, count, joints, i, j, 0 if straight else 1, error)
     pieces.closed[count] = closed
     return count + 1
-
-
-@compiled
-def keep_cheaper(pieces: Pieces, first: int, count: int, near: float) -> int:
-    """Of pieces cut at corners, from ``first`` on, and the whole, which is the last, keep what stores less.
-
-    The cut ones are kept if they store the same: a corner that is rounded is a peak of curvature.
-
-    Returns:
-        The number of pieces then.
-    """
-    whole, numbers, worst = count - 1, 0, 0.0
-    for q in range(first, whole):
-        numbers += 2 * pieces.spans[q] + (4 if pieces.spans[q] > 0 else 2)
-        worst = max(worst, pieces.errors[q])
-    if worst <= near and (numbers <= 2 * pieces.spans[whole] + 4 or pieces.errors[whole] > near):
-        return whole
-    return copy_piece(pieces, whole, pieces, first, 0)
 
 
 @compiled

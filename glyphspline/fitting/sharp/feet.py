@@ -113,14 +113,24 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
             lap = k if i == 0 else 0
             step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
             chord = length(step_x, step_y)
-            own = _distance_along(h, k, span[j], x[j], span[i] + lap, x[i])
+            own = x[i] * h[_wrapped(span[i] + lap, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
+            if span[i] + lap == span[j]:
+                own = (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
+            for s in range(span[j], span[i] + lap):
+                own += h[_wrapped(s, k) + 2]
             if chord == 0.0 or own <= 0.0:
                 continue
             spans = (span[i] + lap + x[i]) - (span[j] + x[j])
             wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
             pieces = min(int(wanted) + 2, EXTRA + 1)
             for r in range(1, pieces):
-                s, at = _moved(h, k, span[j], x[j], own * r / pieces)
+                s, whole = span[j], h[_wrapped(span[j], k) + 2]
+                left = own * r / pieces + x[j] * whole
+                while left > whole:
+                    left -= whole
+                    s += 1
+                    whole = h[_wrapped(s, k) + 2]
+                at = left / whole
                 cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
                 along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
                 ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
@@ -240,29 +250,6 @@ def _wrapped(s: int, k: int) -> int:
     if s >= k:
         s -= k
     return s if s >= 0 else s + k
-
-
-@compiled
-def _distance_along(h: FloatArray, k: int, s: int, x: float, t: int, y: float) -> float:
-    """Parameter distance from place (s, x) to place (t, y)."""
-    if s == t:
-        return (y - x) * h[_wrapped(s, k) + 2]
-    total = y * h[_wrapped(t, k) + 2] - x * h[_wrapped(s, k) + 2]
-    for r in range(s, t):
-        total += h[_wrapped(r, k) + 2]
-    return total
-
-
-@compiled
-def _moved(h: FloatArray, k: int, s: int, x: float, distance: float) -> tuple[int, float]:
-    """The place at a parameter distance after (s, x)."""
-    own = h[_wrapped(s, k) + 2]
-    left = distance + x * own
-    while left > own:
-        left -= own
-        s += 1
-        own = h[_wrapped(s, k) + 2]
-    return s, left / own
 
 
 @compiled

@@ -121,25 +121,20 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
     if good or fixed > 0:
         if begun == 0 and (good or settings.passes > 1):
             remove_vertices(fit, least)
-        write_best(fit, fixed, pieces, q)
+        best, k, at = fit.best, fit.best.size[0], pieces.starts[q]
+        n = k + 1 - closed
+        afresh = k != fixed  # or else with its vertices on the outline
+        pieces.errors[q] = measure_afresh(fit.samples, best, fit.near, fit.rows) if afresh else measure_fixed(fit, best)
+        pieces.spans[q], pieces.starts[q + 1] = k, at + n
+        find_places(fit.samples, best, fit.rows, pieces.places[at : at + n])
+        for v in range(len(best.p)):
+            pieces.vertices[at : at + n, v] = best.p[v, :n]
+            if not closed:
+                X, tangents = best.X[v], pieces.tangents[q, v]
+                for axis in range(2):
+                    tangents[0, axis] = 3 * (X[1, axis] - X[0, axis]) / best.h[2]
+                    tangents[1, axis] = 3 * (X[k + 2, axis] - X[k + 1, axis]) / best.h[k + 1]
     keep_alive(owned)
-
-
-@compiled
-def write_best(fit: Fit, fixed: int, pieces: Pieces, q: int) -> None:
-    """Write the best curve into piece q, the last; ``fixed``: the vertices of a curve that has them on the outline."""
-    best, k, closed, at = fit.best, fit.best.size[0], fit.best.size[1], pieces.starts[q]
-    n = k + 1 - closed
-    pieces.errors[q] = measure_fixed(fit, best) if k == fixed else measure_afresh(fit.samples, best, fit.near, fit.rows)
-    pieces.spans[q], pieces.starts[q + 1] = k, at + n
-    find_places(fit.samples, best, fit.rows, pieces.places[at : at + n])
-    for v in range(len(best.p)):
-        pieces.vertices[at : at + n, v] = best.p[v, :n]
-        if not closed:
-            X, tangents = best.X[v], pieces.tangents[q, v]
-            for axis in range(2):
-                tangents[0, axis] = 3 * (X[1, axis] - X[0, axis]) / best.h[2]
-                tangents[1, axis] = 3 * (X[k + 2, axis] - X[k + 1, axis]) / best.h[k + 1]
 
 
 @compiled

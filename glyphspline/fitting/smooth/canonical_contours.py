@@ -78,17 +78,6 @@ def length_at(lengths: FloatArray, place: float) -> float:
 
 
 @compiled
-def place_at(lengths: FloatArray, distance: float) -> float:
-    """The inverse of :func:`length_at`."""
-    lap = np.floor(distance / lengths[-1])
-    d = distance - lap * lengths[-1]
-    i = np.searchsorted(lengths[:-1], d, side="right") - 1
-    step = lengths[i + 1] - lengths[i]
-    x = i % TABLE + (min(max((d - lengths[i]) / step, 0.0), 1.0) if step > 0 else 0.0)
-    return lap * (len(lengths) // TABLE) + i // TABLE + x / TABLE
-
-
-@compiled
 def points_at(cubics: FloatArray, places: FloatArray) -> FloatArray:
     """(n, 2) the points at places of a contour, all in its first lap."""
     points = np.empty((len(places), 2))

@@ -25,6 +25,7 @@ from ..options import Options
 from ..results import ConvertedContours
 from . import steps
 from .canonical_contours import CanonicalContours, canonical_contours
+from .spacing import growth_of
 
 ROUNDS = 80
 """Rounds before giving up."""
@@ -99,14 +100,15 @@ class _Search:
         contours, options, near, count = self.contours, self.options, self.near, len(self.contours.flipped)
         left, which = np.full(count, PRUNINGS[options.effort]), np.arange(count)
         passed, every = np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
-        fields, places, offsets = steps.first_places(contours, self.angle, options.max_ratio, near, options.variant)
+        ratio, factor = options.max_ratio, growth_of(options.max_ratio, options.variant)
+        fields, places, offsets = steps.first_places(contours, self.angle, ratio, factor, near, options.variant)
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
             passed[which] = done.most <= near
             fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = steps.changed(
-                contours, fields, done.trial, near, ~passed, fewer, self.angle, options.max_ratio, options.variant,
+                contours, fields, done.trial, near, ~passed, fewer, self.angle, ratio, factor,
                 POWERS[turn % len(POWERS)], turn < LAID,
             )  # fmt: skip
             if len(which) == 0:

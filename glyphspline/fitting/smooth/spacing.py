@@ -25,7 +25,7 @@ from ...compiled import compiled
 from ...curves.cubics import jet
 from ...types import BoolArray, FloatArray, IntArray
 from ..closed_curves import chords_of
-from .canonical_contours import TABLE, length_at, place_at, points_at
+from .canonical_contours import TABLE, length_at, points_at
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 """The three numbers, with something to spare at corners, where a span that just fails costs a vertex."""
@@ -63,17 +63,17 @@ MARGIN = 0.3
 
 @compiled
 def first_field(
-    cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, ratio: float, near: float,
+    cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, factor: float, near: float,
     variant: int, field: FloatArray,
 ) -> None:  # fmt: skip
     """Write the field of a contour, at all entries of ``lengths`` in turn.
 
     Args:
         cubics: (m, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
-        corner_angle: turn in radians from which a joint is a vertex. ratio: at most, of adjacent chords.
+        corner_angle: turn in radians from which a joint is a vertex. factor: by which chords grow at most.
         near: distance allowed, in font units. field: (m TABLE + 1,).
     """
-    factor, at_corner = growth_of(ratio, variant), AT_CORNER_3 if variant == 3 else AT_CORNER
+    at_corner = AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
     m = len(cubics)
     curvature = np.empty((m, TABLE + 1))
@@ -119,9 +119,8 @@ def first_field(
     limit_growth(field, lengths, np.log(factor))
 
 
-@compiled
 def growth_of(ratio: float, variant: int) -> float:
-    """The factor by which chords grow at most."""
+    """The factor by which chords grow at most, for a ratio of adjacent chords that is allowed."""
     return GROWTH * min(ratio, GROWTH_3 / GROWTH if variant == 3 else FASTEST)
 
 
@@ -225,7 +224,7 @@ def lowered(
 def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, again: BoolArray) -> FloatArray:
     """The places, increasing, with those of some stretches between corners spaced evenly by the field."""
     n, count, steps, total = len(places), len(corners), steps_of(field, lengths), 0
-    parts, wholes = np.empty(count, dtype=np.int64), np.empty(count)
+    m, parts, wholes = len(steps), np.empty(count, dtype=np.int64), np.empty(count)
     for k in range(count):
         parts[k] = spans_after(corners, k, n)
         if again[k]:
@@ -239,27 +238,21 @@ def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: In
     new, at = np.empty(total), 0
     for k in range(count):
         if again[k]:
-            lay(field, steps, int(places[corners[k]]), wholes[k], parts[k], new[at : at + parts[k]])
+            a, passed = int(places[corners[k]]), 0.0
+            new[at], i = a, a * TABLE
+            for part in range(1, parts[k]):
+                goal = wholes[k] * part / parts[k]
+                while passed + steps[i % m] < goal:
+                    passed += steps[i % m]
+                    i += 1
+                b, c, x = field[i % m], field[i % m + 1], (goal - passed) / steps[i % m]
+                share = b * ((c / b) ** x - 1) / (c - b) if abs(c - b) > 1e-6 * b else x
+                new[at + part] = (i % m + share) / TABLE % (m // TABLE)  # the last entry's end is the first joint
         else:
             for j in range(parts[k]):
                 new[at + j] = places[(corners[k] + j) % n]
         at += parts[k]
     return np.sort(new)
-
-
-@compiled
-def lay(field: FloatArray, steps: FloatArray, a: int, whole: float, parts: int, places: FloatArray) -> None:
-    """Write the places of joint a and, evenly by the field, of the vertices up to the next joint, ``parts`` in all."""
-    n, i, passed = len(steps), a * TABLE, 0.0
-    places[0] = a
-    for part in range(1, parts):
-        goal = whole * part / parts
-        while passed + steps[i % n] < goal:
-            passed += steps[i % n]
-            i += 1
-        b, c, x = field[i % n], field[i % n + 1], (goal - passed) / steps[i % n]
-        share = b * ((c / b) ** x - 1) / (c - b) if abs(c - b) > 1e-6 * b else x
-        places[part] = (i % n + share) / TABLE % (n // TABLE)  # the last entry's end is the first joint
 
 
 @compiled
@@ -333,6 +326,12 @@ def divided(
         count += 1
         for part in range(1, parts[i] if h[i] > SHORTEST * lengths[-1] else 1):
             share = shares[i] if parts[i] == 2 else part / parts[i]
-            new[count] = place_at(lengths, at[i] + share * h[i]) % m
+            distance = at[i] + share * h[i]
+            lap = np.floor(distance / lengths[-1])
+            d = distance - lap * lengths[-1]
+            j = np.searchsorted(lengths[:-1], d, side="right") - 1
+            step = lengths[j + 1] - lengths[j]
+            x = j % TABLE + (min(max((d - lengths[j]) / step, 0.0), 1.0) if step > 0 else 0.0)
+            new[count] = (lap * m + j // TABLE + x / TABLE) % m
             count += 1
     return np.sort(new[:count])

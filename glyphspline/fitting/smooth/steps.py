@@ -17,7 +17,7 @@ from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, CanonicalContours, points_at, table_of
-from .spacing import MOST, at_corners, failed, first_field, graded, growth_of, laid, lowered, spans_after, with_more
+from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, spans_after, with_more
 
 ROUGHLY = 0.1
 """Sharpness of the bounds during the search, as a share of the distance allowed."""
@@ -25,7 +25,7 @@ ROUGHLY = 0.1
 
 @compiled
 def first_places(
-    contours: CanonicalContours, corner_angle: float, ratio: float, near: float, variant: int
+    contours: CanonicalContours, corner_angle: float, ratio: float, factor: float, near: float, variant: int
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """The fields of all contours end to end, and ragged places to begin with."""
     count = len(contours.offsets) - 1
@@ -39,7 +39,7 @@ def first_places(
             contours.turns[a:b],
         )
         field, joints = table_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
-        first_field(cubics, lengths, turns, corner_angle, ratio, near, variant, field)
+        first_field(cubics, lengths, turns, corner_angle, factor, near, variant, field)
         corners = at_corners(joints, turns, corner_angle)
         even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
         part = graded(cubics, lengths, even, ratio)
@@ -143,7 +143,7 @@ def sharpened(
 @compiled
 def changed(
     contours: CanonicalContours, fields: FloatArray, trial: Trial, near: float, more: BoolArray, fewer: BoolArray,
-    corner_angle: float, ratio: float, variant: int, power: float, anew: bool,
+    corner_angle: float, ratio: float, factor: float, power: float, anew: bool,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours of a trial that change, and their ragged places.
 
@@ -151,14 +151,14 @@ def changed(
         fields: of all contours, see :func:`first_places`; lowered where vertices are respaced.
         more: (K,) whether to have more vertices where a contour misses the tolerance. fewer: (K,) whether to remove
             vertices that seem unnecessary. Both are indexed by contour.
-        variant: of the method.
+        ratio: at most, of adjacent chords. factor: by which they grow at most.
         power: the error of a span is assumed to grow with this power of its length.
         anew: whether more vertices are respaced, evenly, or inserted into the spans that miss the tolerance.
     """
     which, places, offsets, points, bounds, gaps, worst, _ = trial
     those, new = np.empty(len(which), dtype=np.int64), np.zeros(len(which) + 1, dtype=np.int64)
     values, count = np.empty(len(places) + 1024), 0
-    growth = np.log(growth_of(ratio, variant))
+    growth = np.log(factor)
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
         s, t = contours.offsets[k], contours.offsets[k + 1]
