@@ -26,17 +26,11 @@ from ..types import BoolArray, FloatArray, IntArray
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP
 from .segments import ROUNDING, Segments
 
-NEARLY_ALL = 0.9
-"""Share of a contour that lies on another one in the same direction, from which it is a copy."""
-
 STEPS = 16
 """Chords a segment on the two sides of a spur."""
 
 HALVINGS = 20
 """Of a chord, for the place where the sides of a spur part."""
-
-LOOKED_AT = 0.41
-"""Parameter of the point of a segment whose two sides are examined: contours may share ends and middles."""
 
 MOST_HALVINGS = 128
 """Most halvings of a segment for a ray: those around the ray's beginning are points by then."""
@@ -113,7 +107,8 @@ def _doubled(
             spans = np.abs(own[along, 2:] - own[along, :2]).sum(axis=0) > (len(one) / 2, len(other) / 2)
             if total < least and spans.any():
                 total = _length_of(one, own[along, ::2])
-                total *= total >= NEARLY_ALL * min(integrals(one)[0], integrals(other)[0])
+                # Share of a contour that lies on another one in the same direction, from which it is a copy.
+                total *= total >= 0.9 * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
             rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
@@ -197,7 +192,8 @@ def surroundings(
                 continue
             sign = 1 if areas[c] > 0 else -1
             for s in range(offsets[c], offsets[c + 1]):
-                x, y, _, _, _, _ = jet(cubics, s, LOOKED_AT)
+                # Parameter of the point of a segment whose two sides are examined: contours may share ends and middles.
+                x, y, _, _, _, _ = jet(cubics, s, 0.41)
                 outside, innermost = 0, -1
                 for d in range(glyphs[g], glyphs[g + 1]):
                     box = boxes[d]

@@ -14,9 +14,6 @@ from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .difference import PER_EM, SIDES, Apart, Difference, Turn
 
-PARTNER = 0.1
-"""Share of the em by which the :func:`extents` of two contours may differ that are partners."""
-
 DIRECTIONS = 16
 """Directions in which contours are measured to pair them."""
 
@@ -106,7 +103,8 @@ def _changed(
         bound, seen, x, y, side, contour, near_x, near_y = row
         bound += old[g].snapped + scales[g] * new[g].snapped
         costs = np.abs(hulls[firsts[g] : firsts[g + 1], None] - other_hulls[others[g] : others[g + 1]]).max(axis=2)
-        gone, came = without_partner(costs, PARTNER * em)
+        # Share of the em by which the extents of two contours may differ that are partners.
+        gone, came = without_partner(costs, 0.1 * em)
         reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, MOVED * em))
         turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
         worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None

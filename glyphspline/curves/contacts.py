@@ -16,17 +16,8 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet, length
 
-RADIUS = 2e-5
-"""Radius of that circle, as a share of the extent: far above the chord errors, far below what a contour draws."""
-
-POINT = 0.1
-"""A contact shorter than this share of the radius is a point."""
-
 TIED = 1e-8
 """Directions nearer to each other than this, in radians, are the same."""
-
-RECENT = 8
-"""Ends of chords at the end of a contact that the next pair of chords may hang on."""
 
 STEPS = 32
 """Points of a piece that are looked at for where it leaves the circle first."""
@@ -46,7 +37,8 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
     Returns:
         (L, 4) the contours, and the places where a contact begins.
     """
-    radius = RADIUS * float(np.abs(cubics).max())
+    # Radius of the circle, as a share of the extent: far above the chord errors, far below what a contour draws.
+    radius = 2e-5 * float(np.abs(cubics).max())
     found = []
     for c, d in np.unique(touching[:, :2].astype(np.int64), axis=0).tolist():
         one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
@@ -55,7 +47,8 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
             small = radius
             if c == d:  # the strands may be the two sides of a fold, or of a small loop
                 small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
-                if small < radius and one.reach(a, a_end) > POINT * radius:
+                # A contact shorter than this share of the radius is a point.
+                if small < radius and one.reach(a, a_end) > 0.1 * radius:
                     continue
             along = other.way(b, b_end) >= 0
             sides = _is_left(one, a, other, b, not along, small), _is_left(one, a_end, other, b_end, along, small)
@@ -159,7 +152,8 @@ class _Contact:
     def is_beside(self, positions: list[float], total: float, radius: float) -> bool:
         """Whether one of some positions is near one of the last ones; ``total`` is the length of the contour."""
         for x in positions:
-            for y in self.beside[-RECENT:]:
+            # Ends of chords at the end of a contact that the next pair of chords may hang on.
+            for y in self.beside[-8:]:
                 away = abs(x - y) % total
                 if min(away, total - away) <= radius:
                     return True

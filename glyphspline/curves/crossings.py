@@ -29,9 +29,6 @@ FLAT = 1e-9
 EXACT = 1e-12
 """For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent."""
 
-TOUCH = 4.0
-"""An end of a chord lies on another chord within this many chord errors of it."""
-
 DEEPEST = 24
 """Most halvings of a piece: from an extent of 1, its chords are nearer than ``FLAT`` after 15."""
 
@@ -124,7 +121,8 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             if low[j] > high[i] or high[j] < low[i]:
                 continue
             s, t = min(i, j), max(i, j)  # the order of the contours
-            touch = TOUCH * flat if deep[s] > 0 or deep[t] > 0 else EXACT / FLAT * flat
+            # An end of a chord lies on another chord within this many chord errors of it.
+            touch = 4.0 * flat if deep[s] > 0 or deep[t] > 0 else EXACT / FLAT * flat
             for k in range(8):
                 A[0, k // 2, k % 2], B[0, k // 2, k % 2] = (
                     cubics[piece[s], k // 2, k % 2],

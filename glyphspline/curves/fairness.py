@@ -18,17 +18,11 @@ TURN = 1.0
 """Angle in radians by which the difference of two significantly different curvatures would turn the whole contour: the
 absolute part of the threshold, without which every ripple of a nearly straight stretch would count."""
 
-NO_EXTENT = 1e-9
-"""Share of the contour's length below which pieces and handles are rounding errors and passed over."""
-
 STRAIGHT = 1e-9
 """Product of velocity and acceleration, of a piece of size 1, below which it is straight."""
 
 SLOW = 1e-8
 """Squared speed of a piece of size 1 up to which its polynomials have too few digits for the curvature."""
-
-NARROW = 2.0**-16
-"""Parameter interval that is not halved further to separate extrema: rounding errors decide about these inside it."""
 
 CLOSE = 1e-6
 """Share of an interval by which the last step to an extremum inside moves."""
@@ -129,7 +123,8 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
     """
     m, n = len(cubics), 0
     values, where, places = np.empty(4 * m + MOST + 1), np.empty(4 * m + MOST + 1), np.empty(MOST)
-    least = NO_EXTENT * length
+    # Share of the contour's length below which pieces and handles are rounding errors and passed over.
+    least = 1e-9 * length
     ax = ay = 0.0
     for j in range(m - 1, -1, -1):  # where the last piece of any extent arrives
         if size_of(cubics, j) > least:
@@ -209,7 +204,8 @@ def _places(q: Coefficients, places: FloatArray) -> int:
                 changes += b * last < 0.0
                 last = b
         alone = changes == 1 and p0 * b5 < 0.0
-        if changes > 0 and not alone and width > NARROW:
+        # A shorter interval is not halved to separate extrema: rounding errors decide about these inside it.
+        if changes > 0 and not alone and width > 2.0**-16:
             width /= 2
             continue
         if changes > 0:

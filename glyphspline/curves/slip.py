@@ -36,9 +36,6 @@ from .cubics import length, section
 PARTS = 24
 """Most parts of a chain that are looked at beyond either end of a section."""
 
-FIRST_PART = 1 / 64
-"""The first of them, as a share of a segment; each is twice as long as the one before."""
-
 FLAT = 1e-9
 """Least extent of a derivative along a chord, as a share of its length, that counts as positive."""
 
@@ -145,7 +142,8 @@ def _follow(
         if at >= last if side else at <= last:
             return True, True
         s = int(np.floor(at)) if side else int(np.ceil(at)) - 1
-        step = min(s + 1 - at if side else at - s, FIRST_PART * 2.0**turn)
+        # The first part, as a share of a segment; each is twice as long as the one before.
+        step = min(s + 1 - at if side else at - s, (1 / 64) * 2.0**turn)
         a, b = (at, min(at + step, last)) if side else (max(at - step, last), at)
         least = np.inf
         for v in range(V):

@@ -24,9 +24,6 @@ from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
 from .scan import FontFacts, category_of, script_of
 from .spec import DatasetSpec
 
-SHAPE_STEPS = 10_000
-"""Steps an em to which coordinates are rounded before outlines are compared."""
-
 
 def fits_of(outlines: Sequence[Outline], spec: DatasetSpec) -> list[GlyphResult | GlyphsplineError]:
     """The fit of outlines by the options of ``spec``, whatever way their font stores them; errors in their places.
@@ -103,7 +100,8 @@ def shapes(found: ConvertedContours, ems: FloatArray, offsets: IntArray) -> list
         ems: (C,) units per em. offsets: (R + 1,) where the contours of each group begin.
     """
     source = found.source
-    points = np.rint(source.points * (SHAPE_STEPS / np.repeat(ems, np.diff(source.starts)))[:, None]).astype("<i4")
+    # Steps an em to which coordinates are rounded before outlines are compared.
+    points = np.rint(source.points * (10_000 / np.repeat(ems, np.diff(source.starts)))[:, None]).astype("<i4")
     degrees = source.degrees.astype(np.uint8)
     degrees[source.offsets[:-1]] += 8  # where a contour begins
     hashes: list[str | None] = []

@@ -18,9 +18,6 @@ from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, Me
 
 DEFAULTS = Options()
 
-SNAPPED = 0.0015
-"""Above the distance, in font units, by which readers of fonts snap points; see :class:`.Outline`."""
-
 
 @overload
 def convert_many(
@@ -122,7 +119,8 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
     alike: dict[tuple[float, float], list[int]] = {}
     for k, (outline, _) in enumerate(given):
         # What is set aside of the tolerance is the same for most outlines that were snapped.
-        reserve = max(outline.snapped, SNAPPED) if outline.snapped else 0.0
+        # Above the distance, in font units, by which readers of fonts snap points.
+        reserve = max(outline.snapped, 0.0015) if outline.snapped else 0.0
         alike.setdefault((outline.metrics.units_per_em, reserve), []).append(k)
     results: dict[int, GlyphResult] = {}
     for (em, reserve), those in alike.items():

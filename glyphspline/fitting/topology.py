@@ -25,9 +25,6 @@ from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
 from ..outlines.segments import all_cubics, contour_cubics
 from ..types import BoolArray, FloatArray, IntArray
 
-COLLAPSED = 0.25
-"""A contour whose area is less than this share of its source's, or of the other sign, has collapsed."""
-
 UNCOUNTED = 1_000
 """For how many crossings those count that are not counted."""
 
@@ -106,7 +103,8 @@ def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> 
                 new[list({c, d})] += max(number - known[c - a, d - a], 0)
     both = [[area(contour_cubics(of, c)) for c in range(of.num_contours)] for of in (source, written)]
     before, now = np.array(both)
-    collapsed = now * np.sign(before) < COLLAPSED * np.abs(before)
+    # A contour whose area is less than this share of its source's, or of the other sign, has collapsed.
+    collapsed = now * np.sign(before) < 0.25 * np.abs(before)
     for c in np.flatnonzero(collapsed).tolist():
         collapsed[c] = not _crossing_pairs(source.part(c, c + 1), np.array([0, 1]))[0]
     return Changes(new, collapsed)

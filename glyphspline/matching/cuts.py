@@ -17,9 +17,6 @@ POSITION, DIRECTION, UNLIKE = 3.0, 0.5, 0.8
 """Cost of a pair: of the squared distance between its places in the contours' boxes, which are 1 wide and high, of the
 squared differences of its unit tangents on both sides, and of the difference of its weights."""
 
-STRETCH = 1.0
-"""Cost of a stretch between two pairs that is longer by the length of the whole contour."""
-
 STARTS = (4, 5)
 """Landmarks from which alignments are tried, the most distinct ones, and partners tried for each."""
 
@@ -33,17 +30,8 @@ BEND = 1.5
 PLACE = 1.0
 """How much less alike two pieces are for the squared distance between their places in the contours' boxes."""
 
-GAIN = 0.03
-"""Weight of pairs of landmarks, where two contours that are alike all along have the weight 1."""
-
-CONTRAST = 0.5
-"""Share of the difference of their weights that two landmarks which are a pair do not gain."""
-
 SNAP = 5e-3
 """Of the em: joints of both contours that would be cut nearer than this to each other become a pair."""
-
-SLIVER = 5e-4
-"""Of the em: joints nearer than this are one, whatever their tangents."""
 
 PARALLEL = np.radians(25.0)
 """Largest angle between the tangents of two joints that become a pair by being near."""
@@ -77,7 +65,8 @@ def _strong_pairs(one: Landmarks, other: Landmarks, costs: FloatArray) -> tuple[
     bars = one.weights[rows, None] + other.weights[columns]
     own = costs[np.ix_(rows, columns)]
     allowed = np.where(own < bars, own, np.inf)
-    cost, pairs = cheapest_pairs(allowed, one.table(rows), other.table(columns), _starts(allowed, bars), STRETCH)
+    # Cost of a stretch between two pairs that is longer by the length of the whole contour.
+    cost, pairs = cheapest_pairs(allowed, one.table(rows), other.table(columns), _starts(allowed, bars), 1.0)
     if not cost < np.inf:
         return np.array([np.unravel_index(int(costs.argmin()), costs.shape)]), 0.0
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))
@@ -107,7 +96,8 @@ def pair_gains(one: Landmarks, other: Landmarks) -> FloatArray:
 
     A corner gains by any joint that turns little against it: a joint that one master shows was drawn in both.
     """
-    gains = one.weights[:, None] + other.weights - CONTRAST * np.abs(one.weights[:, None] - other.weights)
+    # Share of the difference of their weights that two landmarks which are a pair do not gain.
+    gains = one.weights[:, None] + other.weights - 0.5 * np.abs(one.weights[:, None] - other.weights)
     for mine, its in ((one.before, other.before), (one.after, other.after)):
         gains -= DIRECTION * (1 - np.cos(mine[:, None] - its))
     return np.maximum(gains, 0.0)
@@ -178,7 +168,8 @@ def _aligned(one: _Lap, other: _Lap) -> FloatArray:
     alike = np.cos(np.minimum(BEND * np.abs(wrapped(one.ways[:, None] - other.ways)), np.pi / 2))
     alike -= PLACE * (apart * apart).sum(axis=2)
     gains = np.zeros((len(one.nodes), len(other.nodes)))
-    gains[np.ix_(one.marks, other.marks)] = GAIN * pair_gains(one.of, other.of)[np.ix_(one.inner, other.inner)]
+    # Weight of pairs of landmarks, where two contours that are alike all along have the weight 1.
+    gains[np.ix_(one.marks, other.marks)] = 0.03 * pair_gains(one.of, other.of)[np.ix_(one.inner, other.inner)]
     mine, its = (np.maximum(np.diff(lap.nodes), 1e-9) for lap in (one, other))
     pairs = elastic_nodes(mine, its, alike, gains)
     s, t = one.nodes[pairs[:, 0]], other.nodes[pairs[:, 1]]
@@ -201,7 +192,8 @@ def _same(one: _Lap, x: FloatArray, other: _Lap, y: FloatArray) -> IntArray:
     gap = apart
     for before in (True, False):
         mine, its = (lap.of.rows(lap.joints, before=before)[:, 1] for lap in (one, other))
-        gap = np.where((np.abs(wrapped(mine[:, None] - its)) < PARALLEL) | (apart < SLIVER), gap, np.inf)
+        # Of the em: joints nearer than this are one, whatever their tangents.
+        gap = np.where((np.abs(wrapped(mine[:, None] - its)) < PARALLEL) | (apart < 5e-4), gap, np.inf)
     found: list[tuple[int, int]] = []
     for k in np.argsort(gap, axis=None, kind="stable").tolist():
         i, j = divmod(k, len(y))

@@ -22,9 +22,6 @@ _T = np.arange(STEPS + 1) / STEPS
 SLOPES = np.array([(1 - _T) ** 2, 2 * _T * (1 - _T), _T**2])
 """(3, STEPS + 1) the quadratic Bernstein polynomials, of the derivative of a cubic, at the steps."""
 
-FULL_TURN = 60.0
-"""Degrees of turn from which a corner is as weighty as a corner can be."""
-
 CORNER = (0.4, 1.0)
 """Weight of a corner of the least turn, and of a full one."""
 
@@ -42,9 +39,6 @@ STRAIGHT = 2.0
 SHOWS, REACH = 12.0, 0.06
 """Degrees of turn from which the end of a line or a jump of curvature has its full weight; of a jump those within so
 much of the em."""
-
-CURVED = 5.0
-"""Degrees of turn from which a segment is curved enough to have an extremum of its own."""
 
 HEIGHT = 2e-3
 """Of the em: the height by which a contour rises to an extremum and falls again."""
@@ -103,7 +97,8 @@ class Landmarks:
         one, other = (np.arctan2(ROUNDING, np.hypot(*arms.T)) for arms in (first_arms, last_arms))
         degrees = np.degrees(np.maximum(np.abs(self._turns) - one - np.roll(other, 1), 0.0))
         corner: BoolArray = degrees >= CORNER_ANGLE
-        share = np.clip((degrees - CORNER_ANGLE) / (FULL_TURN - CORNER_ANGLE), 0, 1)
+        # Degrees of turn from which a corner is as weighty as a corner can be.
+        share = np.clip((degrees - CORNER_ANGLE) / (60.0 - CORNER_ANGLE), 0, 1)
         straight = line | (np.degrees(self._bent) < STRAIGHT)
         end, jump = self._breaks()
         smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * end, BREAK * jump)
@@ -111,7 +106,8 @@ class Landmarks:
         weights = np.where(corner, CORNER[0] + (CORNER[1] - CORNER[0]) * share, smooth)
         table, directions = self.rows(joints).T
         places = []
-        curved = self._bent >= np.radians(CURVED)
+        # Degrees of turn from which a segment is curved enough to have an extremum of its own.
+        curved = self._bent >= np.radians(5.0)
         for k in (0, 1):
             tilt = np.abs(np.sin(directions + (np.pi / 2 if k == 0 else 0.0)))
             for place in extremal_places(self.cubics[..., k], HEIGHT * self.em):

@@ -29,9 +29,6 @@ from .ink import ink_sides
 from .outline import Contours, Outline
 from .segments import contour_cubics, lasting
 
-NO_AREA = 1e-9
-"""Area relative to the square of a contour's extent below which its sign is rounding."""
-
 
 def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
     """The same shapes in the one way of storing them that this module says."""
@@ -88,7 +85,8 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
             n, m = len(p), len(d)
             backward, its = np.concatenate((p[:1], p[:0:-1])), d[::-1].copy()
             ink, extent = area(cubics), max(np.ptp(p[:, 0]), np.ptp(p[:, 1]))
-            if abs(ink) > NO_AREA * extent * extent:
+            # Area relative to the square of a contour's extent below which its sign is rounding.
+            if abs(ink) > 1e-9 * extent * extent:
                 reverse = sides[c - a] < 0.0
             else:
                 reverse = _compare(backward, its, _first_joint(backward, its), p, d, _first_joint(p, d)) < 0

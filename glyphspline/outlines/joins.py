@@ -13,9 +13,6 @@ from ..types import BoolArray, FloatArray
 from .outline import Contour
 from .sampling import CORNER_ANGLE
 
-TANGENT_ANGLE = 0.5
-"""Degrees of turn from which a tangent is broken: rounding to whole units turns smooth joins by less."""
-
 Kind = Literal["corner", "G1", "G2"]
 
 
@@ -39,7 +36,8 @@ class Joins:
         A join has at most one kind. ``least_jump`` is the smallest jump of curvature that counts, in 1/unit.
         """
         turn = np.degrees(np.abs(self.turns))
-        corner, broken = turn >= CORNER_ANGLE, turn >= TANGENT_ANGLE
+        # Degrees of turn from which a tangent is broken: rounding to whole units turns smooth joins by less.
+        corner, broken = turn >= CORNER_ANGLE, turn >= 0.5
         if kind == "corner":
             return corner
         return broken & ~corner if kind == "G1" else ~broken & (np.abs(self.jumps) >= least_jump)

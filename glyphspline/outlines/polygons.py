@@ -18,9 +18,6 @@ MOST_POINTS = 5_000_000
 ROUNDING = 16 * np.finfo(np.float64).eps
 """Bound of the rounding errors of a point, relative to the largest coordinate."""
 
-SHIFT = 1e-9
-"""Of the extent: corners are taken to be so far from where they are, each its own way, so that none lies on a side."""
-
 GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
 """The fractional parts of its multiples are spread evenly over the unit square."""
 
@@ -95,7 +92,8 @@ def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
     points = np.concatenate(polygons)
     count = len(points)
     extent = float(np.ptp(points, axis=0).max())
-    moved = points + SHIFT * extent * (np.outer(np.arange(1, count + 1), GOLDEN) % 1 - 0.5)
+    # Of the extent: corners are taken to be so far from where they are, each its own way, so that none lies on a side.
+    moved = points + 1e-9 * extent * (np.outer(np.arange(1, count + 1), GOLDEN) % 1 - 0.5)
     follows = np.arange(1, count + 1)
     some = np.flatnonzero(np.diff(starts))
     follows[starts[some + 1] - 1] = starts[some]

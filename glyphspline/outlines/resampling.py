@@ -27,9 +27,6 @@ EXACT = 1e-9
 DEPTH = 24
 """Most halvings of a segment: about a cusp, what is left then is too short to matter."""
 
-STILL = 1e-9
-"""Speed relative to the control polygon's length below which a place has no curvature."""
-
 
 class Resampled(NamedTuple):
     """Points of C contours end to end.
@@ -202,7 +199,8 @@ def _frame(cubics: FloatArray, s: int, x: float, line: bool, point: FloatArray, 
     speed, scale = np.sqrt(dx * dx + dy * dy), 0.0
     for k in range(3):
         scale += abs(cubics[s, k + 1, 0] - cubics[s, k, 0]) + abs(cubics[s, k + 1, 1] - cubics[s, k, 1])
-    if speed > STILL * scale:
+    # Speed relative to the control polygon's length below which a place has no curvature.
+    if speed > 1e-9 * scale:
         tangent[0], tangent[1] = dx / speed, dy / speed
         return 0.0 if line else (tangent[0] * (ey / speed) - tangent[1] * (ex / speed)) / speed
     ax, ay, bx, by = directions(cubics, s, 0.0)

@@ -15,14 +15,8 @@ from .pages import page_of
 PRECISION = 2
 """Decimals of the drawings."""
 
-CLOSE_UP = 12.0
-"""Side of the close-up around the worst place, in distances of the outlines there; half the glyph's at most."""
-
 LEAST = 0.004
 """Half the side of the smallest close-up, in em."""
-
-EDGE = 0.06
-"""Free space around a glyph, in its sizes."""
 
 Drawn = tuple[Difference, Outline | None, Outline | None]
 """A difference with both outlines; None for one that could not be read."""
@@ -52,12 +46,14 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
         box = data.box if box is None else union(box, data.box)
     em = 1000.0 if old is None else old.metrics.units_per_em
     left, bottom, right, top = box or (0.0, 0.0, em, em)
-    edge = EDGE * max(right - left, top - bottom)
+    # Free space around a glyph, in its sizes.
+    edge = 0.06 * max(right - left, top - bottom)
     whole = drawing("Both outlines", (left - edge, bottom - edge, right + edge, top + edge), paths, marks(each, em))
     close = ""
     if each.worst is not None and not each.identical:
         size = max(right - left, top - bottom)
-        half = max(min(CLOSE_UP / 2 * each.seen, size / 4), 0.75 * each.seen, LEAST * em)
+        # Side of the close-up around the worst place, in distances of the outlines there; half the glyph's at most.
+        half = max(min(12.0 / 2 * each.seen, size / 4), 0.75 * each.seen, LEAST * em)
         x, y = ((a + b) / 2 for a, b in zip(each.worst.point, each.worst.nearest, strict=True))
         around = (x - half, y - half, x + half, y + half)
         close = drawing("Close-up of the worst place", around, paths, marks(each, em, half), "close")

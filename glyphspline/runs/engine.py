@@ -20,14 +20,8 @@ from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 from ..errors import GlyphsplineError, OutputError
 from .pool import TimeLimitError, WorkerLostError, pool_size, sign_of_life
 
-CHUNKS = 8
-"""Chunks for each worker at least, so that the workers finish at about the same time."""
-
 AHEAD = 4
 """Chunks in flight for each worker, so that none waits: two in the worker, and two in the queue."""
-
-TRIALS = 3
-"""Attempts at a task whose worker died: the task need not be the cause."""
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -112,7 +106,8 @@ def run(
     """
     total = before + len(tasks) if total is None else total
     if chunks is None:
-        chunks = slices(tasks, max(1, min(job.chunk, len(tasks) // (CHUNKS * pool_size(pool)))))
+        # Chunks for each worker at least, so that the workers finish at about the same time.
+        chunks = slices(tasks, max(1, min(job.chunk, len(tasks) // (8 * pool_size(pool)))))
     most = 2 * AHEAD * pool_size(pool)
     yielded, waiting = 0, dict[int, Part[Task, Result]]()
 
@@ -171,7 +166,8 @@ def _spread(
                 try:
                     parts = future.result()
                 except (WorkerLostError, TimeLimitError) as error:
-                    if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < TRIALS):
+                    # Attempts at a task whose worker died: the task need not be the cause.
+                    if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < 3):
                         again.extend((k, [task], trial + 1) for k, task in enumerate(chunk, number))
                         continue
                     parts = [_failed(job, chunk[0], error)]

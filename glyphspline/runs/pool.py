@@ -61,9 +61,6 @@ def pool_size(pool: Executor) -> int:
     return int(getattr(pool, "_max_workers", 1))
 
 
-ORPHANED = 2.0
-"""Times the time limit after which a process ends itself: the one that would have ended it has been killed."""
-
 ASKED = "GLYPHSPLINE_PRELOAD"
 """Environment variable of the process from which workers are forked: what it loads, separated by spaces."""
 
@@ -89,7 +86,8 @@ def sign_of_life() -> None:
     """Restart the time limit: a long call calls this between its parts."""
     if _last_sign is not None:
         _last_sign.value = time.monotonic()
-        _end_after(ORPHANED * _limit)
+        # Times the time limit after which a process ends itself: the one that would have ended it has been killed.
+        _end_after(2.0 * _limit)
 
 
 def _end_after(seconds: float) -> None:

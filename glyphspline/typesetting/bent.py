@@ -28,18 +28,6 @@ BETWEEN = 1.02
 ROUNDS = 8
 """Fits of a cubic's handles to the points of its deformed one."""
 
-ENOUGH = 0.5
-"""Share of the tolerance below which a cubic's handles are not fitted any more."""
-
-ROUNDING_RADIUS = 4.0
-"""Small kinks of the path are rounded by this radius, in heights of the text."""
-
-VISIBLE = 1e-4
-"""Radians by which a jump of the path's curvature may turn a line of the text without being kept as a joint."""
-
-MOST_PIECES = 512
-"""Pieces of one segment. Next to a fold more and more are needed."""
-
 AT_ONCE = 4096
 """Cubics fitted at once: some 50 MB."""
 
@@ -95,12 +83,14 @@ def bend(
     contours = np.repeat(np.arange(len(flat.contours)), [len(contour) for contour in flat.contours])[kept]
     cubics, degrees = cubics[kept], flat.arrays.degrees[kept]
     height = float(np.abs(cubics[..., 1]).max())
-    smooth = path.rounded(ROUNDING_RADIUS * height) if height else path
+    # Small kinks of the path are rounded by this radius, in heights of the text.
+    smooth = path.rounded(4.0 * height) if height else path
     line = _Line(smooth, layout.text, letters, start, smooth.length / path.length, cubics)
     ends, turns, jumps = _joints(smooth, line.rounds)
     corner = np.abs(turns) > SMOOTH
     line.refuse_corners(ends[corner], turns[corner])
-    kept = corner | (np.abs(jumps) * height > VISIBLE)
+    # Radians by which a jump of the path's curvature may turn a line of the text without being kept as a joint.
+    kept = corner | (np.abs(jumps) * height > 1e-4)
     cubics, parent = _cut(line.cubics, ends[kept])
     pieces, order, error, stretch = _fitted(line, cubics, tolerance)
     parent = parent[order]
@@ -231,7 +221,8 @@ def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArr
         todo = todo[most[todo] > tolerance]
         more = np.minimum(0.9 * (most[todo] / tolerance) ** (1 / 6), 2.0) * count[todo]
         count[todo] = np.maximum(np.ceil(more).astype(np.int64), count[todo] + 1)
-        if len(todo) and count[todo].max() > MOST_PIECES:
+        # Pieces of one segment. Next to a fold more and more are needed.
+        if len(todo) and count[todo].max() > 512:
             k = int(todo[count[todo].argmax()])
             raise GlyphsplineError(
                 f"{line.letter(float(cubics[k, :, 0].mean()))} cannot be bent within {tolerance:g}: "
@@ -264,7 +255,8 @@ def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, 
     first, last = _mapped_arm(line.path, parts, 0), _mapped_arm(line.path, parts, 3)
     pieces = np.stack([target[:, 0], target[:, 0] + first, target[:, -1] - last, target[:, -1]], axis=1)
     error = np.sqrt(((np.einsum("jp,kjc->kpc", basis, pieces) - target) ** 2).sum(axis=2).max(axis=1))
-    enough, handles = ENOUGH * tolerance, np.empty((2, 2))
+    # Share of the tolerance below which a cubic's handles are not fitted any more.
+    enough, handles = 0.5 * tolerance, np.empty((2, 2))
     for k in np.flatnonzero(error > enough).tolist():
         ways = np.stack([first[k] / np.hypot(*first[k]), last[k] / np.hypot(*last[k])])
         off = fit_cubic(target[k], ways, (False, False), enough, ROUNDS, handles)

@@ -18,12 +18,6 @@ from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from .setting import Place
 
-RELATIVE = 2e-7
-"""A part of the table is halved while its control polygon is longer than its chord by more than this share."""
-
-NEGLIGIBLE = 1e-10
-"""No part shorter than this share of the path is halved, as next to a cusp."""
-
 MOST_PARTS = 1 << 20
 """Limit of parts of the table; ``length_error`` tells what they miss."""
 
@@ -35,9 +29,6 @@ SMOOTH = 1e-7
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Extents of a path; squares of others would under- or overflow."""
-
-EVEN = 1.1
-"""A part is halved, too, while its control polygon's longest leg is longer than its shortest by more than this."""
 
 NEWTON_STEPS = 2
 """To a parameter from an arc length: within a part the speed is almost constant."""
@@ -206,8 +197,11 @@ class Path:
             legs = np.hypot(*np.moveaxis(np.diff(parts, axis=1), -1, 0))
             polygon = legs.sum(axis=1)
             gap = polygon - np.hypot(*(parts[:, 3] - parts[:, 0]).T)
-            long = (gap > RELATIVE * polygon) | (legs.max(axis=1) > EVEN * legs.min(axis=1))
-            long &= polygon > NEGLIGIBLE * polygon.sum()
+            # A part of the table is halved while its control polygon is longer than its chord by more than this share.
+            # A part is halved, too, while its control polygon's longest leg is more than 1.1 times its shortest.
+            long = (gap > 2e-7 * polygon) | (legs.max(axis=1) > 1.1 * legs.min(axis=1))
+            # No part shorter than this share of the path is halved, as next to a cusp.
+            long &= polygon > 1e-10 * polygon.sum()
             if not long.any() or len(parts) + int(long.sum()) > MOST_PARTS:
                 break
             left, right = split(parts[long])

@@ -22,12 +22,6 @@ NO_HANDLE = 1e-9
 SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
 
-ONE_DIRECTION = 1e-3
-"""Masters' lines have one direction if they turn by no more than this from each other, in radians."""
-
-MASTERS_RATIO = 3.0
-"""Ratio of adjacent steps from which samples are denser if there are several masters."""
-
 BEND, KINK = 0.004, 0.065
 """A spline whose vertices are h apart misses an outline by about BEND h⁴ κ³ where it bends, and by KINK h sin θ where
 it turns by θ."""
@@ -101,7 +95,8 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                 first_way, turn, straight = leaving[0, j], 0.0, cubics[:, j if line[j] else (j - 1) % m].copy()
                 for v in range(masters):
                     turn = max(turn, abs(leaving[v, j, 0] * first_way[1] - leaving[v, j, 1] * first_way[0]))
-                tied[j], size = not turn < ONE_DIRECTION, chord(straight, 0, 3)
+                # Masters' lines have one direction if they turn by no more than this from each other, in radians.
+                tied[j], size = not turn < 1e-3, chord(straight, 0, 3)
                 for v in range(masters if tied[j] else 0):  # the line's vectors in the masters
                     for axis in range(2):
                         arriving[v, j, axis] = (straight[v, 3, axis] - straight[v, 0, axis]) / size
@@ -204,7 +199,8 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
 
     Halved beside a step that differs a little, as they do between masters, steps would be halved all along the outline.
     """
-    m, most = cubics.shape[1], 2.0 if len(cubics) == 1 else MASTERS_RATIO
+    # Ratio of adjacent steps from which samples are denser if there are several masters.
+    m, most = cubics.shape[1], 2.0 if len(cubics) == 1 else 3.0
     while True:
         n = len(places) - 1
         step, long = np.empty(n), np.zeros(n, dtype=np.bool_)

@@ -33,9 +33,6 @@ SEGMENT_PRICE = 1.5
 PRICE_OF_LINE, PRICE_OF_CUBIC = 2.0 + SEGMENT_PRICE, 6.0 + SEGMENT_PRICE
 """Prices of a line, which stores 2 numbers, and of a cubic, which stores 6."""
 
-NEAR_MISS = 2.0
-"""Cubics that miss the tolerance by less than this factor do not rule out longer ones."""
-
 
 @compiled
 def fit_cubic(
@@ -308,7 +305,8 @@ def add_chain(joints: Joints, i: int, j: int, settings: Settings, pieces: Pieces
                 best = (nodes[at] - nodes[a]) * PRICE_OF_CUBIC + rest[at]
                 break
             out[at:] = True
-            if not errors[a] < NEAR_MISS * near:
+            # Cubics that miss the tolerance by less than this factor do not rule out longer ones.
+            if not errors[a] < 2.0 * near:
                 # A near miss may be due to the tangent here: it says little of what begins before.
                 carried[at:] = True
         rest[a], following[a] = best, at

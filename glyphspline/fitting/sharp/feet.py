@@ -14,14 +14,8 @@ from .spline_curve import SHORT, Curve
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
 
-NOTICED = 0.5
-"""Points of the curve between two feet count from this share of the tolerance on."""
-
 ASIDE, BENT = 1.0, 0.5
 """What a unit of slip costs across the curve, by the sine of a master's angle to the others and by its bend."""
-
-LONGEST_LEVER = 2.0
-"""Most that a unit of slip counts."""
 
 
 class Samples(NamedTuple):
@@ -135,7 +129,8 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
                 along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
                 ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
                 away = length(ex, ey)
-                if away > NOTICED * near:
+                # Points of the curve between two feet count from this share of the tolerance on.
+                if away > 0.5 * near:
                     span[count], x[count], e[count] = s, at, away
                     nx[count], ny[count] = ex / away, ey / away
                     count += 1
@@ -184,7 +179,8 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
         for v in range(masters):
             slip = (at[v] - mean / total) * speed[v] if total > 0.0 else 0.0
             aside = abs(nx * rows.ny[v, j] - ny * rows.nx[v, j]) / size
-            lever = min(ASIDE * (1 - 1 / masters) * aside + BENT * bend[v] * abs(slip), LONGEST_LEVER)
+            # Most that a unit of slip counts.
+            lever = min(ASIDE * (1 - 1 / masters) * aside + BENT * bend[v] * abs(slip), 2.0)
             rows.slip[v, j], rows.lever[v, j] = slip, lever
             worst = max(worst, abs(rows.e[v, j]) + lever * abs(slip))
     return worst

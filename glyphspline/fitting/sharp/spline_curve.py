@@ -26,9 +26,6 @@ from ...types import FloatArray, IntArray
 SHORT = 0.01
 """Share of a span below which Newton's step to a footpoint, of a vertex or of a sample, is the last."""
 
-MOST_PASSES = 200
-"""Passes of variant 2 before a curve counts as lost."""
-
 SHORTEST_HANDLE, LONGEST_HANDLE = 1 / 8, 4 / 3
 """Lengths between which the end handles of an arc are kept, in chords of their end: shorter ones end in a spike of
 curvature."""
@@ -258,4 +255,5 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
         low, high, _, _ = one_interval(before, after, c, 1.0)
         curve.bounds[i, 0], curve.bounds[i, 1] = low, high
         curve.t[i] = min(max(0.0, low), high)
-    return iterate(curve, tolerance, MOST_PASSES)
+    # Passes of variant 2 before a curve counts as lost.
+    return iterate(curve, tolerance, 200)

@@ -26,9 +26,6 @@ from .spline_curve import FREE, TIED, Curve, empty_curve, span_weights
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
 
-RATIO_ROOM = 0.85
-"""Ratios above this share of the bound are held back."""
-
 BAND = 8
 """Unknowns that meet in one equation: those of four slots."""
 
@@ -214,7 +211,8 @@ def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
 @compiled
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
-    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(RATIO_ROOM * LARGEST_RATIO)
+    # Ratios above this share of the bound are held back.
+    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(0.85 * LARGEST_RATIO)
     return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
 
 

@@ -45,13 +45,6 @@ from .spline_equations import (
 )
 from .vertices import FAR, fix_on_outline, insert_vertices, keep, measure_fixed, place_vertices, resize, samples_between
 
-MOST_SPANS = 1000
-"""Spans of one spline at most: what needs more stays as the source has it."""
-
-SOME_MORE = 30.0
-"""A cubic that misses the tolerance by less than this factor is followed by a try with two spans: this saves 483
-segments with "fast"; without a limit 289 more, for 1.4 times the time."""
-
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
 
@@ -67,15 +60,6 @@ WARM_PASSES, WARM = 12, 0.02
 
 DAMPING = 1e-2
 """Damping of the first step, as a share of the mean of the diagonal."""
-
-FAIRNESS = 1e-2
-"""Weight of the curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord."""
-
-MOST_SLIDE = 0.3
-"""A vertex moves along the curve by this share of its shorter chord at most."""
-
-FAILURES = 4
-"""Steps that fail in a row before a fit is given up."""
 
 
 @compiled
@@ -103,8 +87,11 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
     pieces.errors[q] = np.inf
     wanted = int(np.rint(settings.guess * min(samples.D[-1], len(samples.places))))
     least = 4 if closed else (2 if alone else 1)
-    guess = 2 if not closed and missed < SOME_MORE * near else max(least, wanted)
-    if max(guess, begun) > min(MOST_SPANS if settings.c2 else 1, most):
+    # A cubic that misses the tolerance by less than this factor is followed by a try with two spans: this saves 483
+    # segments with "fast"; without a limit 289 more, for 1.4 times the time.
+    guess = 2 if not closed and missed < 30.0 * near else max(least, wanted)
+    # Spans of one spline at most: what needs more stays as the source has it.
+    if max(guess, begun) > min(1000 if settings.c2 else 1, most):
         return
     may_fix = settings.round_corners and closed > 0
     owned = empty_fit(samples, near, settings, min((8 if may_fix else 2) * max(wanted, 4, begun) + 16, most), closed)
@@ -238,7 +225,8 @@ def improve(fit: Fit, rounds: int, width: int) -> float:
     wobble = 0.0
     for s in range(k):
         wobble += curve.h[s + 2]
-    wobble = FAIRNESS * (wobble / k) ** 3
+    # Weight of the curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord.
+    wobble = 1e-2 * (wobble / k) ** 3
     damping, failures = DAMPING, 0
     for n in range(rounds + 1):
         graded = error <= near
@@ -276,7 +264,8 @@ def improve(fit: Fit, rounds: int, width: int) -> float:
                 break
             failures += 1
             damping *= 10
-            if failures >= FAILURES:
+            # Steps that fail in a row before a fit is given up.
+            if failures >= 4:
                 return max(error, np.nextafter(near, np.inf))
         failures, damping = 0, damping / 4
         copy_curve(trial, curve)
@@ -302,7 +291,8 @@ def _advance(fit: Fit, share: float) -> bool:
                 continue
             nu, sigma = share * step[r], share * step[r + 1]
             if closed or 0 < i < k:
-                most = MOST_SLIDE * min(h[i + 1], h[i + 2]) / knots_per_step(curve, v, i)
+                # A vertex moves along the curve by this share of its shorter chord at most.
+                most = 0.3 * min(h[i + 1], h[i + 2]) / knots_per_step(curve, v, i)
                 sigma = min(max(sigma, -most), most)
             step[r], step[r + 1] = nu, sigma
             for axis in range(2):

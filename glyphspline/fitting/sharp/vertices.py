@@ -27,9 +27,6 @@ AIM, POWER = 0.85, 0.4
 """Share of the tolerance that spacing aims at, and the power of a span's error with which its vertices become denser: a
 quarter is right where the outline is smooth, one beside a corner."""
 
-STEEP = 3.0
-"""Ratio of adjacent chords from which the longer one is cut where vertices are fixed."""
-
 
 @compiled
 def samples_between(joints: Joints, i: int, j: int, closed: int) -> Samples:
@@ -251,7 +248,8 @@ def place_fixed(fit: Fit, fixed: int) -> bool:
             last, after = s - 1 if s > 0 else k - 1, s + 1 if s + 1 < k else 0
             own = chord(curve.p, s, after)
             beside = min(chord(curve.p, last, s), chord(curve.p, after, after + 1 if after + 1 < k else 0))
-            cut[s] = own > STEEP * beside
+            # Ratio of adjacent chords from which the longer one is cut where vertices are fixed.
+            cut[s] = own > 3.0 * beside
         if not cut[:k].any():
             return True
 

@@ -30,12 +30,6 @@ from .spacing import growth_of
 ROUNDS = 80
 """Rounds before giving up."""
 
-EARLY = 1
-"""Rounds that also remove vertices that seem unnecessary."""
-
-LAID = 6
-"""Rounds that lay vertices anew; later ones put them into the spans that fail, which ends sooner but is uneven."""
-
 POWERS = (3.0, 2.0, 1.5, 1.0)
 """In turn, the assumed power of a span's length with which its error grows when a vertex is removed."""
 
@@ -52,7 +46,8 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = SMOOTH_TRIES[attempt]
         search = _Search(canonical_contours(contours), options, share * tolerance)
-        search.refine(EARLY if early is None else early)
+        # One round also removes vertices that seem unnecessary.
+        search.refine(1 if early is None else early)
         search.thin()
         return search.converted(contours, tolerance)
 
@@ -109,7 +104,8 @@ class _Search:
             left[which] -= passed[which]
             which, places, offsets = steps.changed(
                 contours, fields, done.trial, near, ~passed, fewer, self.angle, ratio, factor,
-                POWERS[turn % len(POWERS)], turn < LAID,
+                # Later rounds put vertices into the spans that fail, which ends sooner but is uneven.
+                POWERS[turn % len(POWERS)], turn < 6,
             )  # fmt: skip
             if len(which) == 0:
                 break

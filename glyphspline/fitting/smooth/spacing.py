@@ -36,14 +36,8 @@ GROWTH, FASTEST = 0.97, 4.0
 AT_CORNER_3, GROWTH_3 = 0.1, 2.5
 """The same for variant 3."""
 
-FLATTEST = 0.1
-"""Corners count as if the sine of their angle were at least this."""
-
 BEND = 2.5
 """A chord turns by no more than this, in radians, unless it is as short as the tolerance."""
-
-SPARE = 0.05
-"""Share of a vertex by which an integral may exceed a whole number without one more."""
 
 FEWEST, MOST = 4, 2000
 """Vertices that a contour has at least, and up to which its polygon is refined."""
@@ -53,9 +47,6 @@ BELOW, LEAST = 0.95, 0.4
 
 SHORTEST = 1e-5
 """No span shorter than this share of the contour is divided: it would end in duplicate vertices."""
-
-NEAR_RATIO = 0.98
-"""Share of the ratio allowed that a chord cut off beside a shorter one has to it."""
 
 MARGIN = 0.3
 """Share of a span at either end where it is not divided."""
@@ -105,7 +96,8 @@ def first_field(
             at = j * TABLE + k
             field[at] = min(field[at], max(h, near))
     for j in range(m):
-        h = first / at_corner * near / max(np.sin(turns[j]), FLATTEST) if turns[j] > 0.01 else np.inf
+        # Corners count as if the sine of their angle were at least this.
+        h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
         jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
         if jump > 0:
             h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
@@ -229,7 +221,8 @@ def laid(field: FloatArray, lengths: FloatArray, places: FloatArray, corners: In
         parts[k] = spans_after(corners, k, n)
         if again[k]:
             wholes[k] = spans_in(steps, places, corners, k)
-            parts[k] = max(int(np.ceil(wholes[k] - SPARE)), 1)
+            # Share of a vertex by which an integral may exceed a whole number without one more.
+            parts[k] = max(int(np.ceil(wholes[k] - 0.05)), 1)
         total += parts[k]
     while total < FEWEST:
         for k in range(count):
@@ -304,7 +297,8 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
         for i in range(n):
             before, after = chords[i - 1], chords[(i + 1) % n]
             if chords[i] > ratio * min(before, after):
-                cut = min(NEAR_RATIO * ratio * min(before, after) / chords[i], 0.5)
+                # Share of the ratio allowed that a chord cut off beside a shorter one has to it.
+                cut = min(0.98 * ratio * min(before, after) / chords[i], 0.5)
                 parts[i], shares[i] = 2, cut if before <= after else 1 - cut
         places = divided(lengths, places, at, h, parts, shares)
         if len(places) == n:

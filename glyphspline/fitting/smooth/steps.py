@@ -19,9 +19,6 @@ from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, CanonicalContours, points_at, table_of
 from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, spans_after, with_more
 
-ROUGHLY = 0.1
-"""Sharpness of the bounds during the search, as a share of the distance allowed."""
-
 
 @compiled
 def first_places(
@@ -111,7 +108,8 @@ def measured(
             y, y_end = begins[j], begins[j + 1]
             found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
             pair_span(
-                1, spans, j, 0.0, 1.0, outline, y, y_end, no_arc, False, near - rounding, ROUGHLY * near, work, marks,
+                # Sharpness of the bounds during the search, as a share of the distance allowed.
+                1, spans, j, 0.0, 1.0, outline, y, y_end, no_arc, False, near - rounding, 0.1 * near, work, marks,
                 found,
             )  # fmt: skip
             bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]

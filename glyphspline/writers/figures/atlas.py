@@ -29,9 +29,6 @@ COLUMNS, ROWS = 3, 4
 CELL = 1.3
 """Side of a glyph's cell in em: the glyph and its comb."""
 
-PROFILES = 4
-"""Maximum number of contours of a glyph whose κ(s) is drawn, the longest first."""
-
 JUMP = 0.25
 """Smallest jump of curvature, in units of the scale, that is marked as a break: half a colour class."""
 
@@ -118,7 +115,8 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
     """One glyph: the source with its breaks, the result, and κ(s) of its longest contours, as a figure."""
     em = glyph.outline.metrics.units_per_em
     figure = headed(label(glyph.outline), glyph.options.words)
-    longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:PROFILES]
+    # Maximum number of contours of a glyph whose κ(s) is drawn, the longest first.
+    longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:4]
     grid = figure.add_gridspec(
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
         height_ratios=[2.2] + [1] * len(longest),
