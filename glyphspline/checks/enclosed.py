@@ -26,14 +26,9 @@ from ..types import BoolArray, FloatArray, IntArray
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP
 from .segments import ROUNDING, Segments
 
-STEPS = 16
-"""Chords a segment on the two sides of a spur."""
-
-HALVINGS = 20
-"""Of a chord, for the place where the sides of a spur part."""
-
-MOST_HALVINGS = 128
-"""Most halvings of a segment for a ray: those around the ray's beginning are points by then."""
+STEPS, HALVINGS, MOST_HALVINGS = 16, 20, 128
+"""Chords a segment on the two sides of a spur. Halvings of a chord, for the place where the sides of a spur part. Most
+halvings of a segment for a ray: those around the ray's beginning are points by then."""
 
 
 def enclosed_findings(

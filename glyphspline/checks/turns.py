@@ -29,8 +29,7 @@ INSIDE = 1e-9
 SAMPLES = 9
 """Places between two ticks where the jump of curvature is sampled first."""
 
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-STEPS = 32
+GOLDEN, STEPS = 0.5 * (np.sqrt(5.0) - 1.0), 32
 """Steps of golden section from two samples' distance: to 1e-7 of it."""
 
 

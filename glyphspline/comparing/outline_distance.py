@@ -28,20 +28,16 @@ from ..curves.cubics import extent, length, nearest, section
 from ..curves.pairing import ROUNDING, apart
 from ..types import FloatArray, IntArray
 
-SHARP = 0.01
-"""The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em."""
-
-SLACK = 0.01
-"""Share of this sharpness by which points are not nearer than the nearest ones found."""
+SHARP, SLACK = 0.01, 0.01
+"""The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em. Share of
+this sharpness by which points are not nearer than the nearest ones found."""
 
 LONGEST = 8
 """Segments up to which a stretch is paired with one section."""
 
-DEEPEST = 40
-"""Halvings of a segment, after which a section's bound counts as it is."""
-
-MOST_HALVINGS = 20_000
-"""Halvings of a glyph's sections, after which bounds count as they are: hostile outlines would take minutes."""
+DEEPEST, MOST_HALVINGS = 40, 20_000
+"""Halvings of a segment, after which a section's bound counts as it is. Halvings of a glyph's sections, after which
+bounds count as they are: hostile outlines would take minutes."""
 
 GROUP = 16
 """Segments in a row that have a common box."""

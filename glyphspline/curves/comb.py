@@ -9,11 +9,9 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet
 
-SLOW = 1e-7
-"""Ratio of speed to a piece's size below which its tangent is not used: rounding errors decide the direction there."""
-
-NUDGE = 1e-3
-"""Local parameter by which a sample moves off a point of zero speed: the comb shows the limit beside a cusp."""
+SLOW, NUDGE = 1e-7, 1e-3
+"""Ratio of speed to a piece's size below which its tangent is not used: rounding errors decide the direction there.
+Local parameter by which a sample moves off a point of zero speed: the comb shows the limit beside a cusp."""
 
 TABLE = 16
 """Number of chords that measure a piece's arc length; half as many make teeth visibly uneven on an S-shaped piece."""

@@ -19,11 +19,9 @@ from .cubics import jet, length
 TIED = 1e-8
 """Directions nearer to each other than this, in radians, are the same."""
 
-STEPS = 32
-"""Points of a piece that are looked at for where it leaves the circle first."""
-
-HALVINGS = 50
-"""Of an interval of parameters, for the point at which a strand crosses the circle."""
+STEPS, HALVINGS = 32, 50
+"""Points of a piece that are looked at for where it leaves the circle first. Of an interval of parameters, for the
+point at which a strand crosses the circle."""
 
 
 def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArray) -> FloatArray:

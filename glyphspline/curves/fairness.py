@@ -18,17 +18,13 @@ TURN = 1.0
 """Angle in radians by which the difference of two significantly different curvatures would turn the whole contour: the
 absolute part of the threshold, without which every ripple of a nearly straight stretch would count."""
 
-STRAIGHT = 1e-9
-"""Product of velocity and acceleration, of a piece of size 1, below which it is straight."""
+STRAIGHT, SLOW = 1e-9, 1e-8
+"""Product of velocity and acceleration, of a piece of size 1, below which it is straight. Squared speed of a piece of
+size 1 up to which its polynomials have too few digits for the curvature."""
 
-SLOW = 1e-8
-"""Squared speed of a piece of size 1 up to which its polynomials have too few digits for the curvature."""
-
-CLOSE = 1e-6
-"""Share of an interval by which the last step to an extremum inside moves."""
-
-ROUNDS = 60
-"""Maximum number of those steps; mostly it takes eight."""
+CLOSE, ROUNDS = 1e-6, 60
+"""Share of an interval by which the last step to an extremum inside moves. Maximum number of those steps; mostly it
+takes eight."""
 
 MOST = 64
 """Maximum number of places of a piece: its ends, five extrema, and where intervals with several of them are halved."""

@@ -33,11 +33,9 @@ ROUNDING = 1e-13
 SHARPNESS = 0.02
 """Fits' certificates may exceed the distances seen by this share of the tolerance."""
 
-DEEPEST = 14
-"""Maximum subdivision depth; pairs still above the limit there count as too far apart."""
-
-MOST_HALVINGS = 5_000
-"""Halvings of one span, after which what is left counts as too far apart: a wrong pairing would take seconds."""
+DEEPEST, MOST_HALVINGS = 14, 5_000
+"""Maximum subdivision depth; pairs still above the limit there count as too far apart. Halvings of one span, after
+which what is left counts as too far apart: a wrong pairing would take seconds."""
 
 
 def pair_stretches(

@@ -24,11 +24,9 @@ NODES, LEAST = 128, 3
 """Pieces of a whole contour, more or less, and of each stretch between landmarks at least, unless it is a sliver: the
 end of a thin stroke becomes that of a bold one, ten times as wide."""
 
-BEND = 1.5
-"""Weight of direction beside length: pieces whose directions differ by a quarter circle over this are not alike."""
-
-PLACE = 1.0
-"""How much less alike two pieces are for the squared distance between their places in the contours' boxes."""
+BEND, PLACE = 1.5, 1.0
+"""Weight of direction beside length: pieces whose directions differ by a quarter circle over this are not alike. How
+much less alike two pieces are for the squared distance between their places in the contours' boxes."""
 
 SNAP = 5e-3
 """Of the em: joints of both contours that would be cut nearer than this to each other become a pair."""

@@ -40,11 +40,9 @@ SHOWS, REACH = 12.0, 0.06
 """Degrees of turn from which the end of a line or a jump of curvature has its full weight; of a jump those within so
 much of the em."""
 
-HEIGHT = 2e-3
-"""Of the em: the height by which a contour rises to an extremum and falls again."""
-
-CHORD = 5e-3
-"""Of the em: length of the chords whose directions are those on both sides of a landmark; less where a segment ends."""
+HEIGHT, CHORD = 2e-3, 5e-3
+"""Of the em: the height by which a contour rises to an extremum and falls again. Of the em: length of the chords whose
+directions are those on both sides of a landmark; less where a segment ends."""
 
 ROUNDING = 0.7
 """Units by which the direction of a handle may be off at its end: coordinates are often rounded to units."""

@@ -21,11 +21,9 @@ from .segments import contour_cubics
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
-EXACT = 1e-9
-"""Error of the length of a part of a segment, relative to the length of the segment's control polygon."""
-
-DEPTH = 24
-"""Most halvings of a segment: about a cusp, what is left then is too short to matter."""
+EXACT, DEPTH = 1e-9, 24
+"""Error of the length of a part of a segment, relative to the length of the segment's control polygon. Most halvings of
+a segment: about a cusp, what is left then is too short to matter."""
 
 
 class Resampled(NamedTuple):

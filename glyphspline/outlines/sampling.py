@@ -19,11 +19,9 @@ CORNER_ANGLE = 12.0
 MOST_VERTICES = 200_000
 """Maximum number of vertices of a polygon."""
 
-MAX_RATIO = 4.0
-"""Bound on the ratio of adjacent spacings up to which every basis function rises above 1/2."""
-
-LARGEST_RATIO = 1e6
-"""Upper bound of ``max_ratio``."""
+MAX_RATIO, LARGEST_RATIO = 4.0, 1e6
+"""Bound on the ratio of adjacent spacings up to which every basis function rises above 1/2. Upper bound of
+``max_ratio``."""
 
 
 def check_sampling(count: int | None, step: float | None, max_ratio: float, corner_angle: float) -> None:

@@ -44,11 +44,8 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of the table; nulls at the end of a row are omitted."""
 
-DIGITS = 5
-"""Significant digits of the table's measures."""
-
-DECIMALS = 7
-"""Significant digits of measures, beyond which they are rounding noise."""
+DIGITS, DECIMALS = 5, 7
+"""Significant digits of the table's measures. Significant digits of measures, beyond which they are rounding noise."""
 
 WHOLE = 1e15
 """Below this a float without decimals is written as an integer."""

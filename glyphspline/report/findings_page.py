@@ -16,11 +16,9 @@ from ..writers.svg.comb import palette
 from ..writers.svg.path_data import path_data
 from .pages import page_of
 
-DRAWN = 2000
-"""Findings with a drawing. Every kind has its share of them, and each share begins with the worst."""
-
-LISTED = 20_000
-"""Findings in the table: the worst."""
+DRAWN, LISTED = 2000, 20_000
+"""Findings with a drawing. Every kind has its share of them, and each share begins with the worst. Findings in the
+table: the worst."""
 
 PRECISION = 2
 """Decimals of path data and points."""

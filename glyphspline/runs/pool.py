@@ -34,11 +34,9 @@ POLL = 0.25
 SMALL = 32_768
 """Bytes of a call that a pipe buffers: sending them does not block."""
 
-STARTS = 4
-"""Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it."""
-
-STARTING = 1800.0
-"""Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
+STARTS, STARTING = 4, 1800.0
+"""Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it.
+Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
 
 Call = tuple[Future[Any], bytes]
 """The future of a call, and its function and arguments, pickled."""

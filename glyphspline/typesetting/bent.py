@@ -19,11 +19,9 @@ from .setting import Align, Side
 SHARE = 0.1
 """Share of a tolerance that the bend takes. The rest is for the curves fitted to the bent outline."""
 
-SAMPLES = 33
-"""Places of each cubic where the error is measured."""
-
-BETWEEN = 1.02
-"""Factor on the largest error measured, for what lies between: at 513 places it was larger by 0.8 % at most."""
+SAMPLES, BETWEEN = 33, 1.02
+"""Places of each cubic where the error is measured. Factor on the largest error measured, for what lies between: at 513
+places it was larger by 0.8 % at most."""
 
 ROUNDS = 8
 """Fits of a cubic's handles to the points of its deformed one."""

@@ -18,7 +18,6 @@ TURNING = frozenset({"R", "AL", "AN", "RLE", "RLO", "RLI", "LRE", "LRO", "LRI", 
 ISOLATES, EMBEDDINGS = frozenset({"LRI", "RLI", "FSI"}), frozenset({"LRE", "RLE", "LRO", "RLO"})
 REMOVED = EMBEDDINGS | {"PDF", "BN"}
 NEUTRAL = ISOLATES | {"B", "S", "WS", "ON", "PDI"}
-SPACES = ISOLATES | REMOVED | {"WS", "PDI"}
 
 BRACKETS = (
     "()[]{}༺༻༼༽᚛᚜⁅⁆⁽⁾₍₎⌈⌉⌊⌋\u2329\u232a❨❩❪❫❬❭❮❯❰❱❲❳❴❵⟅⟆⟦⟧⟨⟩⟪⟫⟬⟭⟮⟯⦃⦄⦅⦆⦇⦈⦉⦊⦋⦌⦍⦐⦏⦎⦑⦒⦓⦔⦕⦖⦗⦘⧘⧙⧚⧛⧼⧽⸢⸣⸤⸥⸦⸧⸨⸩"
@@ -74,20 +73,6 @@ def embedding_levels(text: str, base: int | None = None) -> tuple[int, list[int]
         elif kind == "B":
             levels[i] = base
     return base, levels
-
-
-def line_levels(text: str, levels: Sequence[int], base: int) -> list[int]:
-    """Rule L1: the levels of a line's characters, separators and the spaces before them and at the end at ``base``."""
-    found, space = list(levels), True
-    for i in range(len(text) - 1, -1, -1):
-        kind = bidirectional(text[i])
-        if kind in ("S", "B"):
-            space = True
-        elif kind not in SPACES:
-            space = False
-        if space:
-            found[i] = base
-    return found
 
 
 def visual_order(levels: Sequence[int]) -> list[int]:

@@ -21,11 +21,8 @@ from .setting import Place
 MOST_PARTS = 1 << 20
 """Limit of parts of the table; ``length_error`` tells what they miss."""
 
-COINCIDENT = 1e-9
-"""Share of the path's extent below which its ends meet."""
-
-SMOOTH = 1e-7
-"""Radians of turn up to which a joint is smooth: rounding."""
+COINCIDENT, SMOOTH = 1e-9, 1e-7
+"""Share of the path's extent below which its ends meet. Radians of turn up to which a joint is smooth: rounding."""
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Extents of a path; squares of others would under- or overflow."""

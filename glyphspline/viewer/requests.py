@@ -17,11 +17,9 @@ Sampling = Literal["tolerance", "step", "count"]
 FINEST = {"tolerance": 1 / 20000, "step": 1 / 1000}
 """Smallest tolerance and step, in em: smaller ones cost time and change nothing that shows."""
 
-MOST_VERTICES = 1000
-"""Maximum number of vertices of a contour sampled by count, and of moved ones."""
-
-LONGEST_TEXT = 500
-"""Maximum number of characters of the line of text, as in the page."""
+MOST_VERTICES, LONGEST_TEXT = 1000, 500
+"""Maximum number of vertices of a contour sampled by count, and of moved ones. Maximum number of characters of the line
+of text, as in the page."""
 
 SHOWN = 120
 """Maximum number of glyphs that a search lists."""

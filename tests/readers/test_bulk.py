@@ -10,7 +10,6 @@ from itertools import accumulate
 from pathlib import Path
 from typing import TypeAlias
 
-import matplotlib
 import numpy as np
 import pytest
 from fontTools.fontBuilder import FontBuilder
@@ -27,27 +26,8 @@ from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
 from glyphspline.readers.opentype.routes import FontTools
 from glyphspline.readers.source import Head
-from tests.places import FONTS
+from tests.places import FACES, FONTS
 from tests.readers.test_broken_fonts import with_components
-
-DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"
-
-FACES: list[tuple[str | Path, int, dict[str, float]]] = [
-    ("kouzan-gyosho.ttf", 0, {}),
-    ("kouzan-gyosho.otf", 0, {}),
-    ("kouzan-gyosho.woff2", 0, {}),
-    ("kouzan-kaisho.ttf", 0, {}),
-    ("kouzan.ttc", 0, {}),
-    ("kouzan.ttc", 1, {}),
-    ("edge-cases.ttf", 0, {}),
-    ("variable.ttf", 0, {}),
-    ("variable.ttf", 0, {"wght": 650}),
-    ("variable.ttf", 0, {"wght": 900}),
-    ("variable-cff2.otf", 0, {}),
-    ("variable-cff2.otf", 0, {"wght": 777, "wdth": 90}),
-    ("variable-cff2.otf", 0, {"wght": 400, "wdth": 75}),
-    (DEJAVU, 0, {}),
-]
 
 
 def heads_of(font: Font) -> list[Head]:

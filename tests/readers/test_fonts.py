@@ -8,7 +8,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
 from fontTools.pens.areaPen import AreaPen
@@ -21,9 +20,8 @@ from scipy.spatial import KDTree
 from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, Source, open_font
 from glyphspline.types import FloatArray
-from tests.places import FONTS
+from tests.places import DEJAVU, FONTS
 
-DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"
 FACES: list[tuple[Path, int, dict[str, float]]] = [
     (FONTS / "kouzan-gyosho.ttf", 0, {}),
     (FONTS / "kouzan-kaisho.ttf", 0, {}),

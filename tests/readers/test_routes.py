@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import pytest
 from fontTools.fontBuilder import FontBuilder
@@ -18,22 +17,7 @@ from glyphspline.readers import open_font
 from glyphspline.readers.opentype.containers import unpacked
 from glyphspline.readers.opentype.routes import FontTools
 from glyphspline.types import FloatArray
-from tests.places import FONTS
-
-DEJAVU = Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"
-
-CASES: list[tuple[str | Path, int, dict[str, float]]] = [
-    ("kouzan-gyosho.ttf", 0, {}),
-    ("kouzan-gyosho.otf", 0, {}),
-    ("kouzan-gyosho.woff2", 0, {}),
-    ("kouzan.ttc", 1, {}),
-    ("edge-cases.ttf", 0, {}),
-    ("variable.ttf", 0, {}),
-    ("variable.ttf", 0, {"wght": 777}),
-    ("variable-cff2.otf", 0, {}),
-    ("variable-cff2.otf", 0, {"wght": 777, "wdth": 90}),
-    (DEJAVU, 0, {}),
-]
+from tests.places import FACES, FONTS
 
 
 def from_leftmost(contour: Contour) -> FloatArray:
@@ -44,7 +28,7 @@ def from_leftmost(contour: Contour) -> FloatArray:
     return np.roll(cubics, -first, axis=0)
 
 
-@pytest.mark.parametrize(("file", "face_index", "location"), CASES)
+@pytest.mark.parametrize(("file", "face_index", "location"), FACES)
 def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, location: dict[str, float]) -> None:
     font = open_font(FONTS / file, face_index, location)
     fonttools = FontTools(unpacked((FONTS / file).read_bytes()), face_index, font._hb.normalized)

@@ -22,12 +22,10 @@ SPACING = 1 / 140
 MOST_TEETH = 8000
 """Maximum number of teeth; beyond it spacing grows. A CJK glyph has some 2000, a hostile one could have millions."""
 
-TOOTH = 0.03
-"""Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs."""
-
-LONGEST = 1.25
-"""Maximum length of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners
-cover a CJK glyph; without a limit a single tooth may cross the page."""
+TOOTH, LONGEST = 0.03, 1.25
+"""Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs. Maximum length
+of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners cover a CJK glyph;
+without a limit a single tooth may cross the page."""
 
 NEAR = 1 / 40
 """Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""

@@ -14,11 +14,8 @@ from .path_data import path_data
 CONTOURS = ("#d33", "#06c", "#082", "#a0a", "#b60", "#077")
 """Colours of contours and of their numbers, again from the first one after the last."""
 
-SIZE = 0.028
-"""Of the em: the height of numbers."""
-
-GAP = 0.15
-"""Of the em: space between two outlines."""
+SIZE, GAP = 0.028, 0.15
+"""Of the em: the height of numbers. Of the em: space between two outlines."""
 
 
 def to_unmatched_svg(outlines: Sequence[Outline], reason: str = "") -> str:
