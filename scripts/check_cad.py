@@ -23,6 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
 
@@ -101,12 +102,8 @@ def in_freecad(jobs: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]
     return json.loads((folder / "said.json").read_text())
 
 
-def in_occt(jobs: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
+def in_occt(job: dict[str, Any]) -> dict[str, Any]:
     """What OCCT makes of the entities as ezdxf reads them, knots and control points as they are."""
-    return [_occt(job) for job in jobs]
-
-
-def _occt(job: dict[str, Any]) -> dict[str, Any]:
     import ezdxf
     from OCP.BRep import BRep_Tool
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
@@ -205,11 +202,11 @@ def main() -> int:
     parser.add_argument("--text", default="龍g好")
     parser.add_argument("--height", type=float, default=5.0)
     given = parser.parse_args()
-    kernels = {}
+    kernels: dict[str, Callable[[list[dict[str, Any]], Path], list[dict[str, Any]]]] = {}
     if shutil.which("freecadcmd") or shutil.which("FreeCADCmd"):
         kernels["FreeCAD"] = in_freecad
     if importlib.util.find_spec("OCP"):
-        kernels["OCCT"] = in_occt
+        kernels["OCCT"] = lambda jobs, _: list(map(in_occt, jobs))
     if not kernels:
         print("neither freecadcmd nor OCP is here")
         return 1

@@ -1,8 +1,7 @@
 """Compare layouts with HarfBuzz's programs: the glyphs and positions of hb-shape, and the places in the SVG of hb-view.
 
     apt-get install libharfbuzz-bin fonts-dejavu-core fonts-hosny-amiri fonts-noto-core fonts-noto-cjk
-    python scripts/check_layout.py           # the table
-    python scripts/check_layout.py --page    # the time that a page of 10,000 characters takes
+    python scripts/check_layout.py
 
 HarfBuzz shapes single runs: a text of mixed directions is given to hb-shape run by run, each with the text around it as
 context, in the visual order that is written in the table below. Exits with 1 if anything differs.
@@ -17,8 +16,6 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from statistics import median
-from time import perf_counter
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -120,31 +117,8 @@ def by_layout(case: Case) -> Placed:
     return Placed(found.gid.tolist(), found.cluster.tolist(), found.origin)
 
 
-def time_a_page() -> int:
-    """Print the time that each step takes for a page of 10,000 characters, warm: the median of seven."""
-    font = gs.open_font(DEJAVU)
-    text = " ".join(["The quick brown fox jumps over the lazy dog, and away it flows (office 12/34)."] * 130)[:10_000]
-    for options in (gs.Options(corners="smooth"), gs.Options()):
-        times: dict[str, list[float]] = {"layout": [], "convert": [], "to_svg": []}
-        for _ in range(8):
-            started = perf_counter()
-            found = gs.layout(font, text, width=100_000)
-            times["layout"].append(perf_counter() - started)
-            started = perf_counter()
-            result = found.convert(options)
-            times["convert"].append(perf_counter() - started)
-            started = perf_counter()
-            gs.to_svg(result)
-            times["to_svg"].append(perf_counter() - started)
-        said = ", ".join(f"{name} {median(values[1:]):.3f} s" for name, values in times.items())
-        print(f"{options.corners}, {len(found):,} glyphs in {int(found.line[-1]) + 1} lines: {said}")
-    return 0
-
-
 def main() -> int:
     """Print the table."""
-    if "--page" in sys.argv[1:]:
-        return time_a_page()
     for program in ("hb-shape", "hb-view"):
         if not shutil.which(program):
             raise SystemExit(f"{program} is not installed")

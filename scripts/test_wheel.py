@@ -204,12 +204,7 @@ def try_commands(environment: Environment) -> None:
         if done.returncode > (name == "diff") or "compiling" in done.stderr:
             sys.exit(f"{name}: {done.stdout}{done.stderr}")
     report("view", environment.view(), "")
-    nothing_written(environment)
-
-
-def nothing_written(environment: Environment) -> None:
-    """The end if a command has made a folder for compiled code."""
-    left = list((environment.out / "tmp").glob("glyphspline-*-compiled"))
+    left = list((environment.out / "tmp").glob("glyphspline-*-compiled"))  # folders of commands for what they compiled
     assert not left, left
 
 

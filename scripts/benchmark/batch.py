@@ -160,25 +160,25 @@ def fontforge_export(out: Path, gids: Sequence[int]) -> float:
     return float("nan")
 
 
-FEW, MANY = 2000, int(os.environ.get("GLYPHSPLINE_BENCH_GLYPHS", "10000"))
-ROUNDS = 3
-
-
 def formats() -> list[Row]:
     """The table of what it costs to export outlines, a glyph."""
     if not FONT.exists():
         return [Row(f"outlines as they are: {FONT.name} is not there", 0.0, "s")]
+    from glyphspline.fitting.options import Options
+
     found = []
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
-        source(here / "warm", range(FIRST, FIRST + 50))  # nothing is compiled while it is timed
-        for count in (FEW, MANY):
+        ours(here / "warm", range(FIRST, FIRST + 50), Options(), ("source",), 1)  # nothing compiles while it is timed
+        for count in (2000, GLYPHS):
             found += compared(here, range(FIRST, FIRST + count))
     return found
 
 
 def compared(here: Path, gids: Sequence[int]) -> list[Row]:
     """Rows for so many glyphs."""
+    from glyphspline.fitting.options import Options
+
     count = len(gids)
     opened: list[float] = []
 
@@ -189,8 +189,8 @@ def compared(here: Path, gids: Sequence[int]) -> list[Row]:
         return seconds
 
     own, fonttools, forged = least(
-        ROUNDS,
-        lambda k: source(here / f"ours-{count}-{k}", gids),
+        3,
+        lambda k: ours(here / f"ours-{count}-{k}", gids, Options(), ("source",), 1),
         lambda k: fonttools_export(here / f"plain-{count}-{k}", gids),
         forge,
     )
@@ -199,10 +199,3 @@ def compared(here: Path, gids: Sequence[int]) -> list[Row]:
         row("the same against FontForge's export, its opening not counted", own, forged, 2.5, None),
         row("the same against FontForge's export, its opening counted", own, min(opened), 2.5, None),
     ]
-
-
-def source(out: Path, gids: Sequence[int]) -> float:
-    """Seconds a glyph of our run."""
-    from glyphspline.fitting.options import Options
-
-    return ours(out, gids, Options(), ("source",), 1)

@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -226,12 +225,3 @@ def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]
         if len(curve) and max(farthest(curve, source), farthest(source, curve)) <= 1.0:
             return segments, size
     return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))
-
-
-if __name__ == "__main__":
-    from .measure import markdown
-
-    table = rows()
-    print(markdown(table))
-    if len(sys.argv) > 1:
-        Path(sys.argv[1]).write_text(json.dumps([row.as_json() for row in table], indent=1) + "\n", encoding="utf-8")

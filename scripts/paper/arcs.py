@@ -44,7 +44,9 @@ def arcs(run: Run) -> None:
             "not converged": failures,
             "not converged, variant 2 with natural ends": natural,
             **_certificate(run),
-            "three points, largest rate bound at c = 0": _three_points(run),
+            "three points, largest rate bound at c = 0": max(
+                _arc(p, 2).rate_bound for p in random_polygons(3, run.size(200, 4))
+            ),
             "smallest maximum of W_1 seen, random knots": _least_peak(run),
             "quarter circle, radius 100, largest deviation by points": circle_deviations(),
         },
@@ -79,11 +81,6 @@ def _certificate(run: Run) -> dict[str, float]:
         "certified beforehand, %": 100 * len(certified) / len(results),
         "steps above the bound": int(sum((step_factors(r.residuals) > r.rate_bound + 1e-9).sum() for r in certified)),
     }
-
-
-def _three_points(run: Run) -> float:
-    """The largest rate bound of arcs of three points, of which none may be 1."""
-    return max(_arc(p, 2).rate_bound for p in random_polygons(3, run.size(200, 4)))
 
 
 def _least_peak(run: Run) -> float:

@@ -129,10 +129,6 @@ def _product(a: Enclosure, b: Enclosure) -> Enclosure:
     return Enclosure(a.low * b.low, a.high * b.high, first[0] + second[0], first[1] + second[1])
 
 
-def _sum(a: Enclosure, b: Enclosure) -> Enclosure:
-    return Enclosure(a.low + b.low, a.high + b.high, a.slope_low + b.slope_low, a.slope_high + b.slope_high)
-
-
 def enclose(low: FloatArray, high: FloatArray, span: int, fraction: FloatArray) -> Enclosure:
     """Cox and de Boor in interval arithmetic: B at ``fraction`` of ``span``, for all intervals in [low, high].
 
@@ -154,7 +150,10 @@ def enclose(low: FloatArray, high: FloatArray, span: int, fraction: FloatArray) 
                 terms.append(_product(_ratio(low, high, share, slice(i, i + width))[0], N[i]))
             if i + 1 in N:
                 terms.append(_product(_ratio(low, high, share, slice(i + 1, i + 1 + width))[1], N[i + 1]))
-            raised[i] = terms[0] if len(terms) == 1 else _sum(*terms)
+            raised[i] = terms[0] if len(terms) == 1 else Enclosure(
+                terms[0].low + terms[1].low, terms[0].high + terms[1].high,
+                terms[0].slope_low + terms[1].slope_low, terms[0].slope_high + terms[1].slope_high,
+            )  # fmt: skip
         N = raised
     return N[0]
 
@@ -200,13 +199,6 @@ def _along_box(f: Family, box: Enclosure) -> tuple[FloatArray, FloatArray]:
     """Bounds of the slopes along the directions of the family's box, from those by the intervals' logarithms."""
     positive, negative = np.maximum(f.A, 0), np.minimum(f.A, 0)
     return box.slope_low @ positive + box.slope_high @ negative, box.slope_high @ positive + box.slope_low @ negative
-
-
-def _slope_bounds(
-    f: Family, low: FloatArray, high: FloatArray, span: int, fraction: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Bounds of the slopes, on each box, of the value at ``fraction`` of ``span``."""
-    return _along_box(f, _enclosed(f, low, high, span, fraction))
 
 
 def _slopes(f: Family, y: FloatArray) -> FloatArray:
@@ -275,7 +267,8 @@ def _grows_from_corner(f: Family, low: FloatArray, high: FloatArray, target: flo
     settled = np.zeros(len(low), dtype=np.bool_)
     span, fraction = peak_positions(h)
     for k in candidates:
-        slope_low, slope_high = _slope_bounds(f, low[k : k + 1], high[k : k + 1], int(span[k]), fraction[k : k + 1])
+        box = _enclosed(f, low[k : k + 1], high[k : k + 1], int(span[k]), fraction[k : k + 1])
+        slope_low, slope_high = _along_box(f, box)
         upward = np.where(y[k] == low[k], slope_low[0], -slope_high[0])
         settled[k] = (upward > STRICT).all()
     return settled

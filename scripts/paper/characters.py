@@ -57,11 +57,6 @@ def zoomed(axes: Axes, box: Box) -> None:
         side.set(visible=True, color=GREY, linestyle=(0, (1, 1.5)))
 
 
-def colour(variant: int) -> str:
-    """The variant's colour."""
-    return COLOURS[f"variant {variant}"]
-
-
 COMB, LONGEST, SPACING = 0.05, 1.0, 0.04
 """Length of a tooth for curvature 1, of the longest tooth, and from tooth to tooth, for polygons in [0, 5]²."""
 
@@ -106,7 +101,7 @@ def _maps(polygon: FloatArray, box: Box, results: dict[int, gs.Interpolation]) -
     for column, v in enumerate(VARIANTS):
         above, below = axes[:, column]
         for ax in (above, below):
-            draw_comb(ax, results[v].spline, colour(v), COMB, LONGEST, SPACING)
+            draw_comb(ax, results[v].spline, COLOURS[f"variant {v}"], COMB, LONGEST, SPACING)
             ax.plot(*polygon.T, "o", color=INK, ms=1.8 if ax is above else 3)
         mark(above, box)
         bare(above)
@@ -133,7 +128,8 @@ def figures_8_and_9(run: Run) -> None:
     """Both pictures, and how far each variant overshoots."""
     for name, (stem, source, family) in FIGURES.items():
         character = CHARACTERS[stem][0]
-        given = run.fonts.get(name) or _installed(family)
+        installed = (Path(f) for f in sorted(font_manager.findSystemFonts()) if family.lower() in f.lower())
+        given = run.fonts.get(name) or next(installed, None)
         data = clicked_character(given, character) if given else json.loads((DATA / f"{stem}.json").read_text("utf-8"))
         polygons, em = load_polygons(data), float(data["units_per_em"])
         results = interpolate_variants(polygons, em * 1e-7)
@@ -154,11 +150,6 @@ def figures_8_and_9(run: Run) -> None:
         )
         contours = source_contours(given or FONTS / CHARACTERS[stem][1], character)
         run.save(_character(contours, polygons, splines, _worst_place(polygons, splines, em)), name)
-
-
-def _installed(family: str) -> Path | None:
-    """The paper's face, if this machine has it."""
-    return next((Path(f) for f in sorted(font_manager.findSystemFonts()) if family.lower() in f.lower()), None)
 
 
 def _worst_place(polygons: list[FloatArray], splines: dict[int, list[gs.Spline]], em: float) -> Box:
@@ -196,7 +187,7 @@ def _character(
         above, below = (figure.add_subplot(grid[row, 2 * k : 2 * k + 2]) for row in (1, 2))
         curves = [s(np.linspace(0, s.period, 24 * len(s.knots), endpoint=False)) for s in splines[v]]
         for ax, width in ((above, 0.8), (below, 1.3)):
-            _fill(ax, curves, "#eef1f4", colour(v))
+            _fill(ax, curves, "#eef1f4", COLOURS[f"variant {v}"])
             ax.patches[0].set_linewidth(width)
         for p in polygons:
             draw_closed(below, p, color=GREY, lw=0.6, ls=(0, (3, 2)), marker="o", ms=3.2, mfc=INK, mec=INK)

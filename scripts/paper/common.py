@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from io import BytesIO
@@ -174,15 +174,12 @@ class Run:
         """Write a picture without date or random ids."""
         picture = BytesIO()
         figure.savefig(picture, format="png", metadata={"Software": None})
-        with_few_colours(Image.open(picture)).save(self.out / f"{name}.png", optimize=True)
+        with Image.open(picture) as drawn:  # with a palette of its own: half of the bytes, and nothing to be seen
+            few = drawn.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        few.save(self.out / f"{name}.png", optimize=True)
         if svg:
             figure.savefig(self.out / f"{name}.svg", metadata={"Date": None})
         plt.close(figure)
-
-
-def with_few_colours(picture: Image.Image) -> Image.Image:
-    """The picture with a palette of its own: line drawings lose nothing to the eye, and half of their bytes."""
-    return picture.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
 
 
 def rounded(value: Any, digits: int = 6) -> Any:
@@ -246,8 +243,3 @@ def curve_points(spline: Any, per_span: int = 24) -> FloatArray:
     u = np.asarray(spline.knots)
     x = np.arange(per_span) / per_span
     return np.asarray(spline((u[:-1, None] + x * np.diff(u)[:, None]).ravel()))
-
-
-def by_group(groups: Sequence[int], values: Sequence[float]) -> dict[str, float]:
-    """{"5": …, "90": …} as claims.json has series."""
-    return {str(n): float(v) for n, v in zip(groups, values, strict=True)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
 
 import matplotlib
@@ -188,7 +187,8 @@ def quality_study(run: Run) -> None:
     for name, polygons in list(figure_polygons().items())[: run.size(4, 2)]:
         extent = max(float(np.ptp(p, axis=0).max()) for p in polygons)
         values = [all_qualities(p, extent * 1e-7) for p in polygons]
-        total = {m: {k: _total(k, [v[m][k] for v in values]) for k in MEASURES} for m in METHODS}
+        summed = {"∫κ² ds", "∫(dκ/ds)² ds", "self-crossings"}
+        total = {m: {k: (sum if k in summed else max)(v[m][k] for v in values) for k in MEASURES} for m in METHODS}
         run.claim(
             f"quality-{name.lower().replace('. ', '-')}",
             name,
@@ -222,10 +222,6 @@ def quality_study(run: Run) -> None:
         )
     graded_corners(run)
     run.save(_boxes(by_kind), "quality", svg=False)
-
-
-def _total(measure: str, values: Iterable[float]) -> float:
-    return sum(values) if measure in ("∫κ² ds", "∫(dκ/ds)² ds", "self-crossings") else max(values)
 
 
 def _judgement(values: list[dict[str, Quality]]) -> str:

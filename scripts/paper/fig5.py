@@ -28,19 +28,12 @@ def radii(job: tuple[FloatArray, int]) -> FloatArray:
     polygon, variant = job
     limit = CUT if variant == 0 else MAX_ITERATIONS
     options = {"residual_tolerance": TOLERANCE, "max_iterations": limit}
-    if variant == 3:
-        return _radii_of_powers(polygon)
-    r = gs.interpolate(polygon, variant, diagnostics=True, **options)  # type: ignore[arg-type]
+    r = gs.interpolate(polygon, variant, diagnostics=variant != 3, **options)  # type: ignore[arg-type]
+    if variant == 3:  # never moves its footpoints: the composite matrix is a power, its spectral radius one too
+        factor = np.eye(len(polygon)) - r.spline.basis(r.parameters)
+        return np.asarray(float(np.abs(np.linalg.eigvals(factor)).max()) ** np.arange(1, r.iterations + 1))
     assert r.spectral_radii is not None
     return r.spectral_radii
-
-
-def _radii_of_powers(polygon: FloatArray) -> FloatArray:
-    """Variant 3 never moves its footpoints: the composite matrix is a power, its spectral radius one too."""
-    r = gs.interpolate(polygon, 3, residual_tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS)
-    factor = np.eye(len(polygon)) - r.spline.basis(r.parameters)
-    radius = float(np.abs(np.linalg.eigvals(factor)).max())
-    return np.asarray(radius ** np.arange(1, r.iterations + 1))
 
 
 def figure_5(run: Run) -> None:
@@ -49,7 +42,11 @@ def figure_5(run: Run) -> None:
     curves: dict[int, list[FloatArray]] = {}
     for v in (0, 1, 2, 3):
         jobs = [(p, v) for p in polygons]
-        curves[v] = list(map(radii, jobs)) if run.quick else _two_at_a_time(jobs)
+        if run.quick:
+            curves[v] = list(map(radii, jobs))
+            continue
+        with get_context("spawn").Pool(PROCESSES) as pool:
+            curves[v] = pool.map(radii, jobs, chunksize=20)
     measured = {f"variant {v}": _summary(curves[v]) for v in curves}
     growing = measured["variant 0"]["% of polygons at 1 or more in the end"]
     decaying = max(measured[f"variant {v}"]["% of polygons at 1 or more in the end"] for v in (1, 2, 3))
@@ -71,11 +68,6 @@ def figure_5(run: Run) -> None:
         "where the curves begin.",
     )
     run.save(_picture(curves), "fig-5")
-
-
-def _two_at_a_time(jobs: list[tuple[FloatArray, int]]) -> list[FloatArray]:
-    with get_context("spawn").Pool(PROCESSES) as pool:
-        return pool.map(radii, jobs, chunksize=20)
 
 
 def _summary(curves: list[FloatArray]) -> dict[str, float]:

@@ -176,21 +176,16 @@ def _interleaved(
     return {v: float(np.median(s)) for v, s in seconds.items()}
 
 
-def _one_by_one(polygons: list[FloatArray]) -> dict[int, float]:
-    """Mean seconds a polygon and variant in the plain way; the variants take turns on each polygon."""
-    each = [_interleaved(_plain, [p], 1) for p in polygons]
-    return {v: float(np.mean([seconds[v] for seconds in each])) for v in VARIANTS}
-
-
 def figure_4(run: Run) -> None:
     """Times of both ways; the claim itself is about their order only, as times are a machine's own."""
     _compiled([run.polygons()[run.groups[0]][0]], 2)
     fast: dict[str, dict[str, float]] = {f"variant {v}": {} for v in VARIANTS}
     plain: dict[str, dict[str, float]] = {f"variant {v}": {} for v in VARIANTS}
     for n, polygons in run.polygons().items():
+        each = [_interleaved(_plain, [p], 1) for p in polygons[: run.size(PLAIN, 1)]]
         for times, result in (
             (_interleaved(_compiled, polygons[:COMPILED], run.size(ROUNDS, 2)), fast),
-            (_one_by_one(polygons[: run.size(PLAIN, 1)]), plain),
+            ({v: float(np.mean([s[v] for s in each])) for v in VARIANTS}, plain),
         ):
             for v, s in times.items():
                 result[f"variant {v}"][str(n)] = 1000 * s

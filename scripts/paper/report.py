@@ -53,15 +53,10 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f'| {c["source"]} | <a href="#{c["id"]}">{cell(c["claim"])}</a> | {SIGN[_kind(c["verdict"])]} {c["verdict"]} |'
-        for c in claims.values()
+        f'| {c["source"]} | <a href="#{id}">{cell(c["claim"])}</a> | {SIGN[c["verdict"].split(" for ")[0]]} {c["verdict"]} |'
+        for id, c in claims.items()
     ]
     return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
-
-
-def _kind(verdict: str) -> str:
-    """The verdict without the hypothesis."""
-    return "proven" if verdict.startswith("proven for ") else verdict
 
 
 def block(claim: dict[str, Any]) -> str:
@@ -85,20 +80,14 @@ def show(value: dict[str, Any]) -> str:
     nested = {k: v for k, v in value.items() if isinstance(v, dict)}
     parts = [table({"": plain}) if len(plain) <= 7 else listing(plain)] if plain else []
     flat = {k: v for k, v in nested.items() if not any(isinstance(x, dict) for x in v.values())}
-    for keys in _alike(flat):
-        parts.append(table({k: flat[k] for k in keys}))
+    alike: dict[tuple[str, ...], dict[str, Any]] = {}
+    for name, entries in flat.items():
+        alike.setdefault(tuple(entries), {})[name] = entries
+    parts += map(table, alike.values())
     for k, v in nested.items():
         if k not in flat:
             parts.append(f"{k}:\n\n{show(v)}")
     return "\n\n".join(parts)
-
-
-def _alike(tables: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Names of mappings with the same keys together, in order."""
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for name, entries in tables.items():
-        groups.setdefault(tuple(entries), []).append(name)
-    return list(groups.values())
 
 
 def table(rows: dict[str, dict[str, Any]]) -> str:

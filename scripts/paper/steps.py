@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from itertools import repeat
+from itertools import chain, repeat
 from multiprocessing import get_context
 
 from . import (
@@ -63,16 +63,19 @@ def reproduce(run: Run, only: list[str] | None = None, jobs: int = 2) -> None:
     """Make all figures and claims, or only some; what an earlier run left is kept where it is not made again."""
     run.out.mkdir(parents=True, exist_ok=True)
     start = time.perf_counter()
-    if only:
-        _recall(run)
+    file = run.out / "claims.json"
+    if only and file.exists():
+        earlier = json.loads(file.read_text(encoding="utf-8"))
+        run.claims += [Claim(**c) for c in earlier["claims"]]
+        run.times.update(earlier["times"])
     names = only or list(STEPS)
     beside = [name for name in names if name != TIMED]
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
-        for made in pool.map(make, beside, repeat(run)):
-            _add(run, made)
+        alone = (make(name, run) for name in names if name == TIMED)  # made when it is asked for: after the others
+        for made in chain(pool.map(make, beside, repeat(run)), alone):
+            run.claims += made.claims
+            run.times.update(made.times)
             _write(run)
-    if TIMED in names:
-        _add(run, make(TIMED, run))
     if not only:
         run.times["all steps, minutes"] = (time.perf_counter() - start) / 60
     _write(run)
@@ -84,20 +87,6 @@ def make(name: str, run: Run) -> Run:
     with progress(own, name):
         STEPS[name](own)
     return replace(own, cache={})
-
-
-def _add(run: Run, made: Run) -> None:
-    run.claims += made.claims
-    run.times.update(made.times)
-
-
-def _recall(run: Run) -> None:
-    """Take over the claims and times of an earlier run."""
-    file = run.out / "claims.json"
-    if file.exists():
-        earlier = json.loads(file.read_text(encoding="utf-8"))
-        run.claims += [Claim(**c) for c in earlier["claims"]]
-        run.times.update(earlier["times"])
 
 
 def _write(run: Run) -> None:

@@ -68,16 +68,6 @@ def mean_iterations(groups: dict[int, Group]) -> dict[str, float]:
     return {str(n): float(np.mean(g.iterations)) for n, g in groups.items()}
 
 
-def share_converged(groups: dict[int, Group]) -> dict[str, float]:
-    """{"5": percent, …}"""
-    return {str(n): 100.0 * float(np.mean(g.converged)) for n, g in groups.items()}
-
-
-def all_converged(groups: dict[int, Group]) -> bool:
-    """Whether every polygon of every group came below the tolerance."""
-    return all(bool(g.converged.all()) for g in groups.values())
-
-
 PER_GROUP, MORE, LEVEL = 200, 2000, 6000
 """Polygons a group of the paper's, of the larger sample for variant 3, and of the one for its level."""
 
@@ -87,7 +77,10 @@ PATIENCE = 100_000
 
 def figure_2(run: Run) -> None:
     """Bars of the share, and the claims on convergence of Section 4.1."""
-    shares = {f"variant {v}": share_converged(study(run, v)) for v in (0, 1, 2, 3, 4)}
+    shares = {
+        f"variant {v}": {str(n): 100.0 * float(np.mean(g.converged)) for n, g in study(run, v).items()}
+        for v in (0, 1, 2, 3, 4)
+    }
     above_40 = [s for n, s in shares["variant 0"].items() if int(n) > 40]
     run.claim(
         "fig-2-variant-0-share",
@@ -295,7 +288,8 @@ def many_vertices(run: Run) -> None:
     polygons = random_polygons(run.size(VERTICES, 40), run.size(LARGE, 3))
     group, other = study_group(polygons, 1), study_group(polygons, 2)
     failed = np.flatnonzero(~group.converged)
-    medians = [_hovers_at(polygons[k]) for k in failed]
+    options: dict[str, Any] = {"residual_tolerance": TOLERANCE, "max_iterations": MAX_ITERATIONS}
+    medians = [float(np.median(gs.interpolate(polygons[k], 1, **options).residuals[-LAST:])) for k in failed]
     measured: dict[str, float] = {
         "polygons": len(polygons),
         "variant 1 fails": len(failed),
@@ -317,9 +311,3 @@ def many_vertices(run: Run) -> None:
         "(beyond-fixed-points). A search that misses a nearly double root, as a test for real roots of roots() can, "
         "would fluctuate as well.",
     )
-
-
-def _hovers_at(polygon: np.ndarray) -> float:
-    """Median of the last errors."""
-    r = gs.interpolate(polygon, 1, residual_tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS)
-    return float(np.median(r.residuals[-LAST:]))
