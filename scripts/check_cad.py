@@ -37,9 +37,6 @@ from glyphspline.types import FloatArray
 from glyphspline.writers.dxf import holes
 from glyphspline.writers.settings import DxfKind, Settings
 
-DEFLECTION = 0.02
-"""Millimetres between a mesh and its solid."""
-
 SIZE = 20.0
 """Millimetres from descender to ascender."""
 
@@ -172,7 +169,8 @@ def in_occt(job: dict[str, Any]) -> dict[str, Any]:
             found = GProp_GProps()
             BRepGProp.VolumeProperties_s(solid, found)
             said += sign * abs(found.Mass())
-            BRepMesh_IncrementalMesh(solid, DEFLECTION, False, 0.5, False)
+            # Millimetres between a mesh and its solid.
+            BRepMesh_IncrementalMesh(solid, 0.02, False, 0.5, False)
             mesh = triangles(solid)
             volume += sign * abs(float(np.linalg.det(mesh).sum()) / 6)
             found = GProp_GProps()

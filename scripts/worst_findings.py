@@ -32,7 +32,6 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 ROWS, COLUMNS = 4, 5
-OF_A_FAMILY = 4
 NEAREST, FARTHEST = 12.0, 130.0
 """Half the width of a tile, in thousandths of an em, at least and at most."""
 
@@ -83,7 +82,8 @@ def worst_of(places: list[Place], kind: str) -> list[Place]:
     glyphs = set()
     for place in sorted([each for each in places if each.finding.kind == kind], key=per_em, reverse=True):
         glyph = place.family, place.outline.name
-        if len(chosen) < ROWS * COLUMNS and families[place.family] < OF_A_FAMILY and glyph not in glyphs:
+
+        if len(chosen) < ROWS * COLUMNS and families[place.family] < 4 and glyph not in glyphs:
             chosen.append(place)
             families[place.family] += 1
             glyphs.add(glyph)

@@ -71,10 +71,6 @@ def in_words(seconds: float) -> str:
     return f"{seconds * 1e9:.3g} ns"
 
 
-PAUSE = 0.1
-"""Seconds between two looks."""
-
-
 class Watched(NamedTuple):
     """Seconds of a command, the most memory of all its processes together, and of the largest of them, in MB."""
 
@@ -96,7 +92,8 @@ def run_watched(command: Sequence[str]) -> Watched:
             pids = family(process.pid)
             total = max(total, sum(said(pid, "smaps_rollup", "Pss:") for pid in pids))
             largest = max(largest, *(said(pid, "status", "VmHWM:") for pid in pids))
-            sleep(PAUSE)
+            # Seconds between two looks.
+            sleep(0.1)
         seconds = perf_counter() - start
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, list(command))

@@ -26,9 +26,6 @@ SLACK = 1e-11
 AT_TARGET = 1e-9
 """How near a corner's peak has to be to the target for its box to be examined as the worst one."""
 
-STRICT = 1e-6
-"""Slopes beyond it have a sign whatever rounding does: to the slopes, by ``SLACK``, or to the place of the peak."""
-
 ISOLATED = 1e-12
 """Relative half width of the interval around a threshold: its rounding is some 1e-15."""
 
@@ -270,7 +267,8 @@ def _grows_from_corner(f: Family, low: FloatArray, high: FloatArray, target: flo
         box = _enclosed(f, low[k : k + 1], high[k : k + 1], int(span[k]), fraction[k : k + 1])
         slope_low, slope_high = _along_box(f, box)
         upward = np.where(y[k] == low[k], slope_low[0], -slope_high[0])
-        settled[k] = (upward > STRICT).all()
+        # Slopes beyond it have a sign whatever rounding does: to the slopes, by ``SLACK``, or to the place of the peak.
+        settled[k] = (upward > 1e-6).all()
     return settled
 
 

@@ -120,8 +120,6 @@ def _maps(polygon: FloatArray, box: Box, results: dict[int, gs.Interpolation]) -
 
 
 FIGURES = {"fig-8": ("dragon", "Fig. 8", "STXingkai"), "fig-9": ("good", "Fig. 9", "STLiti")}
-ZOOM = 0.2
-"""Side of the zoomed part, in em."""
 
 
 def figures_8_and_9(run: Run) -> None:
@@ -160,7 +158,8 @@ def _worst_place(polygons: list[FloatArray], splines: dict[int, list[gs.Spline]]
         gap = np.hypot(*(two(t) - three(t)).T)
         if gap.max() > best:
             best, centre = float(gap.max()), three(t)[np.argmax(gap)]
-    half = ZOOM * em / 2
+    # Side of the zoomed part, in em.
+    half = 0.2 * em / 2
     return centre[0] - half, centre[0] + half, centre[1] - half, centre[1] + half
 
 

@@ -27,9 +27,6 @@ SAG = 0.006
 TURN, BESIDE = 35.0, 0.028
 """Where the polygon turns by more than so many degrees, clicks are added so far, in em, along long chords."""
 
-SHAKE = 0.0012
-"""How far, in em, a click misses the outline (standard deviation)."""
-
 DENSE = 32
 """Points a segment from which arc length is summed up."""
 
@@ -55,7 +52,8 @@ def clicked(contour: Contour, em: float, seed: int) -> FloatArray:
     kept = [*_simplify(closed, 0, opposite, em), *_simplify(closed, opposite, steps, em)]
     clicks = _beside_turns(closed[kept], np.array(kept), steps, BESIDE * steps * em / length)
     rng = np.random.default_rng(seed)
-    return np.rint(closed[clicks] + rng.normal(0, SHAKE * em, (len(clicks), 2)))
+    # How far, in em, a click misses the outline (standard deviation).
+    return np.rint(closed[clicks] + rng.normal(0, 0.0012 * em, (len(clicks), 2)))
 
 
 def _beside_turns(p: FloatArray, kept: IntArray, steps: int, beside: float) -> IntArray:

@@ -20,8 +20,6 @@ CUT = 100
 COUNT = 60
 """Polygons a group: all 200 take over three times as long."""
 
-PROCESSES = 2
-
 
 def radii(job: tuple[FloatArray, int]) -> FloatArray:
     """(iterations,) spectral radius of the composite matrix after each update."""
@@ -45,7 +43,8 @@ def figure_5(run: Run) -> None:
         if run.quick:
             curves[v] = list(map(radii, jobs))
             continue
-        with get_context("spawn").Pool(PROCESSES) as pool:
+
+        with get_context("spawn").Pool(2) as pool:
             curves[v] = pool.map(radii, jobs, chunksize=20)
     measured = {f"variant {v}": _summary(curves[v]) for v in curves}
     growing = measured["variant 0"]["% of polygons at 1 or more in the end"]

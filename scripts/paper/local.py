@@ -26,9 +26,6 @@ from .study import MAX_ITERATIONS, TOLERANCE
 POWERS = np.array([[-1.0, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0]])
 """From the Bézier points of a cubic to its coefficients by descending powers."""
 
-REAL = 1e-7
-"""Zeros with a smaller imaginary part count as real."""
-
 TIE = 1e-12
 """Squared distances that agree to so many parts are a tie."""
 
@@ -83,7 +80,8 @@ class LocalMethod:
             x = [piece.low]
             if piece.low < piece.high:
                 zeros = np.roots(_slope(c))
-                real = zeros.real[np.abs(zeros.imag) < REAL]
+                # Zeros with a smaller imaginary part count as real.
+                real = zeros.real[np.abs(zeros.imag) < 1e-7]
                 x += [piece.high, *real[(piece.low < real) & (real < piece.high)].tolist()]
             for y in x:
                 parameters.append(piece.start + piece.length * y)

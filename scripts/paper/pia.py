@@ -35,7 +35,6 @@ DATA, CONTROLS = 1500, 300
 """A tenth of the numbers there, and the spline closed instead of clamped."""
 
 COUNT = 40
-FAIR = 30
 MOST = 10_000
 VARIANTS = (1, 2, 3, 4)
 LINEAR = ("PIA", "WPIA", "Jacobi-PIA", "Gauss-Seidel-PIA", "LSPIA")
@@ -122,7 +121,8 @@ def pia(run: Run) -> None:
 
 def _fairness(run: Run) -> None:
     """Medians over polygons of the measures of the limits of variants 1, 2 and 4, relative to the PIA family's."""
-    polygons = random_polygons(FAIR if not run.quick else 8, run.size(COUNT, 2))
+
+    polygons = random_polygons(30 if not run.quick else 8, run.size(COUNT, 2))
     measures = ("∫κ² ds", "∫(dκ/ds)² ds", "max |κ|", "bulge")
     ratios: dict[str, dict[str, list[float]]] = {f"variant {v}": {m: [] for m in measures} for v in (1, 2, 4)}
     results = {v: gs.interpolate_many(polygons, v, residual_tolerance=TOLERANCE) for v in VARIANTS}
