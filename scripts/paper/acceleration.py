@@ -137,9 +137,6 @@ def acceleration(run: Run) -> None:
     slow = {v: _any_variant(groups[n], v) for v in ((1, 3, 4) if not run.quick else (3,))}
     run.claim(
         "beyond-acceleration",
-        "Section 4.2",
-        "Accelerated passes, with the plain step as a safeguard, reach the tolerance in half the passes on glyphs.",
-        "not treated",
         {
             "mean passes on random polygons": passes,
             "mean passes on contours": contours,
@@ -148,11 +145,9 @@ def acceleration(run: Run) -> None:
             "median and largest distance of control points from the plain limit, in mean chords": apart,
         },
         "measured",
-        f"Anderson's method over the last {MEMORY} passes; a step stands if it multiplies the largest error by "
-        f"{FALL:g} or less. Variant 2; contours are sampled by {STEP:g} units. The limit is another curve than the "
-        "plain one, and farther from it than that of the frozen solve. Times are not part of the claims and at the "
-        "end of the page: a pass costs more, for the mixing and as footpoints jump farther, so that half the passes "
-        "are not half the time.",
+        memory=MEMORY,
+        fall=FALL,
+        step=STEP,
     )
     run.times["acceleration, us a polygon, one thread"] = times
     run.save(_picture(passes, groups[n][0]), "acceleration", svg=True)

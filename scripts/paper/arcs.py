@@ -34,10 +34,6 @@ def arcs(run: Run) -> None:
         natural += sum(not r.converged for r in ends)
     run.claim(
         "beyond-arcs",
-        "Section 5",
-        "Open arcs, clamped at both ends, converge as closed curves do if all inner vertices have intervals. The first "
-        "and the last one always have, so that three and four points, and long chords at the ends, need no condition.",
-        "open question",
         {
             "arcs": len(counts) * run.size(200, 2),
             "mean iterations": means,
@@ -51,9 +47,7 @@ def arcs(run: Run) -> None:
             "quarter circle, radius 100, largest deviation by points": circle_deviations(),
         },
         "proven for arcs of which every inner vertex has an interval",
-        "Random points with tangents at the ends turned by 0.5. The infimum of max W_1 is 5/8. "
-        f"Certified: arcs whose bound is below 1 with c = {MARGIN}; inner vertices without an interval (Remark 3) keep "
-        "others from it. Variant 3 is proven to converge on closed curves only.",
+        margin=MARGIN,
     )
     run.save(_picture(means), "arcs", svg=True)
 

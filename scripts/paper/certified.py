@@ -211,12 +211,7 @@ def _slopes(f: Family, y: FloatArray) -> FloatArray:
 
 
 def certify(
-    degree: int,
-    ratio: float,
-    constraint: Constraint,
-    target: float = 0.5,
-    corners: bool = False,
-    most: int = 4_000_000,
+    degree: int, ratio: float, constraint: Constraint, target: float = 0.5, corners: bool = False, most: int = 4_000_000
 ) -> int | None:
     """Prove that every basis function allowed by the ratio peaks above ``target``.
 

@@ -84,14 +84,11 @@ def figures_6_and_7(run: Run) -> None:
         alike = all(abs(r - 1) < 0.1 for r in relative_to(values, "variant 2")["variant 1"].values() if r)
         run.claim(
             f"{name}-curvature",
-            source,
-            "Curvature maps of variants 1 and 2 are very close; variant 3 gives the worst quality.",
-            "shown as a picture",
             values,
             "reproduced" if worst == "variant 3" and alike else "not decidable",
-            "A polygon of our own, as the paper does not list its vertices, and “worst” is not defined: the paper is "
-            "reproduced where ∫(dκ/ds)² ds agrees with it, and where that integral does not, nothing is decided. "
-            + SEEN[name],
+            words="fig-6-and-7",
+            source=source,
+            more=SEEN[name],
         )
         run.save(_maps(polygon, box, results), name)
 
@@ -138,13 +135,13 @@ def figures_8_and_9(run: Run) -> None:
         far = {f"variant {v}": {"largest": max(b), "mean of contours": float(np.mean(b))} for v, b in beyond.items()}
         run.claim(
             f"{name}-overshoot",
-            source,
-            f"On {character} the results of variants 1 and 2 look nice; variant 3 overshoots at some corners.",
-            "shown as a picture",
             {"vertices": sum(len(p) for p in polygons), "contours": len(polygons), **far},
             verdict(far["variant 3"]["largest"] > 1.2 * max(far[f"variant {v}"]["largest"] for v in (1, 2))),
-            f"Largest distance of a span from its chord, in 1/1000 em. Polygon clicked around {data['face']}; the "
-            f"paper used {'Huawen Xingkai' if stem == 'dragon' else 'Huawen Lishu'}, which is not free.",
+            words="fig-8-and-9",
+            source=source,
+            character=character,
+            face=data["face"],
+            theirs="Huawen Xingkai" if stem == "dragon" else "Huawen Lishu",
         )
         contours = source_contours(given or FONTS / CHARACTERS[stem][1], character)
         run.save(_character(contours, polygons, splines, _worst_place(polygons, splines, em)), name)

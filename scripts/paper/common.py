@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -28,6 +29,9 @@ PAPER = (
     "Y. Xiong, G. Li, A. Mao, “Convergence analysis for B-spline geometric interpolation”, "
     "Computers & Graphics 36 (2012) 884–891"
 )
+
+WORDS: dict[str, dict[str, str]] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
+"""By claim, or kind of claims: where the paper says it, what, what the paper reports, and a note."""
 
 SEED = 2012
 GROUPS = (5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90)
@@ -147,22 +151,16 @@ class Run:
         """The 2200 polygons of Section 4, by number of vertices."""
         return {n: random_polygons(n, self.size(200, 3)) for n in self.groups}
 
-    def claim(
-        self,
-        id: str,
-        source: str,
-        claim: str,
-        paper: str,
-        measured: Any,
-        verdict: str,
-        note: str,
-        digits: int = 6,
-    ) -> None:
-        """Record a claim; numbers are rounded to ``digits``, so that the last bits of a machine do not show."""
+    def claim(self, id: str, measured: Any, verdict: str, words: str = "", digits: int = 6, **values: object) -> None:
+        """Record a claim, whose words are in claims.toml, with ``values`` put in; numbers are rounded to ``digits``.
+
+        The last bits of a machine then do not show.
+        """
         if not is_verdict(verdict):
             raise ValueError(f"verdict {verdict!r} of {id}")
+        said = {name: text.format(**values) for name, text in WORDS[words or id].items()}
         command = f"python -m scripts.paper --only {self.step}"
-        self.claims.append(Claim(id, source, claim, paper, rounded(measured, digits), verdict, note, command))
+        self.claims.append(Claim(id, measured=rounded(measured, digits), verdict=verdict, command=command, **said))
 
     def write_claims(self) -> None:
         """claims.json: sorted by nothing, in the order of the paper."""

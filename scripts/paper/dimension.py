@@ -54,9 +54,6 @@ def dimensions(run: Run) -> None:
     shown = {f"variant {v}": mean[v][f"n = {SHOWN}"] for v in VARIANTS}
     run.claim(
         "beyond-dimension",
-        "Section 3",
-        "Nothing in the method or its proofs needs the plane: variant 2 converges in R^d as in the plane.",
-        "the plane",
         {
             "polygons of a size and dimension": run.size(COUNT, 3),
             f"polygons from d = {MANY} on": run.size(FEWER, 3),
@@ -69,22 +66,10 @@ def dimensions(run: Run) -> None:
             f"mean ratio of the longest chord to the shortest by d, n = {SHOWN}": ratios,
         },
         "proven",
-        f"Vertices uniform in [0, {SIDE:g}]^d, to {TOLERANCE:g} √(d/2). Lemma 2 is about knots; Theorem 2 uses row "
-        "sums, and that a nearest point is nearest; see the [proof](../../docs/proofs.md#any-dimension). Iterations of "
-        "variant 2 hardly depend on d; those of variant 3 become fewer, as chords become more even. Their last factor "
-        "tends to the one of uniform knots, 2/3.",
+        side=SIDE,
+        tolerance=TOLERANCE,
     )
-    run.claim(
-        "beyond-masters",
-        "Section 3",
-        "The masters of a variable outline, stacked to one polygon in R^d, get one set of knots and footpoints.",
-        "not treated",
-        _masters(run),
-        "measured",
-        f"The longest contour of a glyph of {FACE}, at {SAMPLED} vertices, with masters made from it by smooth "
-        "displacements. The curve of a blend of masters is then the blend of their curves, and passes through the "
-        "blended vertices; of masters interpolated one by one the mean of control points and knots does not.",
-    )
+    run.claim("beyond-masters", _masters(run), "measured", face=FACE, sampled=SAMPLED)
     run.save(_picture(shown), "dimension", svg=True)
 
 

@@ -189,36 +189,24 @@ def quality_study(run: Run) -> None:
         values = [all_qualities(p, extent * 1e-7) for p in polygons]
         summed = {"∫κ² ds", "∫(dκ/ds)² ds", "self-crossings"}
         total = {m: {k: (sum if k in summed else max)(v[m][k] for v in values) for k in MEASURES} for m in METHODS}
-        run.claim(
-            f"quality-{name.lower().replace('. ', '-')}",
-            name,
-            "Fairness, which the paper only shows, in numbers.",
-            "pictures only",
-            total,
-            "measured",
-            "Integrals and crossings summed over the contours, the others the largest. Bulge: largest distance of a "
-            "span from its chord; overshoot: beyond the polygon's convex hull.",
-        )
+        run.claim(f"quality-{name.lower().replace('. ', '-')}", total, "measured", words="quality-figures", source=name)
     by_kind = {}
     for kind, polygons in glyph_polygons(run).items():
         by_kind[kind] = [all_qualities(p, 1e-4) for p in polygons]
         run.claim(
             f"quality-{kind.lower()}-contours",
-            "Section 4.4",
-            f"Fairness on contours of {kind} faces.",
-            "pictures only",
             {"contours": len(polygons), **summary(by_kind[kind])},
             "measured",
-            "Contours sampled at corners and every 0.03 em between them. " + _judgement(by_kind[kind]),
+            words="quality-contours",
+            kind=kind,
+            more=_judgement(by_kind[kind]),
         )
         run.claim(
             f"quality-{kind.lower()}-wins",
-            "Section 4.4",
-            f"Variant 2 is fairer than variant 3, contour by contour ({kind} faces).",
-            "always, in the pictures",
             {m: wins(by_kind[kind], m) for m in ("variant 3", "SciPy centripetal", "SciPy uniform")},
             "reproduced" if min(wins(by_kind[kind], "variant 3").values()) > 50 else "differs",
-            "Percent of contours on which variant 2 has the lower value.",
+            words="quality-wins",
+            kind=kind,
         )
     graded_corners(run)
     run.save(_boxes(by_kind), "quality", svg=False)
@@ -244,13 +232,8 @@ def graded_corners(run: Run) -> None:
             measured[method][str(factor)] = bulge(*curve, polygon) / short
     run.claim(
         "quality-graded-corner",
-        "Section 4.4",
-        "Variant 3 overshoots at corners with uneven chords; variant 2 does not.",
-        "shown on two characters",
         measured,
         "reproduced" if measured["variant 3"]["4"] > 2 * measured["variant 2"]["4"] else "differs",
-        "A square clicked at its corners and on its sides, chords growing by the factor away from each corner: "
-        "largest distance from the chords, in units of the shortest.",
     )
 
 

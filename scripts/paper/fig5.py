@@ -51,10 +51,6 @@ def figure_5(run: Run) -> None:
     decaying = max(measured[f"variant {v}"]["% of polygons at 1 or more in the end"] for v in (1, 2, 3))
     run.claim(
         "fig-5-composite-radius",
-        "Fig. 5",
-        "The spectral radius of the composite matrix grows for variant 0 in most runs, and decays from below 1 for "
-        "variants 1, 2, 3; fastest for variant 1, slowest for variant 3.",
-        "variant 0 up to 14e8; variants 1, 2, 3 fall to 0",
         measured,
         verdict(
             growing > 50
@@ -62,9 +58,8 @@ def figure_5(run: Run) -> None:
             and measured["variant 3"]["median iterations to 1e-3"]
             > max(measured[f"variant {v}"]["median iterations to 1e-3"] for v in (1, 2))
         ),
-        f"The first {COUNT} polygons of each group; variant 0 is followed for {CUT} steps only. Variants 1 and 2 decay "
-        "alike: the paper's “slightly faster” for variant 1 is not seen in the medians. The largest first value shows "
-        "where the curves begin.",
+        count=COUNT,
+        cut=CUT,
     )
     run.save(_picture(curves), "fig-5")
 

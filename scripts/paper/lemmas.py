@@ -107,18 +107,12 @@ def lemma_1(run: Run) -> None:
     floats = {name: np.array(M, dtype=np.float64) for name, M in (("first", A), ("second", B), ("product", product))}
     run.claim(
         "lemma-1",
-        "Lemma 1",
-        "If the spectral radii of all I - Bᵐ stay below 1 - ε, Algorithm 2 converges.",
-        "called obvious",
         {
             "vertices": len(A),
             "spectral radius of each": {k: float(np.abs(np.linalg.eigvals(floats[k])).max()) for k in floats},
             "each below 0.91 and the product above 1.5, exactly": single and grows,
         },
         "differs",
-        "False as a statement on matrices: two collocation matrices of uniform knots, footpoints within variant 1's "
-        "intervals, taken in turn. Decided in exact arithmetic, nothing is rounded. Whether an iteration can take such "
-        "footpoints in turn is not known. Theorem 2 does not need the lemma: its bound is on one norm.",
     )
 
 
@@ -148,14 +142,9 @@ def lemma_2(run: Run) -> None:
         vertices += int(has.sum())
     run.claim(
         "lemma-2",
-        "Lemma 2",
-        "Where the peak of B_i exceeds 1/2, B_i ≥ 1/2 + c holds exactly on an interval around the peak.",
-        "proven",
         {"c": c, "vertices": vertices, "intervals that are wrong": wrong, "u_i inside, %": 100 * inside / vertices},
         verdict(wrong == 0),
-        f"Each computed interval against {LOOK} values of B_i between the neighbouring knots, to a billionth of the "
-        "support; c is less where the peak does not allow it. The set is an interval because B_i has a single peak. It "
-        "need not hold u_i itself.",
+        look=LOOK,
     )
 
 
@@ -165,9 +154,6 @@ def corollary_1_converges(run: Run) -> None:
     results = [r for g in groups for r in gs.interpolate_many(g, 2, knots="uniform", residual_tolerance=TOLERANCE)]
     run.claim(
         "corollary-1-converges",
-        "Corollary 1",
-        "On uniform knots with c = 0 Algorithm 2 converges.",
-        "proven elsewhere, reference [23]",
         {
             "polygons": len(results),
             "not converged": sum(not r.converged for r in results),
@@ -175,7 +161,6 @@ def corollary_1_converges(run: Run) -> None:
             "most iterations": max(r.iterations for r in results),
         },
         verdict(all(r.converged for r in results)),
-        "A case of beyond-margin-zero, since all peaks are 2/3, which proves it here.",
     )
 
 
@@ -192,12 +177,8 @@ def appendix_a_holds(run: Run) -> None:
         ends += sum(appendix_a(u, x) == divided_difference(u, x) for x in u)
     run.claim(
         "appendix-a",
-        "Appendix A",
-        "The piecewise formula of the cubic basis function.",
-        "a formula in four branches",
         {"knot vectors": count, "equal inside": equal, "equal at knots, of five each": ends},
         verdict(equal == count and ends == 5 * count),
-        "Against the divided difference of a truncated power, in rational arithmetic, so that equal means equal.",
     )
 
 
@@ -221,18 +202,7 @@ def tie_rule(run: Run) -> None:
             "ties, variant 0": ties[0],
             "ties, variant 1": ties[1],
         }
-    run.claim(
-        "tie-rule",
-        "Algorithm 1",
-        "If several points of the curve are nearest, the one whose parameter is nearest to the knot is taken.",
-        "a rule of Algorithms 1 to 3",
-        measured,
-        "measured",
-        f"Points of the curve within the variant's interval whose squared distances agree to 1e-9, in {steps} steps, "
-        " 10 vertices a polygon. The rule hardly ever acts, and no proof depends on it: they use the least "
-        "distance alone. A tie that comes of a symmetry lies on both sides of the knot alike, so that the rule does "
-        "not decide it; the program takes the first.",
-    )
+    run.claim("tie-rule", measured, "measured", steps=steps)
 
 
 def _tied(parameters: FloatArray, squared: FloatArray) -> bool:

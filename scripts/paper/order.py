@@ -43,27 +43,18 @@ def approximation_order(run: Run) -> None:
     variants = [f"variant {v}" for v in VARIANTS]
     run.claim(
         "beyond-order",
-        "Section 4.4",
-        "All variants approximate a smooth curve to the order h⁴, if chords are even or graded smoothly.",
-        "not treated",
         {
             f"order, fitted from {FROM} vertices on": {k: {v: orders[k][v] for v in variants} for k in orders},
             f"distance at {ends} vertices": {k: {v: errors[k][v][-1] for v in variants} for k in errors},
             f"max |t - u| / h at {ends} vertices": {k: o[-1] for k, o in offsets.items()},
         },
         "measured",
-        "Two-sided distance from the curve, sampled. Ellipse: half axes 2 and 1; trefoil: r = 1 + 0.2 cos 3θ. Even: "
-        "equal distances along the curve; graded: between 0.5 and 1.5 of the mean, along a cosine; alternating: 1, "
-        "2, 1, 2, …, where all variants but variant 3 are of the order h² only.",
     )
     model = [local_error((1.0, 2.0))]
     for _ in range(2):
         model.append(local_error((1.0, 2.0), model[-1].intervals))
     run.claim(
         "beyond-order-alternating",
-        "Section 4.4",
-        "If chords alternate in a fixed ratio other than 1, variants 1, 2 and 4 are of the order h² and no better.",
-        "not treated",
         {
             "|t - u|, shorter chord 1": model[0].offset,
             "least B_i at the footpoints": model[0].least_basis,
@@ -73,14 +64,9 @@ def approximation_order(run: Run) -> None:
             },
         },
         "proven",
-        "Proof below: the distance is κ E a² + O(h³) where the curvature is κ and the shorter chord a. The numbers "
-        "are for chords 1:2; κ is the largest curvature of the curve.",
     )
     run.claim(
         "beyond-order-reparametrised",
-        "Section 4.4",
-        "Taking the footpoints for knots, u ← t, and interpolating again does not restore the order h⁴.",
-        "not treated",
         {
             "E": {"variant 2": model[0].error, ONCE: model[1].error, TWICE: model[2].error},
             "order": {c: {k: orders[f"{c}, alternating"][k] for k in (ONCE, TWICE)} for c in CURVES},
@@ -89,13 +75,9 @@ def approximation_order(run: Run) -> None:
             },
         },
         "proven",
-        "For chords 1:2, by the same theorem with other knots; the distance hardly changes.",
     )
     run.claim(
         "beyond-order-greville",
-        "Section 4.4",
-        "Another start restores it: control points at the polygon's points of the Greville abscissae.",
-        "not treated",
         {
             "order": {c: {k: orders[f"{c}, alternating"][k] for k in ("variant 3", GREVILLE)} for c in CURVES},
             f"distance at {ends} vertices": {
@@ -103,9 +85,6 @@ def approximation_order(run: Run) -> None:
             },
         },
         "measured",
-        "Variant 2, chords 1:2, beside variant 3. The footpoints then are at the knots up to h³; the reason is "
-        "below. It is measured only, and no option of the package: there the polygon is the first control polygon, "
-        "as in the paper.",
     )
     run.save(_picture(counts, errors), "order", svg=True)
 

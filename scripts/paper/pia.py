@@ -99,9 +99,6 @@ def pia(run: Run) -> None:
             failures[name] += sum(not converged for _, converged in each)
     run.claim(
         "beyond-pia-iterations",
-        "Section 4.2",
-        "With more vertices, iterations of variants 1, 2 and 4 grow less than those of the PIA family.",
-        "PIA is variant 3",
         {
             "polygons a row": run.size(COUNT, 2),
             "mean iterations": means,
@@ -109,10 +106,8 @@ def pia(run: Run) -> None:
             "growth": {name: series[str(n)] / series[str(run.groups[0])] for name, series in means.items()},
         },
         "measured",
-        f"The polygons of Section 4, to the tolerance {TOLERANCE:g}; runs of more than {MAX_ITERATIONS} iterations "
-        "count with these. PIA, WPIA (best weight), Jacobi's, Gauss and Seidel's and LSPIA (best weight, as many "
-        "data as control points) have one limit, that of variant 3; Gauss and Seidel's is to PIA what variant 4 is to "
-        "variant 2. The growth is from the fewest to the most vertices.",
+        tolerance=TOLERANCE,
+        max_iterations=MAX_ITERATIONS,
     )
     _fairness(run)
     figure_errors = _analytic(run)
@@ -134,13 +129,10 @@ def _fairness(run: Run) -> None:
                 ratios[f"variant {v}"][m].append(q[m] / base[m])
     run.claim(
         "beyond-pia-fairness",
-        "Section 4.4",
-        "Limits of variants 1, 2 and 4 beside the one limit of the PIA family.",
-        "variants 1 and 2 are fairer than variant 3",
         {name: {m: float(np.median(x)) for m, x in table.items()} for name, table in ratios.items()},
         "measured",
-        f"Medians over {len(polygons)} random polygons of {len(polygons[0])} vertices, relative to the PIA family: "
-        "below 1 is fairer.",
+        polygons=len(polygons),
+        vertices=len(polygons[0]),
     )
 
 
@@ -166,16 +158,12 @@ def _analytic(run: Run) -> dict[str, list[float]]:
     table[f"LSPIA, {data} data"] = _row(SALSPIA, spline, iterations, true)
     run.claim(
         "beyond-pia-analytic",
-        "Section 4.4",
-        "The same on an analytic curve that least-squares PIA is tried on: r = 2 + 4 cos(2θ + π/4) + cos(3θ + π/4).",
-        "not treated",
         {"control points": controls, **table},
         "measured",
-        f"Example 4.1 of the code for SaLSPIA (Peng and Li), with {data} data evenly in θ and {controls} control "
-        f"points, a tenth of those there, and a closed spline. Every {every}th of the data is a vertex; the last row "
-        f"has all of them and its knots at these vertices, iterated until no control point is {TOLERANCE:g} from its "
-        "limit. Distances are two-sided and from the exact curve; energies and the largest curvature are relative to "
-        "the exact curve's.",
+        data=data,
+        controls=controls,
+        every=every,
+        tolerance=TOLERANCE,
     )
     return errors
 

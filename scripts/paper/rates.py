@@ -88,15 +88,10 @@ def asymptotic_rate(run: Run) -> None:
         }
     run.claim(
         "beyond-rate",
-        "Section 4.2",
-        "The error of Algorithm 2 falls in the end by the factor ρ(I - B∘G) a step, G being the products N_i·N_j of "
-        "the curve's unit normals at the footpoints.",
-        "not treated",
         measured,
         "proven for limits with C′ ≠ 0 at the footpoints, these inside their intervals and their only ones",
-        f"Observed: mean factor of the last {TAIL} steps before the error is {TIGHT:g}. For variant 4 the matrix is "
-        "that of Gauss and Seidel. Runs with a footpoint at an end of its interval are counted as well, with 2 × 2 "
-        "blocks in its place; for those the formula is measured only.",
+        tail=TAIL,
+        tight=TIGHT,
     )
 
 
@@ -114,14 +109,8 @@ def rate_at_knots(run: Run) -> None:
         excess = max(excess, spectral_radius(np.eye(n) - B * G) - spectral_radius(np.eye(n) - B))
     run.claim(
         "beyond-rate-at-knots",
-        "Section 4.2",
-        "With footpoints at the knots ρ(I - B∘G) is at most 2/3 on uniform knots, and never above variant 3's own "
-        "rate.",
-        "not treated",
         {"knot vectors of each kind": count, "greatest, uniform": even, "greatest excess over variant 3": excess},
         "proven for t_i = u_i",
-        "Random normals and lognormal knots (σ = 1). Random polygons come near this case: see the factors of "
-        "theorem-2.",
     )
 
 
@@ -156,10 +145,6 @@ def family_of_limits(run: Run) -> None:
             repelling[name] = max(repelling[name], _rate_of_random_limit(rng, reach))
     run.claim(
         "beyond-fixed-points",
-        "Section 1",
-        "The limits of the iteration are a family with as many parameters as there are vertices: the start and the "
-        "order of updates pick one.",
-        "“many solutions”, Eq. (1)",
         {
             "limits": len(free),
             "of these, with a family around": sum(free),
@@ -168,9 +153,6 @@ def family_of_limits(run: Run) -> None:
             "greatest ρ(I - B∘G) at a limit, uniform knots": {"limits tried": count, **repelling},
         },
         "proven for limits as in beyond-rate with ρ(I - B∘G) < 1",
-        "Distances are those of control points, polygons in [0, 5]² with 10 vertices. The last entries: limits made by "
-        "choosing footpoints at random in their intervals and solving for the curve through them. Above 1 a limit "
-        "repels: variant 1 has such limits, so that nothing rules out runs that wander for long.",
     )
 
 
@@ -227,9 +209,6 @@ def variant_3(run: Run) -> None:
             e = after
     run.claim(
         "beyond-variant-3",
-        "Section 4.1",
-        "Variant 3, with footpoints fixed at the knots, converges on every knot vector.",
-        "observed",
         {
             "knot vectors": count,
             "largest asymmetry of B in the weighted norm": asymmetry,
@@ -240,8 +219,6 @@ def variant_3(run: Run) -> None:
             "largest factor of a step less ρ(I - B)": excess,
         },
         "proven for cubics, every closed knot vector of 4 or more simple knots",
-        "Lognormal knots, σ from 0 to 4. B is a reversible Markov chain: its eigenvalues are in (0, 1], and the "
-        "weighted error falls in every step by ρ(I - B) = 1 - λ_min, which may be near 1.",
         digits=3,
     )
 
@@ -261,18 +238,7 @@ def sharpness(run: Run) -> None:
     gaps = [m["room below the certificate"] for m in measured.values()]
     if not (min(gaps) > -1e-9 and gaps == sorted(gaps, reverse=True)):
         raise ArithmeticError("the example of sharpness does not hold")
-    run.claim(
-        "theorem-2-sharp",
-        "Theorem 2",
-        "No factor below 1 - 2c would do for all knots: there are polygons whose error falls as slowly as one likes.",
-        "not treated",
-        measured,
-        "measured",
-        f"c = {MARGIN}, by number of vertices. A circle with a small zigzag; knots with intervals 1, x, 1, x …, x "
-        "being such that B_i(u_i) = 1/2 + c, and arcs between vertices as h_i²(h_(i-1) + h_i + h_(i+1)). Footpoints "
-        "stay at the knots, and neighbouring errors point in opposite directions, as equality in Theorem 2 asks. "
-        "Knots are free here: with chord lengths we know of no such polygons.",
-    )
+    run.claim("theorem-2-sharp", measured, "measured", margin=MARGIN)
 
 
 def zigzag(n: int) -> tuple[FloatArray, FloatArray]:
@@ -319,14 +285,7 @@ def any_order(run: Run) -> None:
             "sweeps above the bound": above,
         }
     run.claim(
-        "beyond-any-order",
-        "Section 3",
-        "The vertices may be taken in any fixed order, one after the other or in blocks at once.",
-        "not treated",
-        measured,
-        "proven for cubics, n ≥ 4, every peak above 1/2, the same order in every sweep",
-        "A random order and random blocks for each polygon of 10 vertices. Orders that change from sweep to sweep are "
-        "open.",
+        "beyond-any-order", measured, "proven for cubics, n ≥ 4, every peak above 1/2, the same order in every sweep"
     )
 
 

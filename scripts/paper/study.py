@@ -82,15 +82,7 @@ def figure_2(run: Run) -> None:
         for v in (0, 1, 2, 3, 4)
     }
     above_40 = [s for n, s in shares["variant 0"].items() if int(n) > 40]
-    run.claim(
-        "fig-2-variant-0-share",
-        "Fig. 2",
-        "With the whole support allowed (variant 0) almost no polygon of more than 40 vertices converges.",
-        "share in percent falls with the number of vertices, to almost none above 40",
-        shares,
-        verdict(max(above_40, default=0.0) <= 5),
-        "Percent of polygons below 1e-6 within 1000 iterations, for all variants.",
-    )
+    run.claim("fig-2-variant-0-share", shares, verdict(max(above_40, default=0.0) <= 5))
     _all_converge(run)
     _against_global(run)
     _conclusion(run)
@@ -114,13 +106,8 @@ def _all_converge(run: Run) -> None:
     others = max(failed[f"variant {v}"] for v in (1, 2, 4))
     run.claim(
         "section-4.1-all-converge",
-        "Section 4.1",
-        "Variants 1 to 4 converge on all of the 2200 polygons.",
-        "0 failures",
         {"not below 1e-6 after 1000 steps": failed, "variant 3 on a larger sample": larger},
         verdict(others == 0 and 100 * none > 1 and all(r.converged for r in patient)),
-        "Variant 3 converges always, see beyond-variant-3, but may need more than 1000 steps on uneven chords, as one "
-        "of our polygons does. That the paper's sample has none is not likely, nor can it be excluded: see the chance.",
     )
 
 
@@ -137,16 +124,7 @@ def _against_global(run: Run) -> None:
         for n, b in both.items()
         if b.sum() >= 10 or run.quick
     }
-    run.claim(
-        "section-5-speed",
-        "Section 5",
-        "Compared to the global method, variant 0, confined footpoints speed convergence up greatly.",
-        "greatly",
-        measured,
-        verdict(all(m["variant 0"] > m["variant 2"] for m in measured.values())),
-        "Mean iterations, by number of vertices, on the polygons on which both converge; groups with at least ten such "
-        "polygons. On the others variant 0 does not converge within 1000 steps at all.",
-    )
+    run.claim("section-5-speed", measured, verdict(all(m["variant 0"] > m["variant 2"] for m in measured.values())))
 
 
 def _conclusion(run: Run) -> None:
@@ -155,9 +133,6 @@ def _conclusion(run: Run) -> None:
     vertices = sum(n * len(g.iterations) for n, g in groups.items())
     run.claim(
         "section-4.4-conclusion",
-        "Section 4.4",
-        "Variant 2 can guarantee convergence except in some extreme cases.",
-        "concluded from experiments",
         {
             "polygons": sum(len(g.iterations) for g in groups.values()),
             "vertices": vertices,
@@ -165,8 +140,6 @@ def _conclusion(run: Run) -> None:
             "not converged": sum(int((~g.converged).sum()) for g in groups.values()),
         },
         "proven for cubics whose peaks all exceed 1/2",
-        "The extreme cases are peaks at or below 1/2, which need neighbouring chords beyond r* (beyond-thresholds). "
-        "There the paper's rule, Remark 3, does fail on uneven chords: beyond-remark-3.",
     )
 
 
@@ -189,30 +162,21 @@ def figure_3(run: Run) -> None:
     growth = {v: m[last] / m[first] for v, m in means.items()}
     run.claim(
         "fig-3-mean-iterations",
-        "Fig. 3",
-        "Mean iterations grow slowly with the number of vertices for variants 1, 2 and 4; variant 3 needs the most.",
-        "variants 1, 2, 4 alike and slowly growing; variant 3 highest",
         means,
         verdict(
             all(means["variant 3"][n] > max(means[f"variant {v}"][n] for v in (1, 2, 4)) for n in means["variant 3"])
             and max(growth[f"variant {v}"] for v in (1, 2, 4)) < 2
         ),
-        "The order and the growth agree; the level of variant 3 does not, see fig-3-variant-3-level.",
     )
     _level(run)
     lead = {n: means["variant 2"][n] - means["variant 1"][n] for n in means["variant 1"]}
     run.claim(
         "section-4.2-variant-1-ahead",
-        "Section 4.2",
-        "Variant 1, with the larger range, needs slightly fewer iterations than variants 2 and 4.",
-        "variant 1 slightly ahead of both",
         {
             "variant 2 less variant 1": lead,
             "variant 4 less variant 1": {n: means["variant 4"][n] - means["variant 1"][n] for n in means["variant 1"]},
         },
         verdict(min(lead.values()) > 0),
-        "Positive where variant 1 is ahead. It is not: variants 1 and 2 are level on small polygons, 2 is ahead on "
-        "large ones, and 4 needs fewer sweeps throughout, as each of them already uses the updates before it.",
     )
     _variant_4(run)
     run.save(_means(means, run), "fig-3", svg=True)
@@ -230,9 +194,6 @@ def _level(run: Run) -> None:
     error = float(capped.std(ddof=1) / np.sqrt(size))
     run.claim(
         "fig-3-variant-3-level",
-        "Fig. 3",
-        f"With {n} vertices variant 3 needs some {PAPER_LEVEL} iterations in the mean.",
-        f"about {PAPER_LEVEL}, read from the plot",
         {
             "polygons": len(polygons),
             "mean": float(capped.mean()),
@@ -243,8 +204,7 @@ def _level(run: Run) -> None:
             "greatest mean of 200, no limit of 1000 steps": free.reshape(-1, size).mean(axis=1).max(),
         },
         verdict(bool(means.min() <= PAPER_LEVEL <= means.max())),
-        "No sample of 200 comes near, with the limit of 1000 steps or without. The iteration of variant 3 is linear "
-        "and has no choice in it but the knots, which are chord lengths here and there; we have no explanation.",
+        n=n,
     )
 
 
@@ -258,17 +218,12 @@ def _variant_4(run: Run) -> None:
     )
     run.claim(
         "section-4.2-variant-4",
-        "Section 3",
-        "Algorithm 3 (variant 4) is sometimes more efficient than Algorithm 2 (variant 2).",
-        "sometimes",
         {
             "fewer iterations, % of polygons": 100 * ahead.mean(),
             "more iterations, % of polygons": 100 * behind.mean(),
             "same curve (control points within 1e-4), %": 100 * (gaps < 1e-4).mean(),
         },
         verdict(bool(ahead.any())),
-        "Counted in sweeps. The two come to different curves through the same vertices: limits form a family, "
-        "see beyond-fixed-points, and the order of updates picks one.",
     )
 
 
@@ -301,13 +256,7 @@ def many_vertices(run: Run) -> None:
         measured |= {"least median error of a failure": min(medians), "greatest": max(medians)}
     run.claim(
         "section-4.1-variant-1-fluctuates",
-        "Section 4.1",
-        "With 300 vertices variant 1 fails on some polygons, its error fluctuating around 1e-4.",
-        "“some abortive cases”; about 1e-4",
         measured,
         verdict(max(medians) < 1e-2) if medians else "not decidable",
-        f"Medians are over the last {LAST} errors of a run that fails. The paper gives no count, and nothing rules "
-        "such runs out: where a footpoint may lie at B_i below 1/2 the row-sum bound exceeds 1, and some limits repel "
-        "(beyond-fixed-points). A search that misses a nearly double root, as a test for real roots of roots() can, "
-        "would fluctuate as well.",
+        last=LAST,
     )

@@ -27,12 +27,8 @@ def corollary_1(run: Run) -> None:
     root = min(x.real for x in np.roots([0.5, -1, 0, 1 / 6]) if abs(x.imag) < 1e-12 and x.real > 0)
     run.claim(
         "corollary-1",
-        "Corollary 1",
-        "For uniform knots and c = 0 footpoints are confined to u_i ± 0.466178.",
-        f"{PAPER_HALF_WIDTH}",
         half_width,
         verdict(abs(half_width - PAPER_HALF_WIDTH) < 5e-7 and abs(half_width - root) < 1e-9),
-        "Mean of the intervals the program computes; it is the zero of x³/2 - x² + 1/6.",
         digits=10,
     )
 
@@ -56,19 +52,11 @@ def theorem_1(run: Run) -> None:
     bound = max(r.rate_bound for r in uniform)
     run.claim(
         "theorem-1",
-        "Theorem 1",
-        "Moving one control point by the deviation of its vertex, with the footpoint kept within a span of its knot, "
-        "converges: each step multiplies the error by at most 1 - B_k < 1.",
-        "converges always",
         {"polygons": count, "not converged": failures, "largest factor less its bound": excess},
         verdict(failures == 0 and excess < 1e-9),
-        "Algorithm 1 on random polygons with 12 vertices. A negative excess leaves room below the bound.",
     )
     run.claim(
         "remark-1",
-        "Remark 1",
-        "For uniform knots the rate of Algorithm 1 is 5/6, as 1/6 ≤ B_k ≤ 4/6.",
-        "5/6",
         {
             "bound": bound,
             "largest factor, equal chords": max(step_factors(r.residuals).max() for r in uniform),
@@ -76,8 +64,6 @@ def theorem_1(run: Run) -> None:
             "mean factor, uniform knots": float(np.mean(np.concatenate(even))),
         },
         verdict(abs(bound - 5 / 6) < 1e-9 and max(f.max(initial=0) for f in even) <= 5 / 6 + 1e-9),
-        "5/6 is an upper bound, approached only while a footpoint stays at an end of its interval. With equal chords "
-        "the deviation at u_k is normal to the curve, the footpoint never leaves u_k, and the factor is 1 - 4/6.",
     )
 
 
@@ -109,13 +95,8 @@ def remark_2(run: Run) -> None:
     confined = [gs.interpolate_vertex(polygons[k], 0, max_iterations=200).converged for k in failed]
     run.claim(
         "remark-2",
-        "Remark 2",
-        "With the footpoint sought on the whole curve Algorithm 1 need not converge.",
-        "not guaranteed",
         {"polygons": len(polygons), "not converged": len(failed), "of these, converged within a span": sum(confined)},
         verdict(len(failed) > 0 and all(confined)),
-        "Another part of the curve comes nearer to the vertex than its own part; B_k is 0 there, so that moving P_k "
-        "leaves the footpoint and the error as they were, step after step, while P_k runs away.",
     )
     if failed:
         run.save(_picture_of_failure(polygons[failed[0]]), "remark-2", svg=True)
@@ -152,9 +133,6 @@ def theorem_2(run: Run) -> None:
     certified = bound < 1 - 1e-9
     run.claim(
         "theorem-2",
-        "Theorem 2",
-        "With footpoints where B_i ≥ 1/2 + c the largest error shrinks at least by the factor 1 - 2c a step.",
-        "converges",
         {
             "c": MARGIN,
             "polygons": len(results),
@@ -166,9 +144,6 @@ def theorem_2(run: Run) -> None:
             "not converged": sum(not r.converged for r in results),
         },
         verdict(bool((worst <= bound + 1e-9).all()) and all(r.converged for r in results)),
-        "Polygons without a fallback. The bound is never broken, and far from what happens on random polygons, though "
-        "sharp for knots that are free (theorem-2-sharp). At c = 0, as in the paper's experiments, its argument only "
-        "gives a factor of 1; beyond-margin-zero closes that gap.",
     )
     run.save(_picture_of_rates(bound, worst, mean), "theorem-2", svg=not run.quick)
 
@@ -199,24 +174,11 @@ HYPOTHESIS = "proven for cubics, n ≥ 4, every peak above 1/2"
 def convergence(run: Run) -> None:
     """Observed factors beside the proofs."""
     polygons = [p for n in run.groups for p in random_polygons(n, run.size(50, 3))]
-    run.claim(
-        "beyond-margin-zero",
-        "Theorem 2",
-        "With c = 0, as in all of the paper's experiments, Algorithm 2 still converges, at a linear rate.",
-        "assumed; Theorem 2 needs c > 0",
-        _factors(polygons, 2, 0.0),
-        HYPOTHESIS,
-        "Factors are those of the largest error, over one step and over two; polygons with a fallback are left out.",
-    )
+    run.claim("beyond-margin-zero", _factors(polygons, 2, 0.0), HYPOTHESIS)
     run.claim(
         "beyond-algorithm-3",
-        "Section 3",
-        "Algorithm 3 converges under the same condition as Algorithm 2.",
-        "examples only",
         {"c = 0": _factors(polygons, 4, 0.0), f"c = {MARGIN}": _factors(polygons, 4, MARGIN)},
         HYPOTHESIS,
-        "With c > 0 the bound is the same 1 - 2c a sweep, for any degree; with c = 0 the error falls at a linear rate, "
-        "which the proof does not name.",
     )
 
 
@@ -278,9 +240,6 @@ def remark_3(run: Run) -> None:
     random = {r: {k: v for k, v in iterations[r].items() if v == v} for r in RULES}
     run.claim(
         "beyond-remark-3",
-        "Remark 3",
-        "Setting t_i = u_i where the peak is not above 1/2 makes the algorithm more robust.",
-        "said of rare cases",
         {
             "polygons a row": count,
             "vertices without an interval, %": share,
@@ -288,7 +247,5 @@ def remark_3(run: Run) -> None:
             "mean iterations of those that converge": random,
         },
         "differs" if failures["Remark 3"][max(failures["Remark 3"], key=float)] > 0 else "reproduced",
-        f"Polygons of {VERTICES} vertices with lognormal chords, by σ. B_i(u_i) may be near 0 on uneven knots, and the "
-        "update then hardly moves the curve at its footpoint. Taking {B_i ≥ min(1/2 + c, 0.9 max B_i)} instead "
-        '(fallback="peak") cures it.',
+        vertices=VERTICES,
     )

@@ -41,31 +41,19 @@ def figure_1(run: Run) -> None:
 
     run.claim(
         "fig-1-failures",
-        "Fig. 1",
-        "Of 10,000 random basis functions only a handful have no value above 1/2.",
-        f"{PAPER_FAILURES} of 10,000",
         int(failed.sum()),
         verdict(run.quick or min(counts) <= PAPER_FAILURES <= max(counts)),
-        f"{len(maxima)} vectors of four intervals drawn uniformly from (0, 1); the paper's count lies within "
-        "what other seeds give. How the paper drew is not said: five sorted uniform knots give far more.",
+        vectors=len(maxima),
     )
     run.claim(
         "fig-1-seeds",
-        "Fig. 1",
-        "The count is one sample of a rare event.",
-        f"{PAPER_FAILURES}",
         {"fewest": min(counts), "most": max(counts), "seeds": len(counts), "sorted knots instead": sorted_failures},
         verdict(run.quick or min(counts) <= PAPER_FAILURES <= max(counts)),
-        "Consecutive seeds; the last entry is the count when five sorted uniform knots are drawn instead.",
     )
     run.claim(
         "fig-1-ratio",
-        "Fig. 1",
-        "Failures have a ratio of longest to shortest knot interval above 16.",
-        f"> {PAPER_RATIO}",
         {"smallest ratio, this sample": ratios[failed].min(initial=np.inf), "least of all seeds": min(smallest)},
         verdict(min(smallest) > PAPER_RATIO),
-        "“Above 16” is the luck of one sample. The true threshold is R* of claim beyond-thresholds.",
     )
     run.save(_maxima(maxima, failed), "fig-1")
 
@@ -112,19 +100,7 @@ def thresholds(run: Run) -> None:
             rows[f"{name} worst intervals"] = [round(h, 5) for h in found.intervals]
             boxes += found.boxes
         measured[f"degree {d}"] = {**rows, "boxes examined": boxes}
-    run.claim(
-        "beyond-thresholds",
-        "Section 5",
-        "A condition on interval lengths under which every basis function rises above 1/2.",
-        "open question",
-        measured,
-        "proven for degrees 3 to 6, simple knots (degree 2: always)",
-        "Every peak exceeds 1/2 if and only if the ratio is less than the threshold. R*: all intervals of a basis "
-        "function within this ratio of each other; r*: each interval within this ratio of its neighbours. At the "
-        "threshold the worst intervals, and their mirror image, alone have the peak 1/2. Computer-assisted, rounding "
-        "bounded a priori; the zeros are isolated in exact arithmetic.",
-        digits=10,
-    )
+    run.claim("beyond-thresholds", measured, "proven for degrees 3 to 6, simple knots (degree 2: always)", digits=10)
     _least_peaks(run)
     run.save(_least_peaks_picture(run.size(60, 8)), "thresholds", svg=True)
 
@@ -157,9 +133,6 @@ def _least_peaks(run: Run) -> None:
     extreme = peak_values(np.stack([flat, s, 1 - s, flat], axis=1))
     run.claim(
         "beyond-least-peaks",
-        "Section 5",
-        "What adjacent chords within a ratio certify before the iteration starts (cubics).",
-        "not treated",
         {
             **measured,
             "any ratio": {
@@ -170,10 +143,6 @@ def _least_peaks(run: Run) -> None:
             },
         },
         "proven for cubics with simple knots",
-        "Peaks are rounded down and factors up: what is written is what is proven. The factor is the one that Theorem "
-        "2 gives with that margin. Without a bound on the ratio peaks exceed 4/9, and no larger number will do: in the "
-        "worst case both outer intervals vanish, and the peak on the knots 0, 0, s, 1, 1 is 4s/(1 + 2s)² for s ≥ 1/2, "
-        "never above 1/2. The last entries compare with nearly such knots.",
     )
 
 
@@ -211,9 +180,6 @@ def degrees(run: Run) -> None:
             }
     run.claim(
         "beyond-degrees",
-        "Section 1",
-        "Degrees 2 to 6 converge on random polygons, whatever the maxima of their basis functions.",
-        "not claimed",
         {
             "not converged": {
                 rule: {d: sum(int((~g.converged).sum()) for g in by_n.values()) for d, by_n in table.items()}
@@ -227,10 +193,7 @@ def degrees(run: Run) -> None:
             "mean iterations, peak": {d: mean_iterations(by_n) for d, by_n in groups["peak"].items()},
         },
         "measured",
-        f"Without the paper's condition, on any polygon: see degrees-condition for the claim as it is meant. Knots are "
-        f"midpoints for even degrees. {COUNT} polygons of each group with the paper's rule, "
-        f"{COUNT} with the other. The higher the degree the more vertices lack an interval (see R*, r*) and rest on "
-        "the fallback.",
+        count=COUNT,
     )
     _under_the_condition(run, groups["Remark 3"])
     run.save(_shares(groups, run), "degrees", svg=True)
@@ -254,17 +217,7 @@ def _under_the_condition(run: Run, plain: dict[str, dict[int, Group]]) -> None:
             "failures of these": sum(int((~c).sum()) for c in clear),
         }
     failures = sum(m["failures"] + m["failures there"] + m["failures of these"] for m in measured.values())
-    run.claim(
-        "degrees-condition",
-        "Section 1",
-        "The approach also applies to degrees 2 to 6 where the maxima of the basis functions exceed 1/2.",
-        "said, not shown",
-        measured,
-        "reproduced" if failures == 0 else "differs",
-        "Variant 2 with c = 0 on uniform knots, on polygons whose chords are all within a ratio of R* (for degree 2, "
-        "which has none, within 10), and on those of the random polygons on which every vertex has an interval. With "
-        "c > 0 Theorem 2 holds for every degree as it stands; at c = 0 the proof is for cubics.",
-    )
+    run.claim("degrees-condition", measured, "reproduced" if failures == 0 else "differs")
 
 
 def _graded_polygons(degree: int, n: int, count: int) -> list[FloatArray]:
