@@ -53,7 +53,8 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f'| {c["source"]} | <a href="#{id}">{cell(c["claim"])}</a> | {SIGN[c["verdict"].split(" for ")[0]]} {c["verdict"]} |'
+        f'| {c["source"]} | <a href="#{id}">{cell(c["claim"])}</a> | {SIGN[c["verdict"].split(" for ")[0]]} '
+        f"{c['verdict']} |"
         for id, c in claims.items()
     ]
     return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
