@@ -42,8 +42,8 @@ WITH_COMB = {"jump", "lump", "inflection"}
 ON_PURPOSE = frozenset({"overlap", "crossing"})
 """What variable fonts have on purpose, so that it is left out."""
 
-POWERS = {"units": 1, "units²": 2}
-"""Powers of the em that values are compared in, by their unit."""
+POWERS = {"units": 1, "units²": 2, "/em": 1}
+"""Powers of the em that findings are compared in, by their unit: jumps by how far they are seen."""
 
 
 class Place(NamedTuple):
@@ -99,7 +99,7 @@ def window_of(place: Place) -> tuple[FloatArray, float]:
         points = cubics.reshape(-1, 2)
         low, high = points.min(axis=0), points.max(axis=0)
         return (low + high) / 2, 1.2 * (high - low).max() / 2
-    if finding.kind in {"slanted", "straight", "handles", "inflection", "extremum"}:
+    if finding.kind in {"slanted", "straight", "handles", "inflection", "extremum", "retracted"}:
         points = cubics[finding.segment]
         low, high = points.min(axis=0), points.max(axis=0)
         return (low + high) / 2, max(0.65 * (high - low).max(), NEAREST * unit)
@@ -143,7 +143,7 @@ def draw(axes: Axes, place: Place) -> None:
     contour = outline.contours[finding.contour]
     if finding.kind == "direction":
         concerned = np.linspace(0, len(contour), 40 * len(contour))
-    if finding.kind not in {"kink", "jump", "overlap", "crossing"}:
+    if finding.kind not in {"kink", "turn", "jump", "overlap", "crossing", "repeated", "leftover", "spike", "unlevel"}:
         axes.plot(*contour.at(concerned).T, color="#d33", linewidth=1.1)
     axes.plot(*finding.point, "o", color="#d33", markersize=9, fillstyle="none", markeredgewidth=0.9)
     axes.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), xticks=[], yticks=[])

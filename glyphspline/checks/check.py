@@ -8,11 +8,9 @@ import numpy as np
 
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
+from ..types import FloatArray, IntArray
 from .finding import Finding, Measured, findings
-from .kinds import KINDS, THRESHOLDS, Thresholds
-
-PER_EM = [number for number, kind in enumerate(KINDS) if kind.unit == "/em"]
-"""Kinds whose values passes have in 1/unit."""
+from .kinds import JUMP, REPEATED, THRESHOLDS, Thresholds
 
 
 def check(outline: Outline, thresholds: Thresholds = THRESHOLDS, *, outer: int = 0) -> list[Finding]:
@@ -36,19 +34,21 @@ def check_many(
     """As :func:`check`, of many outlines of one font at once; the result of one does not depend on the others."""
     if not outlines:
         return []
-    rows = measured([outline.arrays for outline in outlines], thresholds, outlines[0].metrics.units_per_em, outer)
+    arrays, repeats = [outline.arrays for outline in outlines], [outline.repeats for outline in outlines]
+    rows = measured(arrays, thresholds, outlines[0].metrics.units_per_em, outer, repeats)
     return findings([(outline.name, outline.gid) for outline in outlines], rows)
 
 
 def measured(
-    outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float, outer: int = 0
-) -> Measured:
-    """Measure the contours of glyphs of one em; ``outer`` as in :attr:`.Source.outer`."""
+    outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float, outer: int = 0,
+    repeats: Sequence[IntArray | None] = (),
+) -> Measured:  # fmt: skip
+    """Measure the contours of glyphs of one em; ``outer`` as in :attr:`.Source.outer`, ``repeats`` as in Contours."""
     from ..curves.bezier import evaluate
     from ..outlines.segments import all_cubics  # imports the compiler
     from .bends import bend_findings
     from .enclosed import enclosed_findings
-    from .segments import CONTOUR, OTHER, PLACE, VALUE, WHAT, Segments, joint_findings, segment_findings
+    from .segments import CONTOUR, OTHER, PLACE, SEEN, VALUE, WHAT, Segments, joint_findings, segment_findings
 
     limits = thresholds.limits(units_per_em)
     contours = joined(outlines)
@@ -59,10 +59,12 @@ def measured(
         joint_findings(segments, limits),
         segment_findings(segments, limits),
         bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle),
-        enclosed_findings(cubics, segments, glyphs, limits.doubled, units_per_em / 1000, outer),
+        enclosed_findings(cubics, segments, glyphs, limits, units_per_em / 1000, outer),
+        _repeated(outlines, contours.offsets, repeats),
     ])  # fmt: skip
-    table[np.isin(table[:, WHAT], PER_EM), VALUE] *= units_per_em
-    table = table[np.lexsort((-table[:, VALUE], table[:, WHAT]))]
+    jumps = table[:, WHAT] == JUMP
+    table[jumps, VALUE] *= units_per_em
+    table = table[np.lexsort((-table[:, VALUE], -np.where(jumps, table[:, SEEN], 0.0), table[:, WHAT]))]
     numbers = table[:, PLACE:].copy()
     contour = table[:, CONTOUR].astype(np.int64)
     places = np.floor(table[:, PLACE]).astype(np.int64)
@@ -74,3 +76,22 @@ def measured(
         evaluate(cubics[contours.offsets[contour] + places], numbers[:, 0]),
         np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
     )  # fmt: skip
+
+
+def _repeated(outlines: Sequence[ContourArrays], offsets: IntArray, repeats: Sequence[IntArray | None]) -> FloatArray:
+    """(n, 7) points that the font has more than once, which readers leave out; see :mod:`.segments`.
+
+    Args:
+        offsets: (C + 1,) first segment of each contour of all glyphs, and their number. repeats: of each glyph.
+    """
+    if all(own is None for own in repeats):
+        return np.empty((0, 7))
+    every = np.concatenate([
+        np.zeros(len(outline.degrees), dtype=np.int64) if own is None else own
+        for outline, own in zip(outlines, repeats, strict=True)
+    ])  # fmt: skip
+    at = np.flatnonzero(every)
+    rows = np.full((len(at), 7), np.nan)
+    contour = np.searchsorted(offsets, at, side="right") - 1
+    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 5] = REPEATED, contour, at - offsets[contour], every[at], -1
+    return rows

@@ -23,8 +23,11 @@ from ..curves.crossings import meetings
 from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
 from ..types import BoolArray, FloatArray, IntArray
-from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP
+from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
 from .segments import ROUNDING, Segments
+
+SHARP = np.radians(30.0)
+"""Angle between the sides of a spike's tip, at most."""
 
 STEPS, HALVINGS, MOST_HALVINGS = 16, 20, 128
 """Chords a segment on the two sides of a spur. Halvings of a chord, for the place where the sides of a spur part. Most
@@ -32,9 +35,9 @@ halvings of a segment for a ray: those around the ray's beginning are points by 
 
 
 def enclosed_findings(
-    cubics: FloatArray, segments: Segments, glyphs: IntArray, least: float, unit: float, outer: int
+    cubics: FloatArray, segments: Segments, glyphs: IntArray, limits: Limits, unit: float, outer: int
 ) -> FloatArray:
-    """(n, 6) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.segments`.
+    """(n, 7) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.segments`.
 
     Two contours that cross are reported once, of the first, where it first crosses; the value is the number of places.
     The value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
@@ -42,11 +45,11 @@ def enclosed_findings(
 
     Args:
         cubics: (m, 4, 2) the segments. glyphs: (G + 1,) where the contours of each glyph begin.
-        least: length of a doubled strand. unit: a thousandth of an em.
+        limits: length of a doubled strand, and between the sides of a spike. unit: a thousandth of an em.
         outer: direction of outer contours; 0 for that of most of the glyph's.
     """
     if not len(cubics):
-        return np.empty((0, 6))
+        return np.empty((0, 7))
     offsets = segments.offsets
     met, _ = meetings(cubics, offsets, glyphs)
     touch = ~np.isnan(met[:, 4])
@@ -55,11 +58,11 @@ def enclosed_findings(
         crossed = np.concatenate([crossed, crossing_contacts(cubics, offsets, touching)])
     crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
     crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
-    doubled = _doubled(cubics, offsets, touching, crosses, least)
+    doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
     pairs = doubled[:, [1, 5]].astype(np.int64)
     lies[pairs[pairs[:, 1] >= 0]] = True
-    spurs = _spurs(cubics, segments, least, min(ROUNDING, unit))
-    known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[:, 1])
+    spurs = _spurs(cubics, segments, limits, min(ROUNDING, unit))
+    known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[spurs[:, 0] == DOUBLED, 1])
     directions = _wrong_directions(cubics, offsets, glyphs, crosses, lies, unit, outer)
     return np.concatenate([_crossed(crossed), doubled[~known], spurs, directions])
 
@@ -68,7 +71,7 @@ def _crossed(crossed: FloatArray) -> FloatArray:
     """Overlaps and self-crossings, a row for each pair of contours: from (k, 4) crossings."""
     crossed = crossed[np.lexsort(crossed.T[::-1])]
     pairs, first, counts = np.unique(crossed[:, :2], axis=0, return_index=True, return_counts=True)
-    rows = np.full((len(pairs), 6), np.nan)
+    rows = np.full((len(pairs), 7), np.nan)
     itself = pairs[:, 0] == pairs[:, 1]
     rows[:, 0] = np.where(itself, CROSSING, OVERLAP)
     rows[:, 1], rows[:, 2], rows[:, 3] = pairs[:, 0], crossed[first, 2], counts
@@ -105,8 +108,8 @@ def _doubled(
                 # Share of a contour that lies on another one in the same direction, from which it is a copy.
                 total *= total >= 0.9 * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
-            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d))
-    return np.array(rows, dtype=np.float64).reshape(-1, 6)
+            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d, np.nan))
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
@@ -120,20 +123,29 @@ def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
     return float(np.hypot(*np.diff(points, axis=1).reshape(-1, 2).T).sum())
 
 
-def _spurs(cubics: FloatArray, segments: Segments, least: float, apart: float) -> FloatArray:
-    """Contours that run to a tip and straight back, from joints whose direction reverses but for rounding."""
+def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float) -> FloatArray:
+    """Contours that run to a tip and straight back, from joints whose direction reverses but for rounding; and spikes.
+
+    A spike's sides are farther apart. It is twice as long as they may be, or more, and sharper than ``SHARP``.
+    """
     offsets, before = segments.offsets, np.arange(len(cubics)) - 1
     before[offsets[:-1]] = offsets[1:] - 1
     products = segments.last[before].conj() * segments.first
     reverse = np.flatnonzero(products.real < 0)
     rounding = ROUNDING * (1 / np.abs(segments.last[before[reverse]]) + 1 / np.abs(segments.first[reverse]))
-    tips = reverse[np.abs(np.angle(products[reverse])) >= np.pi - rounding]
+    opens = np.pi - np.abs(np.angle(products[reverse]))
     rows = []
-    for tip, c in zip(tips.tolist(), (np.searchsorted(offsets, tips, side="right") - 1).tolist(), strict=True):
-        run = spur_length(cubics[offsets[c] : offsets[c + 1]], tip - int(offsets[c]), apart)
-        if run >= least:
-            rows.append((DOUBLED, c, tip - offsets[c], run, np.nan, -1))
-    return np.array(rows, dtype=np.float64).reshape(-1, 6)
+    for tip, exactly in zip(
+        reverse[opens <= SHARP].tolist(), (opens <= rounding)[opens <= SHARP].tolist(), strict=True
+    ):
+        c = int(np.searchsorted(offsets, tip, side="right")) - 1
+        contour, joint = cubics[offsets[c] : offsets[c + 1]], tip - int(offsets[c])
+        run, what = spur_length(contour, joint, apart) if exactly else 0.0, DOUBLED
+        if run < limits.doubled:
+            run, what = spur_length(contour, joint, limits.spike), SPIKE
+        if run >= (limits.doubled if what == DOUBLED else 2 * limits.spike):
+            rows.append((what, c, joint, run, np.nan, -1, np.nan))
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _wrong_directions(
@@ -150,7 +162,7 @@ def _wrong_directions(
     wanted = np.full(len(most), way) if way else np.where(most != 0, most, total)
     hidden = (areas != 0) & ~bounds & ~lies
     which = np.flatnonzero(hidden | (outer & (areas * wanted[owners] < 0)))
-    found = np.full((len(which), 6), np.nan)
+    found = np.full((len(which), 7), np.nan)
     found[:, 0], found[:, 1], found[:, 2] = DIRECTION, which, 0.0
     found[:, 3], found[:, 5] = np.abs(areas[which]), np.where(hidden[which], around[which], -1)
     return found

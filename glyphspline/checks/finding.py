@@ -11,7 +11,7 @@ import numpy as np
 from ..types import FloatArray, IntArray
 from .kinds import KINDS, LEVELS, Level
 
-SMALLER_IS_WORSE = frozenset({"short", "straight"})
+SMALLER_IS_WORSE = frozenset({"short", "straight", "leftover"})
 """Kinds whose smaller value is worse."""
 
 _ORDER = {kind.name: k for k, kind in enumerate(KINDS)}
@@ -31,6 +31,8 @@ class Finding:
         sentence: what it is, for people.
         location: where on the axes it is worst, axis tag to user-space value; empty if the font has none.
         between: user-space values of the masters on both sides, of a finding between masters; None of any other.
+        seen: how far a kink, turn or jump is seen, in font units: the length of the shorter segment beside it, times
+            the turn as a share of a corner's, or the relative jump; None of other kinds.
     """
 
     kind: str
@@ -48,6 +50,7 @@ class Finding:
     sentence: str
     location: dict[str, float] = field(default_factory=dict)
     between: tuple[float, float] | None = None
+    seen: float | None = None
 
 
 class Measured(NamedTuple):
@@ -56,7 +59,7 @@ class Measured(NamedTuple):
     Attributes:
         glyphs: (n,) which of the glyphs. contours: (n,) number of the contour in it. segments: (n,) of the contour.
         kinds: (n,) number of the kind.
-        numbers: (n, 4) local parameter, value, second number or NaN, another contour of the glyph or -1.
+        numbers: (n, 5) local parameter, value, second number or NaN, another contour of the glyph or -1, seen or NaN.
         points: (n, 2) where it is.
         locations: (n, A) user-space values of the axes where it is worst; A is 0 without axes.
         between: (n, 2) user-space values of the masters on both sides, or NaN.
@@ -79,23 +82,25 @@ class Measured(NamedTuple):
     def joined(cls, parts: Iterable[Measured], axes: int = 0) -> Measured:
         """The rows of all parts; ``axes``: number of axes of their locations."""
         none = np.zeros(0, dtype=np.int64)
-        empty = cls(none, none, none, none, np.zeros((0, 4)), np.zeros((0, 2)), np.zeros((0, axes)), np.zeros((0, 2)))
+        empty = cls(none, none, none, none, np.zeros((0, 5)), np.zeros((0, 2)), np.zeros((0, axes)), np.zeros((0, 2)))
         return cls._make([np.concatenate(columns) for columns in zip(*(list(parts) or [empty]), strict=True)])
 
 
 def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> list[list[Finding]]:
     """What was measured of glyphs, names and glyph indices, as values; ``tags`` of the axes, if there are any."""
     found: list[list[Finding]] = [[] for _ in glyphs]
-    for g, contour, segment, what, (parameter, value, detail, other), (x, y), at, (low, high) in zip(
+    for g, contour, segment, what, (parameter, value, detail, other, seen), (x, y), at, (low, high) in zip(
         *(column.tolist() for column in rows), strict=True
     ):
         kind, (name, gid) = KINDS[what], glyphs[g]
         second, another = None if detail != detail else detail, None if other < 0 else int(other)
         whom = "itself" if another is None else f"contour {another}"
-        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom)
+        along = with_unit(seen / detail, "units") if detail > 0 else ""
+        sentence = kind.sentence.format(value=with_unit(value, kind.unit), detail=second, other=whom, along=along)
         found[g].append(Finding(
             kind.name, kind.level, name, gid, contour, segment, parameter, (x, y), value, kind.unit, second, another,
             sentence, dict(zip(tags, at, strict=True)) if at else {}, None if low != low else (low, high),
+            None if seen != seen else seen,
         ))  # fmt: skip
     return found
 
@@ -109,6 +114,8 @@ def with_unit(value: float, unit: str) -> str:
 
 def badness(finding: Finding) -> float:
     """A number that is larger for the worse of two findings of a kind."""
+    if finding.kind == "jump" and finding.seen is not None:
+        return finding.seen
     return -finding.value if finding.kind in SMALLER_IS_WORSE else finding.value
 
 

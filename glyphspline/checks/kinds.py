@@ -15,7 +15,8 @@ LEVELS: tuple[Level, ...] = ("INFO", "WARN")
 
 (
     KINK, JUMP, LUMP, INFLECTION, STRAIGHT, SLANTED, EXTREMUM, SHORT, HANDLES, OVERLAP, DIRECTION, DOUBLED, CROSSING,
-) = range(13)  # fmt: skip
+    REPEATED, LEFTOVER, SPIKE, RETRACTED, UNLEVEL, TURN,
+) = range(19)  # fmt: skip
 """Numbers of the kinds in tables of findings: their places in ``KINDS``."""
 
 
@@ -25,8 +26,8 @@ class Kind:
 
     Attributes:
         name: as in tables, JSON and baselines. level: how serious it is. unit: of the finding's value.
-        sentence: what it says of a finding; ``{value}`` has its unit, ``{detail}`` is the second number, and
-            ``{other}`` the other contour, "contour 3", or "itself".
+        sentence: what it says of a finding; ``{value}`` has its unit, ``{detail}`` is the second number, ``{along}``
+            the length along which it is seen, and ``{other}`` the other contour, "contour 3", or "itself".
     """
 
     name: str
@@ -37,7 +38,7 @@ class Kind:
 
 KINDS = (
     Kind("kink", "WARN", "°", "turns by {value} at a joint meant to be smooth"),
-    Kind("jump", "INFO", "/em", "curvature jumps by {value} ({detail:.0%}) at a smooth joint"),
+    Kind("jump", "INFO", "/em", "curvature jumps by {value} ({detail:.0%}) at a smooth joint, beside {along}"),
     Kind("lump", "INFO", "%", "curvature swells by {value} where the bend needs no more maxima"),
     Kind("inflection", "INFO", "°", "bends back by {value} inside a segment that else bends one way"),
     Kind("straight", "INFO", "units", "a curve within {value} of a straight line"),
@@ -49,6 +50,12 @@ KINDS = (
     Kind("direction", "INFO", "units²", "runs in the wrong direction"),
     Kind("doubled", "INFO", "units", "lies on {other} for {value}"),
     Kind("crossing", "INFO", "places", "crosses {other}"),
+    Kind("repeated", "INFO", "points", "a point that is there more than once"),
+    Kind("leftover", "INFO", "units", "a point between two lines, {value} off a line in their place"),
+    Kind("spike", "INFO", "units", "a spike of {value}"),
+    Kind("retracted", "INFO", "units", "a handle of no length, of a curve of {value}"),
+    Kind("unlevel", "INFO", "units", "handles at an extreme point {value} off level"),
+    Kind("turn", "INFO", "°", "turns by {value} at a joint meant to be smooth, beside a short segment or handle"),
 )
 
 
@@ -67,6 +74,13 @@ class Thresholds:
     kink: float = _threshold(0.5, "degrees", "Turn of a joint meant to be smooth.")
     corner_angle: float = _threshold(12.0, "degrees", "Turn from which a joint is a corner, and meant.")
     line_angle: float = _threshold(3.0, "degrees", "The same for two lines: the chamfer of a serif is no kink.")
+    kink_height: float = _threshold(
+        0.75, "thousandths", "By which such a turn moves the far end of the shorter segment beside it."
+    )
+    turn: float = _threshold(2.0, "degrees", "Turn of a joint that is less, or that rounding to whole units may make.")
+    rounding: float = _threshold(
+        3.0, "deviations", "Standard deviations of that rounding; kinks and jumps beyond are not made by it."
+    )
     jump: float = _threshold(1.0, "1/em", "Difference of the curvatures on both sides of a smooth joint.")
     relative_jump: float = _threshold(0.25, "share", "The same as a share of the larger curvature.")
     lump: float = _threshold(0.25, "share", "By which a curvature exceeds the extrema beside it.")
@@ -81,6 +95,10 @@ class Thresholds:
     short: float = _threshold(3.0, "thousandths", "Below which a segment is very short.")
     handles: float = _threshold(0.01, "share", "By which a handle reaches beyond the place where both meet.")
     doubled: float = _threshold(5.0, "thousandths", "For which a contour lies on itself or on another one.")
+    spike: float = _threshold(3.0, "thousandths", "Between the sides of a spike, at most.")
+    leftover: float = _threshold(0.75, "thousandths", "Off a line in place of two, up to which their joint is one.")
+    unlevel: float = _threshold(0.6, "thousandths", "By which a handle at an extreme point is off level.")
+    unlevel_most: float = _threshold(4.0, "thousandths", "The same, beyond which it is meant.")
 
     def __post_init__(self) -> None:
         try:
@@ -96,6 +114,7 @@ class Thresholds:
             of_unit = {
                 "degrees": radians(value),
                 "share": value,
+                "deviations": value,
                 "1/em": value / units_per_em,
                 "thousandths": value * (units_per_em / 1000),
             }

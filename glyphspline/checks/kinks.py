@@ -186,7 +186,7 @@ class AxisKinks(Sequence[Kink]):
             return [self[k] for k in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(index)
-        glyph, contour, joint, _, (_, turn, made, _), (x, y), location, (low, high) = (
+        glyph, contour, joint, _, (_, turn, made, _, _), (x, y), location, (low, high) = (
             column[index].tolist() for column in self.rows
         )
         name, gid = self.glyphs[glyph]
@@ -403,7 +403,9 @@ def _joints_along(
     contours, segments = np.concatenate([places for _, places in smooth]).T
     rows = Measured(
         owners, contours, segments, np.full(len(row), KINK),
-        np.column_stack([np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0)]),
+        np.column_stack([
+            np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0), np.full(len(row), np.nan)
+        ]),
         start[row, 0, 0] + ways[row, None] * (end - start)[row, 0, 0], locations,
         np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
     )  # fmt: skip

@@ -15,13 +15,16 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .check import measured
 from .finding import Measured
-from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, Thresholds
+from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
 from .kinks import AxisKinks, kinks_along
-from .segments import rounding_turn
+from .segments import arc, rounding_turn
 from .turns import joint_controls, turns_of
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 """Kinds that are reported once a contour."""
+
+OF_SMOOTH = (JUMP, TURN)
+"""Kinds that a joint has only if it is a corner in no master."""
 
 ALIKE = 9
 """Decimals of values up to which two places are equally bad; then the first is reported."""
@@ -44,7 +47,10 @@ def on_axes(
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]
     places = [places_of(masters, location, chosen, steps) for masters in glyphs]
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
-    rows = measured(instances, thresholds, em, outer)
+    repeats = [
+        own for masters, at in zip(glyphs, places, strict=True) for own in (masters.repeats, *[None] * (len(at) - 1))
+    ]
+    rows = measured(instances, thresholds, em, outer, repeats)
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
@@ -52,7 +58,7 @@ def on_axes(
     smooth = {tuple(joint) for along in along_axes for joint in along.joints.tolist()}
     kinks = _kinks(glyphs, location, chosen, along_axes, smooth, thresholds)
     known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)
-    rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & ((rows.kinds != JUMP) | known)))
+    rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & (~np.isin(rows.kinds, OF_SMOOTH) | known)))
     worst = _worst(Measured.joined([kinks, rows]))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
     return worst._replace(locations=np.array(users).reshape(-1, len(axes))), along_axes
@@ -106,14 +112,18 @@ def _kinks(
         parts.append(rows._replace(locations=np.array(at).reshape(rows.locations.shape)))
     parts += [_off_axes(g, masters, location, axes, thresholds.kink) for g, masters in enumerate(glyphs)]
     rows = Measured.joined(parts)
+    height = thresholds.kink_height * glyphs[0].metrics.units_per_em / 1000
     kept = []
     for k, (g, contour, joint) in enumerate(joints_of(rows)):
         turn, made = rows.numbers[k, 1:3]
         of_contour = glyphs[g].contours[contour]
         lines = of_contour.degrees[joint - 1] == of_contour.degrees[joint] == 1
         meant = lines and turn - made >= thresholds.line_angle
-        rounded = by_rounding(of_contour, joint, glyphs[g].weights_at(rows.locations[k]))
-        if (g, contour, joint) in smooth and turn >= rounded and not meant:
+        weights = glyphs[g].weights_at(rows.locations[k])
+        rounded = thresholds.rounding * by_rounding(of_contour, joint, weights)
+        arm = _arm(of_contour, joint, weights)
+        rows.numbers[k, 4] = turn / thresholds.corner_angle * arm
+        if (g, contour, joint) in smooth and turn >= rounded and np.radians(turn) * arm >= height and not meant:
             kept.append(k)
     return rows.chosen(np.array(kept, dtype=np.int64))
 
@@ -128,7 +138,7 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
         turns = np.abs(turns_of(joint_controls(contour)[off]))
         k, joints = np.nonzero(turns >= least)
         n, starts = len(k), np.cumsum(contour.degrees) - contour.degrees
-        numbers = np.column_stack([np.zeros(n), turns[k, joints], np.zeros(n), np.full(n, -1.0)])
+        numbers = np.column_stack([np.zeros(n), turns[k, joints], np.zeros(n), np.full(n, -1.0), np.full(n, np.nan)])
         parts.append(Measured(
             np.full(n, g), np.full(n, number), joints, np.full(n, KINK), numbers,
             contour.points[off[k], starts[joints]], peaks[off[k]], np.full((n, 2), np.nan),
@@ -137,7 +147,9 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
 
 
 def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> float:
-    """Degrees by which rounding may turn a joint at (K,) weights of the masters: see :func:`.joints.rounding_turn`.
+    """Standard deviation in degrees of a joint that rounding turns, at (K,) weights of the masters.
+
+    See :func:`.segments.rounding_turn`.
 
     It is 0 where the default master is not in whole units.
 
@@ -151,6 +163,12 @@ def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> floa
     here = np.tensordot(weights, controls, axes=1)
     before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
     return float(np.degrees(rounding_turn(before, behind)))
+
+
+def _arm(contour: MasterContour, joint: int, weights: FloatArray) -> float:
+    """Length of the shorter segment at a joint, at (K,) weights of the masters: see :func:`.segments.arc`."""
+    here = np.tensordot(weights, joint_controls(contour)[:, joint], axes=1)
+    return min(arc(points) for points in here.view(np.complex128)[..., 0])
 
 
 def _worst(rows: Measured) -> Measured:

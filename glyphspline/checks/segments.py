@@ -9,7 +9,21 @@ import numpy as np
 from ..compiled import compiled
 from ..outlines.contour_arrays import ContourArrays
 from ..types import ComplexArray, FloatArray, IntArray
-from .kinds import EXTREMUM, HANDLES, INFLECTION, JUMP, KINK, SHORT, SLANTED, STRAIGHT, Limits
+from .kinds import (
+    EXTREMUM,
+    HANDLES,
+    INFLECTION,
+    JUMP,
+    KINK,
+    LEFTOVER,
+    RETRACTED,
+    SHORT,
+    SLANTED,
+    STRAIGHT,
+    TURN,
+    UNLEVEL,
+    Limits,
+)  # fmt: skip
 
 NO_HANDLE = 1e-6
 """Length in font units up to which a handle gives no tangent; the next control point then gives one."""
@@ -17,8 +31,11 @@ NO_HANDLE = 1e-6
 ROUNDING = np.sqrt(0.5)
 """How far rounding to whole units moves a point at most. It moves the two ends of a handle."""
 
-CHANCE = 3 * np.sqrt(1 / 12)
-"""Three standard deviations of a coordinate's rounding error: a smooth joint in 300 turns by more than this makes."""
+DEVIATION = np.sqrt(1 / 12)
+"""Standard deviation of a coordinate's rounding error. A smooth joint in 300 turns by more than three of them make."""
+
+LEVEL = np.tan(np.radians(10.0))
+"""Slope from which a handle is not meant to be level."""
 
 BACK = 0.25
 """Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
@@ -26,9 +43,10 @@ BACK = 0.25
 AT_END = 1e-9
 """Parameter distance within which a root is an end of its segment."""
 
-WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER = range(6)
-"""Columns of the table (n, 6) that passes return: number of the kind; contour; place on it, segment and local
-parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1."""
+WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER, SEEN = range(7)
+"""Columns of the table (n, 7) that passes return: number of the kind; contour; place on it, segment and local
+parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1; how far it is
+seen, see :class:`.Finding`, or NaN."""
 
 
 class Segments(NamedTuple):
@@ -83,24 +101,28 @@ def arranged(
 
 @compiled
 def put(
-    table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float = np.nan
-) -> int:
+    table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float = np.nan,
+    seen: float = np.nan,
+) -> int:  # fmt: skip
     """Write a row of the table after ``count`` others; return the number of rows."""
     row = table[count]
     row[WHAT], row[CONTOUR], row[PLACE], row[VALUE], row[DETAIL], row[OTHER] = what, contour, place, value, detail, -1
+    row[SEEN] = seen
     return count + 1
 
 
 @compiled
 def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
-    """(n, 6) kinks and jumps of curvature; see ``WHAT``.
+    """(n, 7) what may be wrong with smooth joints; see ``WHAT``.
 
     A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
-    turns by more than the limit, and, where both handles are in whole units, by more than rounding may make. Curvature
-    jumps are reported where both sides are cubics: a chain of quadratics has them everywhere.
+    turns by more than the limit, and, where both handles are in whole units, by more than rounding may make, and if
+    that moves the far end of the shorter segment beside it. Other turns have a limit of their own. Curvature jumps are
+    reported where both sides are cubics, as a chain of quadratics has them everywhere, and where all points are in
+    whole units only those larger than what rounding may make.
     """
     points, degrees, offsets, before, _, first, last = segments
-    table, count = np.empty((len(points), 6)), 0
+    table, count = np.empty((3 * len(points), 7)), 0
     for c in range(len(offsets) - 1):
         for j in range(offsets[c], offsets[c + 1]):
             i, place = before[j], j - offsets[c]
@@ -108,35 +130,55 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
             lines = degrees[i] == 1 and degrees[j] == 1
             if not turn < (limits.line_angle if lines else limits.corner_angle):
                 continue
-            if turn >= least_kink(last[i], first[j], limits.kink):
-                count = put(table, count, KINK, c, place, np.degrees(turn))
-            elif degrees[i] == 3 and degrees[j] == 3:
-                p, q = points[i], points[j]
+            p, q = points[i], points[j]
+            kinks = turn >= least_kink(last[i], first[j], limits.kink, limits.rounding)
+            if kinks or (turn >= limits.turn and not lines):
+                arm = min(arc(p), arc(q))
+                kinks = kinks and turn * arm >= limits.kink_height
+                if kinks or turn >= limits.turn:
+                    what, seen = KINK if kinks else TURN, turn / limits.corner_angle * arm
+                    count = put(table, count, what, c, place, np.degrees(turn), np.nan, seen)
+            if lines and not kinks:
+                chord = q[3] - p[0]
+                off = abs((chord.conjugate() * (q[0] - p[0])).imag) / length(chord)
+                if off <= limits.leftover:
+                    count = put(table, count, LEFTOVER, c, place, off)
+            if degrees[i] == 3 and degrees[j] == 3 and not kinks:
                 arriving, leaving = -end_curvature(p[3], p[2], p[1]), end_curvature(q[0], q[1], q[2])
                 jump, most = abs(leaving - arriving), max(abs(arriving), abs(leaving))
                 if limits.jump <= jump < np.inf and jump >= limits.relative_jump * most:
-                    count = put(table, count, JUMP, c, place, jump, jump / most)
+                    by_rounding = 0.0
+                    whole = is_whole(p[1]) and is_whole(p[2]) and is_whole(p[3]) and is_whole(q[1]) and is_whole(q[2])
+                    if whole:
+                        by_rounding = rounding_variance(p[3], p[2], p[1]) + rounding_variance(q[0], q[1], q[2])
+                    if jump > limits.rounding * np.sqrt(by_rounding):
+                        share = jump / most
+                        count = put(table, count, JUMP, c, place, jump, share, share * min(arc(p), arc(q)))
+            if degrees[i] > 1 and degrees[j] > 1 and not kinks:
+                off = off_level(last[i], first[j], p[0] - q[0], q[3] - q[0])
+                if limits.unlevel <= off <= limits.unlevel_most:
+                    count = put(table, count, UNLEVEL, c, place, off)
     return table[:count]
 
 
 @compiled
 def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
-    """(n, 6) what may be wrong with single segments; see ``WHAT``. What concerns a segment as a whole is at its middle.
+    """(n, 7) what may be wrong with single segments; see ``WHAT``. What concerns a segment as a whole is at its middle.
 
     A very short segment has no other finding, and a segment whose handles reach too far does not count as bending back:
     that is what such handles do.
     """
     degrees, offsets = segments.degrees, segments.offsets
-    table, count = np.empty((5 * len(degrees), 6)), 0  # four extrema, and one more
+    table, count = np.empty((6 * len(degrees), 7)), 0  # four extrema, a handle of no length, and one more
     for c in range(len(offsets) - 1):
         for j in range(offsets[c], offsets[c + 1]):
             cubic, place = segments.points[j], j - offsets[c] + 0.5
             chord = cubic[3] - cubic[0]
             size = length(chord)
             if size < limits.short:
-                legs = length(cubic[1] - cubic[0]) + length(cubic[2] - cubic[1]) + length(cubic[3] - cubic[2])
-                if (size + legs) / 2 < limits.short:
-                    count = put(table, count, SHORT, c, place, (size + legs) / 2)
+                short = arc(cubic)
+                if short < limits.short:
+                    count = put(table, count, SHORT, c, place, short)
                     continue
             if degrees[j] == 1:
                 along, off = max(abs(chord.real), abs(chord.imag)), min(abs(chord.real), abs(chord.imag))
@@ -159,6 +201,8 @@ def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
                 if off < limits.straight:
                     count = put(table, count, STRAIGHT, c, place, off)
                     continue
+            if min(length(cubic[1] - cubic[0]), length(cubic[3] - cubic[2])) <= NO_HANDLE:
+                count = put(table, count, RETRACTED, c, place, size)
             if degrees[j] == 3:
                 reach, alone = reaches_beyond(cubic, limits)
                 if reach > 0 and not alone:
@@ -179,6 +223,13 @@ def length(a: complex) -> float:
 
 
 @compiled
+def arc(cubic: ComplexArray) -> float:
+    """About how long a cubic is: midway between its chord and its control polygon."""
+    legs = length(cubic[1] - cubic[0]) + length(cubic[2] - cubic[1]) + length(cubic[3] - cubic[2])
+    return (length(cubic[3] - cubic[0]) + legs) / 2
+
+
+@compiled
 def turn_of(a: complex, b: complex) -> float:
     """Angle from one vector to another, positive to the left; NaN if one has no length."""
     both = a.conjugate() * b
@@ -186,19 +237,53 @@ def turn_of(a: complex, b: complex) -> float:
 
 
 @compiled
-def least_kink(a: complex, b: complex, limit: float) -> float:
+def least_kink(a: complex, b: complex, limit: float, deviations: float) -> float:
     """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make."""
-    return max(limit, rounding_turn(length(a), length(b))) if is_whole(a) and is_whole(b) else limit
+    return max(limit, deviations * rounding_turn(length(a), length(b))) if is_whole(a) and is_whole(b) else limit
 
 
 @compiled
 def rounding_turn(before: float, behind: float) -> float:
-    """Radians by which rounding to whole units may turn a joint of two handles of these lengths; infinite for one of 0.
+    """Standard deviation of the radians by which rounding to whole units turns a joint of two handles of these lengths.
 
-    The joint and the two other ends of the handles are rounded each, and the joint moves both handles.
+    It is infinite for one of 0. The joint and the two other ends of the handles are rounded each, and the joint moves
+    both handles.
     """
     first, second = 1 / before, 1 / behind
-    return CHANCE * np.sqrt(first * first + second * second + (first + second) ** 2)
+    return DEVIATION * np.sqrt(first * first + second * second + (first + second) ** 2)
+
+
+@compiled
+def rounding_variance(a: complex, b: complex, c: complex) -> float:
+    """Variance of :func:`end_curvature` where rounding to whole units moves the three points.
+
+    A level handle is level by design: both its ends are rounded alike.
+    """
+    own = b - a
+    d = length(own)
+    along = (own.conjugate() * (c - a)).real / (d * d)
+    ends = 1.0 if own.real == 0 or own.imag == 0 else along * along + (1 - along) ** 2
+    height = (2 / 3) ** 2 * (1 + ends) / d**4
+    return DEVIATION**2 * (height + 8 * (end_curvature(a, b, c) / d) ** 2)
+
+
+@compiled
+def off_level(a: complex, b: complex, before: complex, behind: complex) -> float:
+    """How far the handles of an extreme point are off level, the farther one; 0 if it is none.
+
+    A point is extreme in x or y if both handles are nearly level, and the curve goes to one side of it.
+
+    Args:
+        a, b: handles in the contour's direction. before, behind: from the point to the ends of both curves.
+    """
+    for turned in range(2):
+        if turned:
+            a, b, before, behind = 1j * a, 1j * b, 1j * before, 1j * behind
+        off = max(abs(a.imag), abs(b.imag))
+        level = abs(a.imag) < LEVEL * abs(a.real) and abs(b.imag) < LEVEL * abs(b.real) and a.real * b.real > 0
+        if level and before.imag * behind.imag > 0 and min(abs(before.imag), abs(behind.imag)) > off:
+            return off
+    return 0.0
 
 
 @compiled
@@ -241,7 +326,7 @@ def off_line(segments: Segments, j: int, chord: complex, limits: Limits) -> floa
     arriving, leaving = segments.last[segments.before[j]], segments.first[segments.behind[j]]
     for other, own in ((arriving, segments.first[j]), (leaving, segments.last[j])):
         smooth = abs(turn_of(other, own)) < limits.corner_angle
-        if smooth and abs(turn_of(other, chord)) >= least_kink(other, chord, limits.kink):
+        if smooth and abs(turn_of(other, chord)) >= least_kink(other, chord, limits.kink, limits.rounding):
             return np.inf
     return most
 

@@ -82,7 +82,9 @@ def check(
 
         put(
             report.html,
-            findings_page([CheckedFont(each.font, each.source, each.findings) for each in faces if each.source]),
+            findings_page(
+                [CheckedFont(each.font, each.source, each.findings, each.scores) for each in faces if each.source]
+            ),
         )
     if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source

@@ -27,11 +27,11 @@ MARKDOWN_ROWS = 200
 
 COLUMNS = (
     "font", "glyph", "gid", "level", "kind", "contour", "segment", "parameter", "x", "y", "value", "unit", "detail",
-    "other", "location", "between", "sentence",
+    "other", "location", "between", "sentence", "seen", "score",
 )  # fmt: skip
 """Of CSV."""
 
-NUMBERS = ("contour", "segment", "point")
+NUMBERS = ("score", "contour", "segment", "point")
 """Columns of tables that are aligned to the right."""
 
 LEVEL_OF: Mapping[str, Level] = {kind.name: kind.level for kind in KINDS}
@@ -43,12 +43,17 @@ def columns(found: Sequence[tuple[Face, Finding]], several: bool) -> tuple[list[
     headings = ["font"] * several + ["glyph", "level", *NUMBERS, "finding"] + ["location"] * located
     rows = [
         [face.font] * several
-        + [finding.glyph, finding.level, str(finding.contour), str(finding.segment)]
+        + [finding.glyph, finding.level, score_words(face, finding), str(finding.contour), str(finding.segment)]
         + ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
         + [place_on_axes(finding, face.home)] * located
         for face, finding in found
     ]
     return headings, rows
+
+
+def score_words(face: Face, finding: Finding) -> str:
+    """The score of a finding's glyph, in whole thousandths of an em."""
+    return f"{face.scores.get(finding.glyph, 0.0):.0f}"
 
 
 def table(found: Sequence[tuple[Face, Finding]], several: bool) -> str:
@@ -100,6 +105,7 @@ def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
             "glyphs": face.glyphs,
             "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
             "known": face.known,
+            "scores": face.scores,
             "axes": [asdict(numbers) for numbers in face.axes],
             "findings": [asdict(finding) for finding in face.findings],
             "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
@@ -121,6 +127,7 @@ def as_csv(found: Sequence[tuple[Face, Finding]]) -> str:
             "y": item.point[1],
             "location": " ".join([f"{tag}={value!r}" for tag, value in item.location.items()]),
             "between": "" if item.between is None else "{!r} {!r}".format(*item.between),
+            "score": face.scores.get(item.glyph, 0.0),
         }
         cells = [own[name] if name in own else getattr(item, name) for name in COLUMNS]
         writer.writerow([_inert(cell) if isinstance(cell, str) else cell for cell in cells])

@@ -66,6 +66,13 @@ def font_lines(facts: Mapping[str, Any]) -> Iterator[str]:
         counts = [f"{font[what]} {what}" for what in ("glyphs", "characters", "contours", "segments") if what in font]
         yield f"  {', '.join(counts)}"
         for key, what in (
+            ("doubled_points", "points that are there more than once"),
+            ("leftover_points", "points on a line between two others"),
+            ("contours_left_out", "contours that enclose nothing: of one or two points, or on a line"),
+        ):
+            if key in font:
+                yield f"  {font[key]:,} {what}"
+        for key, what in (
             ("broken", "cannot be read"),
             ("degenerate", "with contours that enclose nothing"),
             ("overlaps", "with overlaps"),

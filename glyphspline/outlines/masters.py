@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import GlyphsplineError
 from ..types import BoolArray, FloatArray, IntArray, counted
-from .outline import Contour, FontMetrics, Outline
+from .outline import Contour, Contours, FontMetrics, Outline
 
 Region: TypeAlias = tuple[tuple[float, float, float], ...]
 """Start, peak and end on each axis; zeros where the axis does not count."""
@@ -104,6 +104,7 @@ class Masters:
             of the regions.
         advances: (K,) advances of the masters.
         notes: one sentence for each part that the reader left out.
+        repeats: of points that all masters have more than once; see :class:`.Contours`.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Masters:
     advances: FloatArray = field(default_factory=lambda: np.zeros(1))
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
+    repeats: IntArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "contours", tuple(self.contours))
@@ -124,7 +126,10 @@ class Masters:
         """A glyph of a font that is not variable: one master, no axes."""
         contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
         head, advances = (outline.name, outline.gid, outline.unicodes), np.array([outline.advance])
-        return cls(*head, contours=contours, advances=advances, metrics=outline.metrics, notes=outline.notes)
+        return cls(
+            *head, contours=contours, advances=advances, metrics=outline.metrics, notes=outline.notes,
+            repeats=outline.repeats,
+        )  # fmt: skip
 
     def __repr__(self) -> str:
         tags = " ".join([axis.tag for axis in self.axes])
@@ -133,6 +138,13 @@ class Masters:
 
     def __len__(self) -> int:
         return len(self.regions) + 1
+
+    @property
+    def repeats_of(self) -> list[IntArray]:
+        """The repeats of each contour."""
+        counts = [len(contour.degrees) for contour in self.contours]
+        repeats = np.zeros(sum(counts), dtype=np.int64) if self.repeats is None else self.repeats
+        return np.split(repeats, np.cumsum(counts)[:-1])
 
     @property
     def peaks(self) -> FloatArray:
@@ -180,14 +192,14 @@ class Masters:
     def instance(self, location: Mapping[str, float]) -> Outline:
         """The glyph at a location."""
         weights = self.weights(location)
-        contours = [contour.mixed(weights) for contour in self.contours]
+        contours = Contours([contour.mixed(weights) for contour in self.contours], self.repeats)
         return Outline(
             self.name, self.gid, self.unicodes, float(self.advances @ weights), contours, self.metrics, self.notes
         )
 
     def master(self, k: int) -> Outline:
         """The glyph in master k."""
-        contours = [Contour(contour.points[k], contour.degrees) for contour in self.contours]
+        contours = Contours([Contour(each.points[k], each.degrees) for each in self.contours], self.repeats)
         return Outline(self.name, self.gid, self.unicodes, float(self.advances[k]), contours, self.metrics, self.notes)
 
     def ticks(self, a: int) -> FloatArray:

@@ -100,11 +100,17 @@ class Contour:
 
 
 class Contours(Views[Contour]):
-    """The contours of a glyph: a sequence of :class:`Contour`, which are views of ``arrays``."""
+    """The contours of a glyph: a sequence of :class:`Contour`, which are views of ``arrays``.
 
-    __slots__ = ("arrays",)
+    Attributes:
+        arrays: the contours end to end. repeats: (m,) how many more times the font has the point where each segment
+            begins: readers leave out segments of no length. None if it has no point twice, or is no font.
+    """
 
-    def __init__(self, contours: Iterable[Contour] | ContourArrays = ()) -> None:
+    __slots__ = ("arrays", "repeats")
+
+    def __init__(self, contours: Iterable[Contour] | ContourArrays = (), repeats: IntArray | None = None) -> None:
+        self.repeats = repeats
         if isinstance(contours, ContourArrays):
             self.arrays = contours
             super().__init__(contours.num_contours, lambda: _views(contours))
@@ -174,6 +180,12 @@ class Outline:
         """The contours end to end."""
         assert isinstance(self.contours, Contours)
         return self.contours.arrays
+
+    @property
+    def repeats(self) -> IntArray | None:
+        """Of points that the font has more than once; see :class:`Contours`."""
+        assert isinstance(self.contours, Contours)
+        return self.contours.repeats
 
     def __repr__(self) -> str:
         codes = "".join([f" U+{code:04X}" for code in self.unicodes])

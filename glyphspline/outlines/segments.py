@@ -41,23 +41,28 @@ def lasting(cubics: FloatArray) -> IntArray:
 
 
 @compiled
-def keep_lasting(points: FloatArray, degrees: IntArray, coincident: float) -> tuple[int, int, float]:
-    """Leave, at the front of both arrays, what a contour in K masters has without segments of no length.
+def keep_lasting(
+    points: FloatArray, degrees: IntArray, repeats: IntArray, coincident: float, closed: bool
+) -> tuple[int, int, float]:
+    """Leave, at the front of the arrays, what a contour in K masters has without segments of no length.
 
     Such a segment has all its points within ``coincident``, in x and in y, of the end of the last one kept, in every
     master.
 
     Args:
         points: (K, N, 2) and degrees: (m,), as in :class:`.masters.MasterContour`.
+        repeats: (m,) how many segments were left out where each begins; those left out here are added, in front too.
+        closed: the last segment is a line that the reader has added: to leave it out does not count.
 
     Returns:
         The numbers of points and of segments left, 0 if the contour encloses nothing: its points lie on one line in all
         masters. They are -1 if a coordinate is not finite. The largest distance of a point that was dropped.
     """
     K, N, _ = points.shape
-    n = m = first = 0
+    n = m = first = left_out = 0
     dropped = 0.0
     for j in range(len(degrees)):
+        left_out += repeats[j]
         end, lasts, away = first + degrees[j], False, 0.0
         for k in range(K):
             for i in range(first + 1, end + 1):
@@ -69,11 +74,14 @@ def keep_lasting(points: FloatArray, degrees: IntArray, coincident: float) -> tu
             for k in range(K if n < first else 0):
                 for i in range(1, min(end, N - 1) - first + 1):
                     points[k, n + i, 0], points[k, n + i, 1] = points[k, first + i, 0], points[k, first + i, 1]
-            degrees[m] = degrees[j]
+            degrees[m], repeats[m], left_out = degrees[j], left_out, 0
             n, m = n + degrees[j], m + 1
         else:
             dropped = max(dropped, away)
+            left_out += j < len(degrees) - 1 or not closed
         first = end
+    if m:
+        repeats[0] += left_out  # the end is the beginning
     encloses = False
     for k in range(K):
         square = far_x = far_y = 0.0

@@ -112,9 +112,10 @@ class Designspace(Source):
 
     def _outline(self, head: Head) -> Outline:
         """The glyph at the location, by the pen of all readers: it drops what has no length there."""
-        instance, pen = self._masters(head).instance(self.location), ContourPen()
-        for contour in instance.contours:
-            pen.contour(contour.points[None], contour.degrees)
+        masters, pen = self._masters(head), ContourPen()
+        instance = masters.instance(self.location)
+        for contour, repeats in zip(instance.contours, masters.repeats_of, strict=False):
+            pen.contour(contour.points[None], contour.degrees, repeats)
         notes = (*instance.notes, *pen.notes)
         return replace(instance, contours=pen.contours, notes=notes, snapped=pen.snapped)
 
@@ -158,14 +159,14 @@ class Designspace(Source):
                 continue
             child = children[part.base]
             of_child = child.weights_at(found.peaks)
-            for contour in child.contours:
+            for contour, repeats in zip(child.contours, child.repeats_of, strict=False):
                 placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
-                pen.contour(placed, contour.degrees)
+                pen.contour(placed, contour.degrees, repeats)
             notes += child.notes
         pen.finish()
         found = replace(
             found, contours=tuple(pen.stacks), advances=weights @ np.array([width for _, _, width in drawn]),
-            notes=(*pen.notes, *notes),
+            notes=(*pen.notes, *notes), repeats=pen.repeated,
         )  # fmt: skip
         if above:  # components are asked for again
             self._components[name] = found

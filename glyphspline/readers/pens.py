@@ -13,7 +13,7 @@ from fontTools.pens.basePen import BasePen
 
 from ..errors import GlyphsplineError
 from ..outlines.masters import MasterContour
-from ..outlines.outline import Contour
+from ..outlines.outline import Contour, Contours
 from ..types import FloatArray, IntArray
 
 COINCIDENT = 1e-3
@@ -55,6 +55,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
 
     Attributes:
         stacks: the contours so far. left_out: numbers of those left out. drawn: the count of both.
+        repeats: of each contour; see :class:`.Contours`.
         snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
     """
 
@@ -65,6 +66,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
     ) -> None:
         super().__init__(glyph_set)
         self.stacks: list[MasterContour] = []
+        self.repeats: list[IntArray] = []
         self.left_out: list[int] = []
         self.drawn = 0
         self.snapped = 0.0
@@ -76,9 +78,15 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self._nesting = [glyph_name]
 
     @property
-    def contours(self) -> list[Contour]:
+    def contours(self) -> Contours:
         """The contours in the first master."""
-        return [Contour.trusted(stack.points[0], stack.degrees) for stack in self.stacks]
+        return Contours([Contour.trusted(stack.points[0], stack.degrees) for stack in self.stacks], self.repeated)
+
+    @property
+    def repeated(self) -> IntArray | None:
+        """The repeats of all contours, or None if there are none."""
+        repeats = np.concatenate(self.repeats) if self.repeats else np.zeros(0, dtype=np.int64)
+        return repeats if repeats.any() else None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -121,24 +129,25 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
                 points[:, n, 0], points[:, n, 1] = x, y
         degrees = np.array([*self._degrees, 1], dtype=np.int64)
         self._points, self._degrees = [], []
-        self._keep(points, degrees)
+        self._keep(points, degrees, np.zeros_like(degrees), True)
 
     _closePath = _endPath = finish
 
-    def contour(self, points: FloatArray, degrees: IntArray) -> None:
-        """Add a closed contour of (K, N, 2) points and segments of (m,) degrees."""
-        self._keep(points.copy(), degrees.copy())
+    def contour(self, points: FloatArray, degrees: IntArray, repeats: IntArray | None = None) -> None:
+        """Add a closed contour of (K, N, 2) points and segments of (m,) degrees and repeats."""
+        self._keep(points.copy(), degrees.copy(), np.zeros_like(degrees) if repeats is None else repeats.copy(), False)
 
-    def _keep(self, points: FloatArray, degrees: IntArray) -> None:
-        """Add what is left of a contour, whose arrays are no longer needed."""
+    def _keep(self, points: FloatArray, degrees: IntArray, repeats: IntArray, closed: bool) -> None:
+        """Add what is left of a contour, whose arrays are no longer needed; ``closed``: by a line of this reader."""
         from ..outlines.segments import keep_lasting  # imports the compiler, which opening does not need
 
-        n, m, distance = keep_lasting(points, degrees, self._coincident)
+        n, m, distance = keep_lasting(points, degrees, repeats, self._coincident, closed)
         if n < 0:
             raise GlyphsplineError("coordinates that are not finite", contour=self.drawn)
         self.snapped = max(self.snapped, distance)
         if n:
             self.stacks.append(MasterContour(np.ascontiguousarray(points[:, :n]), degrees[:m]))
+            self.repeats.append(repeats[:m])
         else:
             self.left_out.append(self.drawn)
         self.drawn += 1

@@ -8,12 +8,12 @@
   const NEAR = 0.07, FAR = 0.6; // half the width of what is shown around a place, in em: at least, at most
   const CLOSE = 6; // times the length of a very short segment, which is shown closer than others
   const CARDS = 120, ROWS = 300; // at a time
-  const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump"]); // it is drawn over
+  const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump", "retracted"]); // it is drawn over
   const FULL = 0.9; // share of the teeth in view that are shorter than a full one
 
-  const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, outline]) => ({
+  const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, outline, score]) => ({
     font: setup.fonts[font], fontNumber: font, glyph, gid, kindNumber: kind, kind: setup.kinds[kind][0], level: setup.kinds[kind][1],
-    contour, segment, x, y, sentence, location, outline,
+    contour, segment, x, y, sentence, location, outline, score,
   }));
   const several = setup.fonts.length > 1, located = rows.some((row) => row.location);
   const point = (row) => `${Math.round(row.x)}, ${Math.round(row.y)}`.replaceAll("-", "\u2212");
@@ -72,7 +72,7 @@
   /** The two tangents of a joint, each drawn on beyond it: the angle between them is the turn. */
   const tangents = (row, contours, half) => {
     const pieces = contours[row.contour], piece = pieces?.[row.segment];
-    if (row.kind !== "kink" || !piece) return "";
+    if (!["kink", "turn"].includes(row.kind) || !piece) return "";
     const away = (points) => points.map(([x, y]) => [x - points[0][0], y - points[0][1]]).find(([x, y]) => x || y);
     return [piece, [...pieces.at(row.segment - 1)].reverse()].map((points) => [points[0], away(points)]).filter(([, to]) => to)
       .map(([[x, y], [dx, dy]]) => [x, y, dx / Math.hypot(dx, dy) * half, dy / Math.hypot(dx, dy) * half])
@@ -95,7 +95,7 @@
     const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, picture);
     const lines = [`contour ${row.contour}, segment ${row.segment}, at ${point(row)}`, row.location, several ? row.font.name : ""];
     const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
-      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row)), GS.element("div", {}, row.sentence),
+      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` score ${row.score}`), GS.element("div", {}, row.sentence),
       ...lines.filter(Boolean).map((line) => GS.element("p", {}, line)), GS.element("p", { class: "comb-scale" })));
     card.row = row;
     button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card, row); });
@@ -103,11 +103,11 @@
     return card;
   };
 
-  const HEADS = ["glyph", "level", "kind", "contour", "segment", "point", "finding", ...(located ? ["location"] : []), ...(several ? ["font"] : [])];
-  const NUMERIC = new Set(["contour", "segment", "point"]);
+  const HEADS = ["glyph", "score", "level", "kind", "contour", "segment", "point", "finding", ...(located ? ["location"] : []), ...(several ? ["font"] : [])];
+  const NUMERIC = new Set(["score", "contour", "segment", "point"]);
   at("head").append(...HEADS.map((name) => GS.element("th", { scope: "col" }, name)));
   const lineOf = (row) => {
-    const cells = { glyph: row.glyph, level: row.level, kind: kindOf(row), contour: `${row.contour}`, segment: `${row.segment}`, point: point(row),
+    const cells = { glyph: row.glyph, score: `${row.score}`, level: row.level, kind: kindOf(row), contour: `${row.contour}`, segment: `${row.segment}`, point: point(row),
       finding: row.sentence, location: row.location, font: row.font.name };
     return GS.element("tr", {}, ...HEADS.map((name) => GS.element("td", NUMERIC.has(name) ? { class: "number" } : {}, cells[name])));
   };

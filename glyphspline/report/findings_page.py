@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..checks.finding import Finding, place_on_axes, severity
@@ -32,12 +33,13 @@ class CheckedFont(NamedTuple):
     """A font and what was found in it.
 
     Attributes:
-        name: as the page calls it. source: of the outlines that were checked. findings: of it.
+        name: as the page calls it. source: of the outlines that were checked. findings: of it. scores: of its glyphs.
     """
 
     name: str
     source: Source
     findings: Sequence[Finding]
+    scores: Mapping[str, float] = MappingProxyType({})
 
 
 def findings_page(fonts: Sequence[CheckedFont]) -> str:
@@ -54,7 +56,7 @@ def findings_page(fonts: Sequence[CheckedFont]) -> str:
         [
             k, finding.glyph, finding.gid, NUMBERS[finding.kind], finding.contour, finding.segment,
             *[round(value, PRECISION) for value in finding.point], finding.sentence, place_on_axes(finding, homes[k]),
-            drawings.number(k, finding) if n in drawn else -1,
+            drawings.number(k, finding) if n in drawn else -1, round(fonts[k].scores.get(finding.glyph, 0.0)),
         ]
         for n, (k, finding) in enumerate(listed)
     ]  # fmt: skip

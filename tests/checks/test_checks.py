@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import glyphspline as gs
 from glyphspline.checks.check import check_many
-from glyphspline.checks.finding import Finding
+from glyphspline.checks.finding import Finding, severity
 from glyphspline.curves.bezier import split
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
@@ -46,6 +46,22 @@ def arch(curve: object) -> Contour:
     return closed(curve, [last[0], -300], [last[0] / 2, -333.3], [0, -280], [0, 0])
 
 
+def arch_of(arriving: list[float], leaving: list[float], turned: bool = False) -> Contour:
+    """Two curves that meet at (0, 0), both going down from there, by the other ends of their handles there."""
+    top = np.array([[-100, -90], [-100, -36], arriving, [0, 0], leaving, [120, -50], [120, -90]])
+    way = top[:, ::-1] * [-1, 1] if turned else top
+    corners = np.array([[220, -300], [-200, -330]])
+    corners = corners[:, ::-1] * [-1, 1] if turned else corners
+    return Contour.from_segments(
+        [way[:4], way[3:], np.array([way[-1], corners[0]]), corners, np.array([corners[1], way[0]])]
+    )
+
+
+def short_and_turned(rise: float) -> Contour:
+    """A line of eight units, smoothly joined to a curve but for this rise of its handle along 60 units."""
+    return closed([8, 0], [68, rise, 110, 60, 120, 100], [110, 300], [-80, 250], [0, 0])
+
+
 BACK = arch([20, 21, 96, 68, 100, 100])
 """The first control point lies on the outer side of the chord."""
 
@@ -62,6 +78,13 @@ FAULTS: dict[str, tuple[str, Contour, float]] = {
     "no point at the extremum": ("extremum", arch([0, 40, 100, 40, 100, 0]), 30.0),
     "no point at the extremum of a quadratic": ("extremum", arch([50, 60, 100, 0]), 30.0),
     "short line": ("short", closed([300, 0], [300, 2], [0, 300], [0, 0]), 2.0),
+    "leftover": ("leftover", closed([140, 0], [300, 0], [300, 250], [0, 250], [0, 0]), 0.0),
+    "leftover but for rounding": ("leftover", closed([140, 51], [300, 109], [0, 400], [0, 0]), 40 / np.hypot(300, 109)),
+    "handle of no length": ("retracted", arch([0, 0, 45, 100, 100, 100]), np.hypot(100, 100)),
+    "handle of a quadratic on its end": ("retracted", closed([10, 9, 10, 9], [300, -40], [0, -200], [0, 0]), np.nan),
+    "handles not level": ("unlevel", arch_of([-50, -2], [60, 2.4]), 2.4),
+    "handles not upright": ("unlevel", arch_of([-50, -2], [60, 2.4], turned=True), 2.4),
+    "a turn beside a short segment": ("turn", short_and_turned(6), np.degrees(np.arctan(6 / 60))),
     "short curve": ("short", closed([300, 0], [300, 1, 300.5, 2, 301, 2], [0, 300], [0, 0]), np.nan),
 }
 
@@ -85,6 +108,11 @@ SOUND: dict[str, Contour] = {
     "a line at 0.6 degrees": closed([300, 3.2], [300, 250], [0, 250], [0, 0]),
     "a line on the axis": closed([300, 0], [300, 250], [0, 250], [0, 0]),
     "an extremum lower than the limit": arch([20, 5, 80, 5, 100, 3.4]),
+    "a point too far off a line": closed([100, 60], [200, 118], [100, 400], [0, 0]),
+    "level handles": arch_of([-50, 0], [60, 0]),
+    "handles half a unit off level": arch_of([-50, -0.4], [60, 0.5]),
+    "handles meant to slope": arch_of([-42, -4.2], [60, 6]),
+    "a turn beside a short segment, less than counts": short_and_turned(2),
     "a segment of 3.1": closed([300, 0], [300, 3.1], [0, 300], [0, 0]),
 }
 
@@ -200,8 +228,41 @@ def test_worst_first_and_many_are_as_one() -> None:
     assert together == [gs.check(each) for each in outlines]
     for found in together:
         for kind in {each.kind for each in found}:
-            values = [each.value for each in found if each.kind == kind]
+            values = [(each.seen or 0.0) if kind == "jump" else each.value for each in found if each.kind == kind]
             assert values == sorted(values, reverse=True)
+
+
+def jumping(size: float, share: float) -> list[list[float]]:
+    """Two quarters of a circle that meet level at the top, the second with a handle of this share of its length."""
+    k = 0.55 * size
+    return [[0, k, size - k, size, size, size], [size + share * k, size, 2 * size, k, 2 * size, 0]]
+
+
+def jumps(*sizes: tuple[float, float], rounding: float = 3.0) -> list[Finding]:
+    contours = [closed(*jumping(*each), [each[0] * 1.7, -300], [each[0] / 2, -300], [0, 0]) for each in sizes]
+    found = gs.check(outline(*contours), gs.Thresholds(rounding=rounding))
+    return [each for each in found if each.kind == "jump"]
+
+
+def test_what_rounding_may_make_is_no_jump_unless_it_is_asked_for() -> None:
+    """A handle of 60 units shorter by a fifth, and one of 10 units: of the latter rounding may make a tenth."""
+    (found,) = jumps((110, 0.8))
+    assert found.sentence.startswith("curvature jumps by ")
+    assert jumps((20, 9 / 11)) == []
+    assert len(jumps((20, 9 / 11), rounding=0.1)) == 1
+    assert len(jumps((20.3, 9 / 11))) == 1  # not in whole units
+
+
+def test_jumps_are_ranked_by_how_far_they_are_seen() -> None:
+    """The round of a serif has the larger curvature, and the larger jump; the bowl's is seen along more."""
+    serif, bowl = jumps((40, 0.6), (240, 0.6))[::-1]
+    assert (serif.contour, bowl.contour) == (0, 1)
+    assert serif.value > bowl.value
+    assert serif.detail == pytest.approx(bowl.detail, rel=0.02)
+    assert serif.seen is not None
+    assert bowl.seen == pytest.approx(6 * serif.seen, rel=0.05)
+    assert bowl.seen == pytest.approx((bowl.detail or 0.0) * 240 * np.pi / 2, rel=0.1)
+    assert severity(bowl) < severity(serif)
 
 
 def test_short_lines_of_one_unit_off() -> None:

@@ -154,6 +154,19 @@ def test_a_thin_wedge_and_a_sharp_tip_are_no_spurs() -> None:
     assert kinds(tips) == []
 
 
+@pytest.mark.parametrize(("width", "length", "em", "told"), [
+    (2, 40, 1000, True), (3, 15, 1000, True), (2, -30, 1000, True), (4, 40, 1000, False), (2, 5, 1000, False),
+    (5, 40, 2000, True), (2, 10, 2000, False),
+])  # fmt: skip
+def test_a_spike_has_a_width(width: float, length: float, em: float, told: bool) -> None:
+    base = [(100 + width / 2, 100), (100, 100 + length), (100 - width / 2, 100)]
+    contour = polygon([(0, 0), (200, 0), (200, 100), *base, (0, 100)])
+    outline = Outline("test", contours=[contour], metrics=FontMetrics(units_per_em=em))
+    found = [item for item in check(outline) if item.kind in ("spike", "doubled", "crossing")]
+    assert [(item.kind, item.point) for item in found] == [("spike", (100, 100 + length))] * told
+    assert all(item.value == pytest.approx(abs(length), rel=0.1) for item in found)
+
+
 def test_a_curved_spur_and_one_of_several_segments_are_told_once() -> None:
     way = np.array([(100, 100), (110, 120), (130, 140), (160, 150)], dtype=np.float64)
     back = np.array([(0, 100), (0, 0), (200, 0)], dtype=np.float64)

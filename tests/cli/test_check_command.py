@@ -12,6 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
@@ -52,9 +53,9 @@ def test_the_worst_come_first_and_info_is_only_counted(tmp_path: Path) -> None:
     result = checked(drawings(tmp_path / "font", FAULTS))
     assert result.exit_code == 0, result.output
     head, *rows = lines_of(result)
-    assert head == ["glyph", "level", "contour", "segment", "point", "finding"]
+    assert head == ["glyph", "level", "score", "contour", "segment", "point", "finding"]
     assert [(row[0], row[1]) for row in rows] == [("five", "WARN"), ("two", "WARN")]
-    assert rows[0][4:] == ["500, -500", "kink: turns by 5° at a joint meant to be smooth"]
+    assert rows[0][5:] == ["500, -500", "kink: turns by 5° at a joint meant to be smooth"]
     assert "4 glyphs: 2 findings of WARN" in result.stderr
     assert "INFO, shown with -l INFO: 1 jump" in result.stderr
     every = checked(tmp_path / "font", "-l", "info", "--rows", "2")
@@ -162,8 +163,33 @@ def test_the_command_says_what_python_says() -> None:
     assert sum(facts["counts"].values()) == len(expected) > 100
     assert facts["findings"][0].keys() == {*gs.Finding.__dataclass_fields__}
     assert facts.keys() == {
-        "font", "family", "style", "error", "glyphs", "counts", "known", "axes", "findings", "failed",
+        "font", "family", "style", "error", "glyphs", "counts", "known", "scores", "axes", "findings", "failed",
     }  # fmt: skip
+
+
+def test_a_glyph_has_one_score_in_table_json_csv_and_page(tmp_path: Path) -> None:
+    font = drawings(tmp_path / "font", FAULTS)
+    facts = data_of(font)["fonts"][0]
+    seen: dict[str, float] = {}
+    for item in facts["findings"]:
+        seen[item["glyph"]] = seen.get(item["glyph"], 0.0) + item["seen"]
+    assert facts["scores"] == pytest.approx(seen)  # of an em of 1000 units
+    contour = gs.open_source(font).outline("two").contours[0]
+    lengths = [
+        np.hypot(*np.diff(contour.at(np.linspace(k, k + 1, 200)), axis=0).T).sum() for k in (0, len(contour) - 1)
+    ]
+    assert seen["two"] == pytest.approx(2 / 12 * min(lengths), rel=0.02)
+    assert seen["five"] == pytest.approx(2.5 * seen["two"], rel=0.02)
+    head, *rows = lines_of(checked(font, "-l", "INFO"))
+    assert {row[0]: row[head.index("score")] for row in rows} == {
+        glyph: f"{score:.0f}" for glyph, score in seen.items()
+    }
+    lines = list(csv.DictReader(io.StringIO(checked(font, "--csv", "-").stdout)))
+    assert {line["glyph"]: float(line["score"]) for line in lines} == facts["scores"]
+    checked(font, "--html", tmp_path / "a.html")
+    _, setup = page_of(tmp_path / "a.html")
+    assert {row[1]: row[11] for row in setup["rows"]} == {glyph: round(score) for glyph, score in seen.items()}
+    assert data_of(font, "--kinds", "short")["fonts"][0]["scores"] == facts["scores"]
 
 
 def test_workers_find_the_same() -> None:
@@ -198,8 +224,8 @@ def test_markdown_shows_names_as_they_are(tmp_path: Path) -> None:
     lines = result.stdout.splitlines()
     table = [line for line in lines if line.startswith("|")]
     cells = [line.removeprefix("| ").removesuffix(" |").split(" | ") for line in table]
-    assert cells[0] == ["glyph", "level", "contour", "segment", "point", "finding"]
-    assert [len(row) for row in cells] == [6, 6, 6, 6]
+    assert cells[0] == ["glyph", "level", "score", "contour", "segment", "point", "finding"]
+    assert [len(row) for row in cells] == [7, 7, 7, 7]
     assert [unescaped(row[0]) for row in cells[2:]] == [EVIL, "&lt;"]
     for row in cells[2:]:
         shown = row[0].removeprefix("<code>").removesuffix("</code>")

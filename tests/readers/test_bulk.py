@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import accumulate
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -19,6 +19,7 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 from fontTools.ttLib.tables.ttProgram import Program
 
+from glyphspline.checks.check import check
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font, open_source
@@ -52,6 +53,8 @@ def assert_same(found: Outline | GlyphsplineError, expected: Outline | Glyphspli
         expected.name, expected.gid, expected.unicodes, expected.advance
     )  # fmt: skip
     assert (found.metrics, found.notes) == (expected.metrics, expected.notes)
+    repeats, others = ([] if each is None else each.tolist() for each in (found.repeats, expected.repeats))
+    assert repeats == others, found.name
     for own, other in zip(found.arrays, expected.arrays, strict=True):
         assert (own.dtype, own.shape, own.tobytes()) == (other.dtype, other.shape, other.tobytes()), found.name
 
@@ -167,6 +170,34 @@ def test_flat_contours_are_left_out_and_noted_in_bulk(tmp_path: Path, monkeypatc
     for name, (_, left_out) in ANCHORED.items():
         assert found[name].notes == tuple(f"contour {k} left out: it encloses nothing" for k in left_out), name
     assert [len(found[name].contours) for name in ("first", "only", "composed", "nested")] == [2, 0, 5, 7]
+
+
+def test_points_that_are_there_more_than_once_are_kept_in_mind(tmp_path: Path) -> None:
+    again = [*SQUARE[:2], SQUARE[1], *SQUARE[2:]]
+    glyphs = {
+        "middle": simple(again), "thrice": simple(ROUND, [*again[:2], *again[1:]]),
+        "start": simple([SQUARE[0], *SQUARE]), "end": simple([*SQUARE, SQUARE[0]]),
+    }  # fmt: skip
+    glyphs["composed"] = composite(("plain", PLAIN), ("middle", HALF), ("thrice", MOVED))
+    build(tmp_path / "again.ttf", {"plain": simple(SQUARE)} | glyphs)
+    font = open_font(tmp_path / "again.ttf")
+    assert assert_all_same(font) == 0
+    assert font.outline("plain").repeats is None
+    expected = {"middle": [(0, 1, 1)], "thrice": [(1, 1, 2)], "start": [(0, 0, 1)], "end": [(0, 0, 1)]}
+    expected["composed"] = [(1, 1, 1), (3, 1, 2)]
+    for name, places in expected.items():
+        outline = font.outline(name)
+        assert list_of(outline.repeats, outline.arrays.offsets) == places, name
+        masters = font.masters(name)
+        assert list_of(masters.repeats, outline.arrays.offsets) == places, name
+        found = [(each.contour, each.segment, each.value) for each in check(outline) if each.kind == "repeated"]
+        assert sorted(found) == places
+
+
+def list_of(repeats: Any, offsets: Any) -> list[tuple[int, int, int]]:
+    """Contour, segment and count of points that are there more than once."""
+    found = [(int(np.searchsorted(offsets, j, side="right")) - 1, int(j)) for j in np.flatnonzero(repeats)]
+    return [(contour, j - int(offsets[contour]), int(repeats[j])) for contour, j in found]
 
 
 def test_one_rule_says_which_contours_are_flat(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,13 +10,16 @@ from typing import Any
 
 import pytest
 from fontTools.ttLib import TTFont
+from typer.testing import CliRunner
 
+from glyphspline.cli import app
 from glyphspline.errors import FontError
 from glyphspline.readers import open_source
 from glyphspline.readers.facts import file_facts
 from glyphspline.runs.jobs.deep_facts import add_glyph_facts
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS
+from tests.readers.test_bulk import build, simple
 
 
 def deep_facts(path: Path, jobs: int = 0) -> dict[str, Any]:
@@ -43,6 +46,25 @@ def test_overlaps_and_degenerate_contours_are_named() -> None:
     assert font["degenerate"] == ["onepoint", "twopoints", "flat"]
     assert font["overlaps"] == ["overlap", "eight", "loop", "twice"]
     assert font["broken"] == []
+
+
+def test_points_and_contours_that_a_reader_leaves_out_are_counted(tmp_path: Path) -> None:
+    square, once_more = [(0, 0, 1), (300, 0, 1), (300, 300, 1), (0, 300, 1)], (300, 0, 1)
+    glyphs = {
+        "plain": simple(square),
+        "doubled": simple([*square[:2], once_more, *square[2:]], [*square[:2], once_more, once_more, *square[2:]]),
+        "leftover": simple([square[0], (120, 0, 1), *square[1:]]),
+        "anchored": simple([(5, 5, 1)], square, [(0, 0, 1), (90, 30, 1)]),
+    }
+    build(tmp_path / "dropped.ttf", glyphs)
+    (font,) = deep_facts(tmp_path / "dropped.ttf")["fonts"]
+    assert (font["doubled_points"], font["leftover_points"], font["contours_left_out"]) == (3, 1, 2)
+    assert font["degenerate"] == ["anchored"]
+    command = CliRunner().invoke(app, ["info", str(tmp_path / "dropped.ttf"), "--deep"])
+    lines = command.stdout.splitlines()
+    assert "  3 points that are there more than once" in lines
+    assert "  1 points on a line between two others" in lines
+    assert "  2 contours that enclose nothing: of one or two points, or on a line" in lines
 
 
 def test_all_faces_of_a_collection_or_one() -> None:

@@ -108,7 +108,7 @@ def _functions() -> Any:
 @compiled
 def _contours(
     buffer: FloatArray, places: IntArray, expected: IntArray
-) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, IntArray, BoolArray, FloatArray]:
+) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray, IntArray, IntArray, BoolArray, FloatArray]:
     """Contours of glyphs from their drawing operations.
 
     Args:
@@ -117,13 +117,14 @@ def _contours(
 
     Returns:
         Points, degrees, offsets and starts as in :class:`ContourArrays`; offsets and starts count from 0 in each glyph,
-        and are one more than contours in each. Numbers of the flat contours, which are left out. (k + 1, 4) the
+        and are one more than contours in each. Repeats of points, see :class:`.Contours`, after the offsets.
+        Numbers of the flat contours, which are left out. (k + 1, 4) the
         contours, segments, points and contours left out before each glyph. (k,) which glyphs are unusual. (k,)
         how far points were snapped: see :class:`.Outline`.
     """
     count = len(expected)
     room = (places[-1] - places[0]) // 2 + 1  # an operation of 1 + 2n numbers adds at most n points; a move at most one
-    points, degrees = np.empty((room, 2)), np.empty(room, dtype=np.int64)
+    points, degrees, repeats = np.empty((room, 2)), np.empty(room, dtype=np.int64), np.empty(room, dtype=np.int64)
     offsets, starts = np.empty(room + count, dtype=np.int64), np.empty(room + count, dtype=np.int64)
     left_out = np.empty(room, dtype=np.int64)
     before, unusual = np.zeros((count + 1, 4), dtype=np.int64), np.zeros(count, dtype=np.bool_)
@@ -146,7 +147,8 @@ def _contours(
                 at, q, s = at + 1 + 2 * kind, q + kind, s + 1
             degrees[s] = 1  # the closing line
             drawn = points[p:q].reshape(1, q - p, 2)
-            more_points, more, distance = keep_lasting(drawn, degrees[m : s + 1], COINCIDENT)
+            repeats[m : s + 1] = 0
+            more_points, more, distance = keep_lasting(drawn, degrees[m : s + 1], repeats[m : s + 1], COINCIDENT, True)
             snapped[g] = max(snapped[g], distance)
             odd = more_points < 0
             if more_points > 0:
@@ -160,7 +162,7 @@ def _contours(
         if unusual[g]:
             c, m, p, left = before[g]
         before[g + 1, 0], before[g + 1, 1], before[g + 1, 2], before[g + 1, 3] = c, m, p, left
-    return points, degrees, offsets, starts, left_out, before, unusual, snapped
+    return points, degrees, offsets, starts, repeats[:m], left_out, before, unusual, snapped
 
 
 @compiled
@@ -265,17 +267,19 @@ class BulkReader:
             left = heads[len(found) :]
             with self._lock:
                 places, expected = self._draw([gid for _, gid, _ in left])
-                points, degrees, offsets, starts, left_out, before, unusual, snapped = _contours(
+                points, degrees, offsets, starts, repeats, left_out, before, unusual, snapped = _contours(
                     self._buffer, places, expected
                 )
+            repeated = repeats.any()
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
             for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
                     found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
+                its = repeats[m:n] if repeated and repeats[m:n].any() else None
                 made = Outline.trusted(
-                    name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=Contours(own),
+                    name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=Contours(own, its),
                     metrics=metrics, notes=notes_of(left_out[a:b].tolist()) if b > a else (), snapped=moved,
                 )  # fmt: skip
                 found.append(made)

@@ -97,7 +97,8 @@ class Variations:
             points, degrees, _ = quadratics(stacks[:, first:end], parts.on[first:end])
             pen.contour(points, degrees)
             first = end
-        return replace(masters, contours=tuple(pen.stacks), advances=right - left, notes=pen.notes)
+        contours, advances = tuple(pen.stacks), right - left
+        return replace(masters, contours=contours, advances=advances, notes=pen.notes, repeats=pen.repeated)
 
     def _parts_of(self, name: str, above: Sequence[str | None]) -> _Parts:
         """The points and deltas of a glyph of ``glyf``, components decomposed."""
@@ -179,7 +180,8 @@ class Variations:
         pen.finish()
         changed = region_scalars(self._stacked(regions), masters.peaks)[:, 1:] @ changes
         advances = float(self._tables["hmtx"].metrics[head.name][0]) + changed
-        return replace(masters, contours=tuple(pen.stacks), advances=advances, notes=pen.notes)
+        contours = tuple(pen.stacks)
+        return replace(masters, contours=contours, advances=advances, notes=pen.notes, repeats=pen.repeated)
 
     def _regions_of(self, store: Any, index: int) -> list[Region]:
         """The regions of one of the lists of a store, in order, as often as they occur."""

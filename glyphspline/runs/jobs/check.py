@@ -47,13 +47,15 @@ class Checked(NamedTuple):
 
     Attributes:
         rows: of the tasks that were done together. axes: kinks of each along each axis, in numbers.
-        shapes: (n,) of the row's contour, in whichever glyph. kinks: along each axis, if they are asked for.
+        shapes: (n,) of the row's contour, in whichever glyph. scores: of each task; see :class:`GlyphFindings`.
+        kinks: along each axis, if they are asked for.
         error: why the only task could not be checked, or None.
     """
 
     rows: Measured
     axes: Sequence[tuple[AxisNumbers, ...]]
     shapes: IntArray
+    scores: Sequence[float | None]
     kinks: Sequence[AxisKinks] = ()
     error: str | None = None
 
@@ -86,21 +88,23 @@ class CheckJob(Job[Head, Checked]):
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> Checked:
         """Measure glyphs."""
         rows, kinks = self.measured(contents)
+        seen = np.bincount(rows.glyphs, np.nan_to_num(rows.numbers[:, 4]), len(contents))
+        scores: list[float] = (seen * (1000 / contents[0].metrics.units_per_em)).tolist()
         looked_for = [number for number, kind in enumerate(KINDS) if kind.name in self.kinds]
         rows = rows.chosen(np.flatnonzero(np.isin(rows.kinds, looked_for)))
         numbers = [tuple(along.numbers_of(g) for along in kinks) for g in range(len(contents))]
-        return Checked(rows, numbers, _shapes(contents, rows), kinks if self.joints else ())
+        return Checked(rows, numbers, _shapes(contents, rows), scores, kinks if self.joints else ())
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[AxisKinks]]:
         """Findings of every kind, and all smooth joints along each axis."""
         from ...checks.check import measured
 
-        arrays = [outline.arrays for outline in glyphs]
-        return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer), ()
+        arrays, repeats = [outline.arrays for outline in glyphs], [outline.repeats for outline in glyphs]
+        return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer, repeats), ()
 
     def failed(self, task: Head, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
-        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), error=reason(error))
+        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), [None], error=reason(error))
 
 
 @dataclass(frozen=True)
@@ -157,6 +161,8 @@ class GlyphFindings(NamedTuple):
     Attributes:
         findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
         axes: its kinks along each axis in numbers; () if it is not looked at along axes, or could not be checked.
+        score: how far all its kinks, turns and jumps are seen, in thousandths of an em, whatever is looked for and in
+            whichever glyph they are reported; None if it could not be checked.
     """
 
     glyph: str
@@ -164,6 +170,7 @@ class GlyphFindings(NamedTuple):
     findings: list[Finding]
     error: str | None
     axes: tuple[AxisNumbers, ...]
+    score: float | None
 
 
 def check_font(
@@ -216,15 +223,15 @@ def check_font(
         reported = _Reported()
         with workers(0, executor=executor) as pool:
             for part in run(job, tasks, pool, ordered=True, observer=observer):
-                rows, numbers, shapes, along, error = part.result
+                rows, numbers, shapes, scores, along, error = part.result
                 if kinks is not None and along:
                     kinks.append(along)
                 if once:
                     fresh = reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)
                     rows = rows.chosen(np.flatnonzero(fresh))
                 found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
-                for (name, gid, _), own, of_axes in zip(part.tasks, found, numbers, strict=True):
-                    yield GlyphFindings(name, gid, own, error, of_axes)
+                for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
+                    yield GlyphFindings(name, gid, own, error, of_axes, score)
 
     return glyphs()
 
@@ -278,6 +285,7 @@ class Face:
         source: of it, where places are to be drawn. home: user-space value of each axis where the font is open.
         findings: those that are kept, the worst first. counts: of all new ones, by kind. known: number of those that
             the baseline has. levels: those of new findings.
+        scores: of glyphs, those above 0; see :class:`GlyphFindings`.
         glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
         axes: kinks along each axis in numbers, of all glyphs checked. kinks: all smooth joints, if they are asked for.
         remark: what was left undone, or None. error: why the font could not be read, or None.
@@ -292,6 +300,7 @@ class Face:
     counts: Counter[str] = field(default_factory=Counter)
     known: int = 0
     levels: set[Level] = field(default_factory=set)
+    scores: dict[str, float] = field(default_factory=dict)
     glyphs: int = 0
     failed: list[tuple[str, str]] = field(default_factory=list)
     axes: list[AxisNumbers] = field(default_factory=list)
@@ -399,6 +408,8 @@ def check_face(
         face.glyphs += row.error is None
         if row.error is not None:
             face.failed.append((row.glyph, row.error))
+        if row.score:
+            face.scores[row.glyph] = row.score
         if row.axes:
             face.axes = [known + own for known, own in zip(face.axes, row.axes, strict=True)]
         face.keep(row.findings, asked)

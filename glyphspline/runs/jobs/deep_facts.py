@@ -8,11 +8,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...extras import has
+from ...outlines.outline import Outline
+from ...readers import Source
 from ..engine import Item, Job, Observer, run
 from ..schedule import Place, sources
 
 Glyph = tuple[int, int]
 """The number of a face, and a glyph's index."""
+
+COUNTS = ("contours", "segments", "doubled_points", "leftover_points", "contours_left_out", "broken_glyphs")
+"""Facts that are numbers."""
+
+OVERLAP = 1e-5
+"""Share of a square em below which the area of an overlap counts as rounding."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +39,11 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
 
     def together(self, tasks: Sequence[Glyph], contents: Sequence[Any]) -> dict[str, Any]:
         """The facts of glyphs that follow one another."""
-        from ...readers.facts import glyph_facts
-
         return glyph_facts(sources(self.places[tasks[0][0]])[0], contents[0], contents[-1] + 1)
 
     def failed(self, task: Glyph, error: Exception) -> dict[str, Any]:
         """A broken glyph."""
-        return {"contours": 0, "segments": 0, "broken_glyphs": 1, "broken": [f"gid {task[1]}"], "degenerate": []}
+        return dict.fromkeys(COUNTS, 0) | {"broken_glyphs": 1, "broken": [f"gid {task[1]}"], "degenerate": []}
 
     def failures(self, result: dict[str, Any]) -> int:
         """Number of broken glyphs."""
@@ -44,7 +51,7 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
 
 
 def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, observer: Observer | None = None) -> None:
-    """Add to each face of :func:`..readers.facts.file_facts` what :func:`..readers.facts.glyph_facts` finds.
+    """Add to each face of :func:`..readers.facts.file_facts` what :func:`glyph_facts` finds.
 
     Args:
         path: the file. facts: are added to. executor: of the calls.
@@ -60,8 +67,69 @@ def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, obser
 
 def _together(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Counts are added, lists joined; overlaps are null if the search needs a missing library."""
-    names = ("contours", "segments", "broken_glyphs")
-    found: dict[str, Any] = {name: sum(part[name] for part in parts) for name in names}
+    found: dict[str, Any] = {name: sum(part[name] for part in parts) for name in COUNTS}
     found |= {name: [glyph for part in parts for glyph in part[name]] for name in ("broken", "degenerate")}
     looked = [part["overlaps"] for part in parts if part.get("overlaps") is not None]
     return found | {"overlaps": [name for names in looked for name in names] if looked else None}
+
+
+def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
+    """Facts from the outlines of glyphs ``first`` up to ``last``: counts, and unusual glyphs by name.
+
+    ``doubled_points`` are those that readers leave out, ``leftover_points`` those of :mod:`..checks` on lines.
+    ``overlaps`` are glyphs with contours that overlap or cross themselves; parts of them are filled twice. It is null
+    if skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` glyphs have contours that enclose nothing:
+    of one or two points mostly, which TrueType fonts use as anchors. ``contours_left_out`` counts these.
+    """
+    names, has_pathops = source.glyph_names[first:last], has("overlaps")
+    read = list(zip(names, source.outlines(names, errors="return"), strict=True))
+    outlines = [outline for _, outline in read if isinstance(outline, Outline)]
+    broken = [name for name, outline in read if not isinstance(outline, Outline)]
+    left_out = [sum("encloses nothing" in note for note in outline.notes) for outline in outlines]
+    return {
+        "contours": sum(len(outline.contours) for outline in outlines),
+        "segments": sum(len(outline.arrays.degrees) for outline in outlines),
+        "doubled_points": sum(int(outline.repeats.sum()) for outline in outlines if outline.repeats is not None),
+        "leftover_points": leftovers(outlines),
+        "contours_left_out": sum(left_out),
+        "broken_glyphs": len(broken),
+        "broken": broken,
+        "degenerate": [outline.name for outline, count in zip(outlines, left_out, strict=True) if count],
+        "overlaps": [outline.name for outline in outlines if overlaps(outline)] if has_pathops else None,
+    }
+
+
+def leftovers(outlines: Sequence[Outline]) -> int:
+    """Number of points on lines in glyphs of one em."""
+    from ...checks.kinds import LEFTOVER, THRESHOLDS
+    from ...checks.segments import WHAT, Segments, joint_findings
+    from ...outlines.contour_arrays import joined
+    from ...outlines.segments import all_cubics
+
+    if not outlines:
+        return 0
+    contours = joined([outline.arrays for outline in outlines])
+    limits = THRESHOLDS.limits(outlines[0].metrics.units_per_em)
+    found = joint_findings(Segments.of(all_cubics(contours), contours), limits)
+    return int((found[:, WHAT] == LEFTOVER).sum())
+
+
+def overlaps(outline: Outline) -> bool:
+    """Whether any part of a glyph is filled twice or inside out: its area then differs from the sum over contours."""
+    import pathops
+
+    from ...curves.integrals import area
+    from ...outlines.overlaps import contours_of
+
+    if not outline.contours:
+        return False
+    path = pathops.Path()
+    outline.draw(path.getPen())
+    try:
+        path.simplify(fix_winding=True)
+    except pathops.PathOpsError:
+        return False  # Skia fails on the glyph
+    filled, summed = (
+        sum(area(contour.cubics()) for contour in contours) for contours in (contours_of(path), outline.contours)
+    )
+    return abs(abs(filled) - abs(summed)) > OVERLAP * outline.metrics.units_per_em**2
