@@ -16,7 +16,7 @@ from ..errors import OptionError
 from ..fields import WRITTEN, About
 from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
-from ..writers.settings import Maps
+from ..writers.settings import BOTH, Maps
 from . import arguments as opt
 from . import interruption
 from .check_command import check
@@ -196,7 +196,6 @@ def atlas(
     font: opt.FontFile,
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
-    maps: Maps,
     run: Annotated[opt.RunOptions, only("jobs", "quiet")],
     out: Annotated[Path, About("Write this PDF.", None, "FILE", ("--out", "-o"), more=opt.PLACE)] = Path("atlas.pdf"),
     axis: Annotated[
@@ -211,8 +210,12 @@ def atlas(
         str | None, About("Add a page with κ(s) for these characters; for up to 12 glyphs, for all.")
     ] = None,
     instance: opt.Instance = opt.FIRST,
+    maps: Maps = BOTH,
 ) -> int:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
+
+    The combs are those of the results, and a dashed line is through the tips of the sources', unless --comb says
+    otherwise.
 
     With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
@@ -220,8 +223,10 @@ def atlas(
     from ..readers import open_source
     from ..runs.jobs.atlas import make_atlas, make_axis_atlas
 
-    if axis is not None and (profiles is not None or maps.corner_teeth):
-        stop("--profiles and --corner-teeth are of an atlas without --axis")
+    if out.suffix.lower() not in (".pdf", ""):
+        stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
+    if axis is not None and (profiles is not None or maps.corner_teeth or maps.comb != "both"):
+        stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
     source = open_source(font, instance.face_index or 0, instance.place)
     names = subset.of(source)
     if not names:
@@ -229,12 +234,13 @@ def atlas(
     chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
         if axis is not None:
-            pages, failed = make_axis_atlas(source, names, out, options, axis, jobs=run.jobs, observer=observer)
+            pages, failed = make_axis_atlas(
+                source, names, out, options, axis, maps=maps, jobs=run.jobs, observer=observer
+            )
         else:
             pages, failed = make_atlas(
-                source, names, out, options, profiles=chosen, comb=maps.comb, in_corners=maps.corner_teeth,
-                jobs=run.jobs, observer=observer,
-            )  # fmt: skip
+                source, names, out, options, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer
+            )
     if not run.quiet:
         say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
     return bool(failed)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types import FloatArray, IntArray
-from .bezier import as_cubic
+from ..types import BoolArray, FloatArray, IntArray
+from .bezier import as_cubic, cross
 
 SCALE_PERCENTILE = 80.0
 """Percentage of the arc length whose curvature is within the robust scale. Near 100, rounded corners (a tenth of the
@@ -16,6 +16,13 @@ length of many outlines) flatten all other teeth; near 50, ordinary bowls are cu
 
 STRAIGHT = 1e-9
 """Curvature times size below which the scale ignores a sample as straight; a larger value drops flat curves."""
+
+BEND, REACH, LEAST = np.radians(45), 1 / 40, 1 / 20
+"""A bowl turns by less than ``BEND`` within ``REACH`` em on both sides, and has a radius of ``LEAST`` em or more. Round
+dots are none, and counters of e and a of text faces are."""
+
+LARGEST = 2.0
+"""Curvature of the sharpest bowl in units of the scale. At 1, other bowls of brush faces have hardly any teeth."""
 
 ANGLE = np.radians(15)
 """Default turn between samples. A larger value shows straight lines between the tips of a rounded corner."""
@@ -86,6 +93,31 @@ def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) ->
     covered = np.cumsum(lengths[order])
     index = np.searchsorted(covered, percentile / 100 * covered[-1])
     return float(values[order][min(int(index), len(order) - 1)])
+
+
+def shared_scale(combs: Iterable[Comb], em: float) -> float:
+    """The scale, in 1/unit, of maps: :func:`robust_scale`, or half the largest curvature of a bowl if that is more.
+
+    So no tooth of a bowl is cut, only those near corners and in tight turns.
+    """
+    every = list(combs)
+    found = robust_scale(every)
+    largest = max([float(np.abs(item.curvature[bowls(item, em)]).max(initial=0.0)) for item in every], default=0.0)
+    return max(found, largest / LARGEST) if found else 0.0  # of lines, curvature is rounding
+
+
+def bowls(item: Comb, em: float) -> BoolArray:
+    """(k,) which samples of a closed contour lie on bowls: see :data:`BEND`. Corners count as turns."""
+    after = np.roll(item.normals, -1, axis=0)
+    turns = np.abs(np.arctan2(cross(item.normals, after), (item.normals * after).sum(axis=1)))
+    steps = np.hypot(*(np.roll(item.points, -1, axis=0) - item.points).T)
+    ends = [np.concatenate([[0.0], np.cumsum(values)]) for values in (steps, turns)]
+    if not ends[0][-1] > 0:
+        return np.zeros(len(turns), dtype=np.bool_)
+    at, turned = (np.concatenate([own[:-1] - own[-1], own[:-1], own + own[-1]]) for own in ends)
+    here, reach = ends[0][:-1], min(REACH * em, ends[0][-1] / 2)
+    bend = np.interp(here + reach, at, turned) - np.interp(here - reach, at, turned)
+    return (bend < BEND) & (np.abs(item.curvature) * em * LEAST <= 1)
 
 
 def relative(curvature: FloatArray, scale: float) -> FloatArray:

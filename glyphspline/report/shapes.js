@@ -3,7 +3,7 @@
 
 (() => {
   const TURN = Math.PI / 12; // a tooth at least every 15 degrees of turn, as in the curvature maps
-  const TOOTH = 0.03, LONGEST = 1.25, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
+  const TOOTH = 0.03, LONGEST = 2.5, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
   const MOST_TEETH = 400; // a piece
   const NEAR = 1 / 40, CORNER = Math.PI / 15; // in em and radians: where a smooth result turns about a corner of 12 degrees
   const CHORDS = 4; // a segment, for which a point counts as inside or outside

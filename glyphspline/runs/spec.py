@@ -141,10 +141,10 @@ class RunSpec:
                 raise OptionError(f"no format {name}: there are {', '.join(available())}")
             format_named(name)  # raises where a plug-in is broken
         check(self)
-        self.settings.look.line(1.0)  # raises for a width on paper without a size
         for name, kind in (("options", Options), ("settings", Settings), ("limits", Limits), ("maps", Maps)):
             if not isinstance(getattr(self, name), kind):
                 raise GlyphsplineError(f"{name} are {kind.__name__}")
+        self.settings.look.line(1.0)  # raises for a width on paper without a size
         order = OURS if set(own) <= OURS.keys() else format_names()
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))

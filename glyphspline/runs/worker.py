@@ -164,7 +164,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
     if name == "curvature":
         assert job.curvature_scale is not None
         path = glyph.path
-        if maps.comb != "result":
+        if maps.comb == "source":
             path = curves_data(curves_of(result, maps.comb), result.options.precision)[0]
         return map_document(result, path, job.curvature_scale, maps.comb, in_corners=maps.corner_teeth)
     if name in MAPS:

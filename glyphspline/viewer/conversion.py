@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..curves.curvature import Comb, robust_scale
+from ..curves.curvature import Comb, shared_scale
 from ..errors import GlyphsplineError
 from ..fields import arguments, instance_arguments
 from ..fitting.closed_curves import History, recorded, through_polygons
@@ -122,7 +122,7 @@ class Work:
         for name in chosen:
             with suppress(GlyphsplineError):  # a broken glyph has its error when it is shown
                 found += combs(as_glyph(self.outline(name, ())))
-        return robust_scale(found) or 4 / self.em
+        return shared_scale(found, self.em) or 4 / self.em
 
     def command(self, state: State, along: str | None = None) -> str:
         """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis."""

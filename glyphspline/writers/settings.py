@@ -47,6 +47,9 @@ Whose = Literal["result", "source"]
 WHOSE: tuple[Whose, ...] = get_args(Whose)
 """Whose curvature a comb shows: the curve's, or that of the outline it was made of, which is exact."""
 
+Combs = Literal[Whose, "both"]
+"""The combs of a map; in one of both, the source's is a line through its tips."""
+
 CURRENT = "currentColor"
 
 
@@ -202,14 +205,31 @@ class Settings:
 
 @dataclass(frozen=True)
 class Maps:
-    """What curvature maps show: combs of the result or of the source, and teeth where a result turns about a corner.
+    """What curvature maps show: combs of result or source, teeth where a result turns about a corner, and the scale.
+
+    Attributes:
+        comb_scale: the curvature, in 1/em, of a full tooth; None: by :func:`..curves.curvature.shared_scale`.
 
     Raises:
-        OptionError: ``comb`` is neither "result" nor "source", or ``corner_teeth`` is no bool.
+        OptionError: one of these is none of what it can be.
     """
 
-    comb: Whose = option("result", "Show the curvature of the result, or of the source outline, which is exact.", LOOK)
+    comb: Combs = option(
+        "result", "Show the curvature of the result, or of the source outline, which is exact, or both.", LOOK
+    )
+    comb_scale: float | None = option(
+        None, "Draw this curvature, in 1/em, as a full tooth. Without it, the largest of a bowl.",
+        LOOK, "NUMBER", rule=positive("curvature in 1/em"),
+    )  # fmt: skip
     corner_teeth: bool = option(False, "Draw teeth of a smooth result's comb also in the turn of a corner.", LOOK)
 
     def __post_init__(self) -> None:
         check(self)
+
+    def scale_for(self, units_per_em: float) -> float | None:
+        """The curvature in 1/unit of a full tooth that is asked for."""
+        return None if self.comb_scale is None else self.comb_scale / units_per_em
+
+
+BOTH = Maps("both")
+"""Maps of an atlas, which shows the source beside the result."""

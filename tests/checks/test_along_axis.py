@@ -118,6 +118,7 @@ def test_glyphs_without_a_result_are_named_on_the_last_page() -> None:
         (["--axis", "wdth"], "no axis 'wdth': it has wght"),
         (["--axis", "wght", "--count", "12"], "give a tolerance"),
         (["--axis", "wght", "--profiles", "k"], "of an atlas without --axis"),
+        (["--axis", "wght", "--comb", "source"], "which shows both combs"),
     ],
 )
 def test_what_cannot_be_drawn_along_an_axis(given: list[str], words: str, path: Path, tmp_path: Path) -> None:

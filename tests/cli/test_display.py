@@ -19,6 +19,7 @@ from glyphspline.cli import app
 from glyphspline.outlines.joins import joins
 from glyphspline.runs.jobs import atlas
 from glyphspline.writers.figures.atlas import overview, profile
+from glyphspline.writers.svg.comb import teeth
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
 from tests.places import ROOT
 
@@ -149,6 +150,33 @@ def test_the_atlas_says_whose_comb_it_draws(glyph: gs.GlyphResult) -> None:
     for whose in ("source", "result"):
         figure = overview([glyph], 0.01, "Font", whose)
         assert f"curvature of the {whose} in 1/em, convex positive" in [axes.get_xlabel() for axes in figure.axes]
+
+
+def test_an_atlas_shows_the_source_from_its_first_page_on(glyph: gs.GlyphResult) -> None:
+    (both, bare) = (overview([glyph], 0.004, "a", combs) for combs in ("both", "result"))
+    lines = [[patch for patch in page.axes[0].patches if patch.get_linestyle() != "solid"] for page in (both, bare)]
+    assert [len(own) for own in lines] == [1, 0]
+    tips = np.concatenate([part.tips for part in teeth(glyph, 0.004, "source")])
+    assert len(lines[0][0].get_path().vertices) == len(tips) + len(glyph.contours)
+    labels = [page.axes[1].get_xlabel() for page in (both, bare)]
+    assert ["dashed: of the source" in label for label in labels] == [True, False]
+    sharp = overview([glyph], 0.0005, "a", "result")
+    cut = sum(int(part.cut.sum()) for part in teeth(glyph, 0.0005))
+    assert cut > 1
+    assert f"; dots: {cut} teeth cut at 1.25" in sharp.axes[1].get_xlabel()
+
+
+def test_an_atlas_is_a_pdf_on_the_scale_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    call = ["atlas", str(ROOT / "fonts_test" / "kouzan-gyosho.ttf"), "--text", "O", "--count", "24"]
+    refused = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "a.png")])
+    assert refused.exit_code == 2
+    assert "an atlas is a PDF" in refused.output
+    assert not list(tmp_path.iterdir())
+    scales: list[float] = []
+    monkeypatch.setattr(atlas, "write_atlas", lambda path, glyphs, scale, **_: len(scales.__iadd__([scale])))
+    for given in ([], ["--comb-scale", "20"]):
+        assert CliRunner().invoke(app, [*call, *given, "--out", str(tmp_path / "a.pdf")]).exit_code == 0
+    assert scales[1] == 20 / 1024 != scales[0]
 
 
 def test_a_glyph_that_failed_is_named_in_the_atlas() -> None:

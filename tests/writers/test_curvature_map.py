@@ -7,16 +7,29 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from functools import cache
+from pathlib import Path
+from typing import Any
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
 import glyphspline as gs
+from glyphspline.curves.curvature import bowls
 from glyphspline.outlines.ink import corner_points, ink_sides
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.drawings import map_image
-from glyphspline.writers.svg.comb import LONGEST, SIDES, TOOTH, colour_classes, curvature_scale, palette, teeth
+from glyphspline.writers.svg.comb import (
+    LONGEST,
+    SIDES,
+    TOOTH,
+    colour_classes,
+    combs,
+    curvature_scale,
+    palette,
+    teeth,
+)  # fmt: skip
 from glyphspline.writers.svg.curvature_map import to_curvature_svg
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour, result
 from tests.places import FONTS
@@ -104,8 +117,14 @@ def test_the_sources_comb_is_exact_and_stands_on_the_source() -> None:
     assert "source" in classes
     assert "outline" not in classes
     assert "κ of the source in 1/em" in svg
+    svg = to_curvature_svg(glyph, comb="both")
+    classes = [path.get("class") for path in ElementTree.fromstring(svg).iter(f"{SVG}path")]
+    assert classes.count("source-comb") == classes.count("outline") == 1
+    assert "source" not in classes
+    assert "dashed: of the source" in " ".join(legend_of(svg))
+    assert map_image(glyph, "png", comb="both") != map_image(glyph, "png")
     with pytest.raises(gs.OptionError, match="comb is"):
-        to_curvature_svg(glyph, comb="both")  # type: ignore[arg-type]
+        to_curvature_svg(glyph, comb="neither")  # type: ignore[arg-type]
 
 
 def test_the_turn_about_a_corner_has_no_teeth_unless_asked_for() -> None:
@@ -152,8 +171,52 @@ def test_scale_is_shared_and_in_the_legend() -> None:
     assert scale == pytest.approx(1 / 400, rel=1e-3) or scale == pytest.approx(1 / 100, rel=1e-3)
     svg = to_curvature_svg(disc(100), scale=1 / 400)
     words = [t.text for t in ElementTree.fromstring(svg).iter(f"{SVG}text")]
+    assert not any("cut" in word for word in legend_of(to_curvature_svg(disc(100), scale=1 / 100)))
     assert words[:3] == ["\N{MINUS SIGN}2.5", "0", "2.5"]  # 1/400 per unit is 2.5 per em
     assert ElementTree.fromstring(svg).attrib["data-scale"] == "0.0025"
+
+
+def legend_of(svg: str) -> list[str]:
+    """The lines of a map's legend below its axis."""
+    return [str(text.text) for text in ElementTree.fromstring(svg).iter(f"{SVG}text")][3:]
+
+
+@pytest.mark.parametrize("width", [0.1, 0.3, 0.6, 1.2, 9.0])
+def test_the_legend_is_as_wide_as_the_glyph(width: float) -> None:
+    """Letters are counted as 0.6 of their size, more than sans serifs have; of a long text it is 1.5 em."""
+    bar = polygon_contour(np.array([[0, 0], [1, 0], [1, 0.7], [0, 0.7]]) * [1000 * width, 1000])
+    svg = to_curvature_svg(result(bar, advance=1000 * width), scale=0.01)
+    box = [float(word) for word in ElementTree.fromstring(svg).attrib["viewBox"].split()]
+    assert box[2] == pytest.approx(1000 * width + 40, abs=1), "the legend makes no map wider"
+    ends = np.concatenate([pairs[:, 0] for pairs in strokes(svg, "legend").values()])[:, 0]
+    wanted = min(1000 * width, 1500)
+    assert wanted - 20 <= np.ptp(ends) <= wanted + 1e-6
+    texts = list(ElementTree.fromstring(svg).iter(f"{SVG}text"))
+    group = next(g for g in ElementTree.fromstring(svg).iter(f"{SVG}g") if g.get("font-size"))
+    size = float(group.attrib["font-size"])
+    assert max(len(str(text.text)) for text in texts) * 0.6 * size <= wanted + 1
+    assert sum(len(str(text.text)) for text in texts[:3]) * 0.6 * size <= wanted
+
+
+@pytest.mark.parametrize("corners", ["sharp", "smooth"])
+def test_no_tooth_of_a_bowl_is_cut(corners: Any) -> None:
+    """In faces whose bowls are 4 times as sharp as they are mostly, and however close the fit; corners may be cut."""
+    faces = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
+    for face, letters in (("STIXGeneral.ttf", "oSe"), ("DejaVuSans.ttf", "oSW"), ("cmr10.ttf", "oa")):
+        font = gs.open_font(faces / face)
+        em, outlines = font.metrics.units_per_em, [font.outline(font.cmap[ord(letter)]) for letter in letters]
+        for share in (5e-4, 3e-3):
+            made = gs.convert_many(outlines, gs.Options(corners=corners, tolerance=share * em))
+            for scale in (curvature_scale(made), None):
+                for glyph in made:
+                    limit = LONGEST * (scale or curvature_scale([glyph]))
+                    for whose in ("source", "result"):
+                        for item in combs(glyph, 1.0, whose):
+                            assert not (bowls(item, em) & (np.abs(item.curvature) > limit + 1e-9 / em)).any()
+                    svg = to_curvature_svg(glyph, scale=scale)
+                    cut = svg.partition('class="cut"')[2].partition("/>")[0].count("h0")
+                    said = re.search(r"dots: (\d+) t[eo]+th cut", " ".join(legend_of(svg)))
+                    assert (int(said[1]) if said else 0) == cut
 
 
 def test_nothing_is_clipped() -> None:

@@ -134,6 +134,12 @@ def test_from_the_shell(tmp_path: Path) -> None:
     assert run.exit_code == 0, run.output
     assert "κ of the source" in (tmp_path / "curvature" / "O.svg").read_text(encoding="utf-8")
     assert '"comb": "source"' in (tmp_path / "run.json").read_text(encoding="utf-8")
+    scaled = ["--format", "curvature", "--comb", "both", "--comb-scale", "12.5", "--restart"]
+    run = CliRunner().invoke(app, [*call, *scaled])
+    assert run.exit_code == 0, run.output
+    drawn = root_of((tmp_path / "curvature" / "O.svg").read_text(encoding="utf-8"))
+    assert float(drawn.attrib["data-scale"]) == pytest.approx(12.5 / 1024, rel=1e-4)
+    assert "source-comb" in [path.get("class") for path in drawn.iter()]
     refused = CliRunner().invoke(app, [*call, "--fill", "blu", "--restart"])
     assert refused.exit_code == 2
     assert "fill is a colour" in refused.output

@@ -16,7 +16,7 @@ from ...fitting.results import GlyphResult, as_glyph
 from ...readers import Source
 from ...writers.figures.atlas import write_atlas
 from ...writers.figures.axis_pages import write_axis_atlas
-from ...writers.settings import Whose
+from ...writers.settings import BOTH, Maps
 from ...writers.svg.comb import curvature_scale
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, kinds_for, place_of, sources, workers
@@ -75,8 +75,7 @@ def make_atlas(
     options: Options,
     *,
     profiles: Sequence[str] | None = None,
-    comb: Whose = "result",
-    in_corners: bool = False,
+    maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
 ) -> tuple[int, int]:
@@ -86,7 +85,7 @@ def make_atlas(
         source: the opened font. names: its glyphs, in order. path: the PDF.
         options: of the conversion.
         profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
-        comb: whose curvature the pages of combs show. in_corners: see :func:`to_curvature_svg`.
+        maps: what the pages of combs show.
         jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
@@ -96,16 +95,17 @@ def make_atlas(
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
     job, total, failed = AtlasJob(place_of(source), options), len(names), list[str]()
+    em = source.metrics.units_per_em
     with workers(jobs, kinds=kinds_for(options), expected=total) as pool:
         sample = names[:: -(-total // SCALE_SAMPLE) or 1]
         kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
-        scale = curvature_scale(glyph for glyph in kept.values() if isinstance(glyph, GlyphResult))
+        scale = maps.scale_for(em) or curvature_scale(g for g in kept.values() if isinstance(g, GlyphResult)) or 1 / em
         left = [name for name in names if name not in kept]
         others = run(job, left, pool, ordered=True, observer=observer, before=len(kept), total=total)
         made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
         pages = write_atlas(
-            path, _shown(made, failed), scale or 1 / source.metrics.units_per_em,
-            heading=f"{source.family} {source.style}", whose=comb, in_corners=in_corners,
+            path, _shown(made, failed), scale, heading=f"{source.family} {source.style}", combs=maps.comb,
+            in_corners=maps.corner_teeth,
             profiled=lambda glyph: glyph.outline.name in chosen,
         )  # fmt: skip
     return pages, len(failed)
@@ -118,6 +118,7 @@ def make_axis_atlas(
     options: Options,
     axis: str,
     *,
+    maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
 ) -> tuple[int, int]:
@@ -126,7 +127,7 @@ def make_axis_atlas(
     Args:
         source: the opened font; its location is that of the other axes. names: its glyphs, in order. path: the PDF.
         options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
-        jobs: as of :func:`make_atlas`.
+        maps: its scale, if it has one. jobs: as of :func:`make_atlas`.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Returns:
@@ -140,15 +141,15 @@ def make_axis_atlas(
     make_folder(path.parent)
     options = replace(options, corners="sharp")
     sources = source.outlines(names[:: -(-len(names) // SCALE_SAMPLE) or 1], errors="return")
-    scale = curvature_scale(as_glyph(outline) for outline in sources if not isinstance(outline, GlyphsplineError))
+    em, read = source.metrics.units_per_em, [each for each in sources if not isinstance(each, GlyphsplineError)]
+    scale = maps.scale_for(em) or curvature_scale(map(as_glyph, read)) or 1 / em
     check_options(options)
     failed: list[str] = []
     with workers(jobs, kinds=kinds_for(options, masters=True), expected=len(names)) as pool:
         parts = run(AtlasJob(place_of(source), options, masters=True), names, pool, ordered=True, observer=observer)
         made: Iterator[Any] = (part.result for part in parts)
         pages = write_axis_atlas(
-            path, _shown(made, failed), axis, source.location, scale or 1 / source.metrics.units_per_em,
-            f"{source.family} {source.style}",
+            path, _shown(made, failed), axis, source.location, scale, f"{source.family} {source.style}",
         )  # fmt: skip
     return pages, len(failed)
 

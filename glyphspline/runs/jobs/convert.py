@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...curves.curvature import robust_scale
+from ...curves.curvature import shared_scale
 from ...errors import OutputError
 from ...extras import need
 from ...files import make_folder, remove_partials, replacing, write_whole, writing
@@ -235,10 +235,13 @@ def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: li
     old = read_run(job.out)
     if old is not None:
         job = replace(job, curvature_scale=old["curvature_scale"])
+    elif (given := job.spec.maps.scale_for(source.metrics.units_per_em)) is not None:
+        job = replace(job, curvature_scale=given)
     elif MAPS & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
         found = run(SurveyJob(job.side, job.spec), chosen, pool, ordered=True)
-        scale = robust_scale([comb for part in found for comb in part.result]) or 1 / source.metrics.units_per_em
+        em = source.metrics.units_per_em
+        scale = shared_scale((comb for part in found for comb in part.result), em) or 1 / em
         job = replace(job, curvature_scale=float(f"{scale:.6g}"))
     now = describe(source, job.spec, glyphs, job.curvature_scale)
     if old is None or any(old.get(name) != now[name] for name in REQUEST):

@@ -16,8 +16,8 @@ from ...outlines.joins import Kind, joins
 from ...outlines.masters import Masters
 from ...outlines.outline import Contour, Outline
 from ...types import FloatArray
-from ..settings import Whose
-from ..svg.comb import LONGEST, SPACING, Teeth, teeth
+from ..settings import Combs
+from ..svg.comb import LONGEST, SOURCE, SPACING, Teeth, cut_words, shown_by, teeth
 from .basics import ascii_text, blank, colour_bar, comb_patches, outline_patch, write_pages
 
 PAGE = (8.27, 11.69)
@@ -39,7 +39,6 @@ MARKS: dict[Kind, tuple[str, str, str]] = {
 }
 """Marker, colour and label of the breaks, by kind."""
 
-SOURCE = "#e8590c"
 OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.5}
 
 Glyph = GlyphResult | tuple[str, str]
@@ -52,7 +51,7 @@ def write_atlas(
     scale: float,
     *,
     heading: str,
-    whose: Whose = "result",
+    combs: Combs = "both",
     in_corners: bool = False,
     profiled: Callable[[GlyphResult], bool] = lambda glyph: False,
 ) -> int:
@@ -62,7 +61,8 @@ def write_atlas(
         path: the PDF, replaced when it is complete. heading: the font's name.
         glyphs: results in the order of the pages; only one page and the profiled glyphs are held in memory.
         scale: curvature in 1/unit of a full tooth, from :func:`..svg.curvature_map.curvature_scale`.
-        whose: curvature the overview pages show. in_corners: also where a smooth result turns about a corner.
+        combs: of the overview pages; of "both", the source's is a line.
+        in_corners: also where a smooth result turns about a corner.
         profiled: whether a glyph has a profile page, after the overview pages.
 
     Returns:
@@ -75,7 +75,7 @@ def write_atlas(
         number = 0
         while part := list(islice(rest, COLUMNS * ROWS)):
             number += 1
-            yield overview(part, scale, f"{heading}, page {number}", whose, in_corners=in_corners)
+            yield overview(part, scale, f"{heading}, page {number}", combs, in_corners=in_corners)
             chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
         for glyph in chosen:
             yield profile(glyph, scale)
@@ -84,14 +84,14 @@ def write_atlas(
 
 
 def overview(
-    glyphs: Sequence[Glyph], scale: float, heading: str, whose: Whose = "result", *, in_corners: bool = False
+    glyphs: Sequence[Glyph], scale: float, heading: str, combs: Combs = "both", *, in_corners: bool = False
 ) -> Any:
     """A page of combs as a matplotlib figure, on one pair of axes: ten times as fast as one pair per glyph."""
     figure = headed(heading, next((glyph.options.words for glyph in glyphs if isinstance(glyph, GlyphResult)), ""))
     axes = figure.add_axes((0.04, 0.085, 0.92, 0.865))
     axes.set(xlim=(0, COLUMNS * CELL), ylim=(-ROWS * CELL, 0), aspect="equal")
     axes.set_axis_off()
-    outlines, drawn = [], []
+    outlines, drawn, of_source, whose = list[FloatArray](), list[Teeth](), list[Teeth](), shown_by(combs)
     for index, glyph in enumerate(glyphs):
         corner = np.array([CELL * (index % COLUMNS), -CELL * (index // COLUMNS)])
         if isinstance(glyph, GlyphResult):
@@ -100,14 +100,21 @@ def overview(
             outlines += [place(curve.cubics().reshape(-1, 2)).reshape(-1, 4, 2) for curve in shown]
             found = teeth(glyph, scale, whose, in_corners=in_corners)
             drawn += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in found]
+            other = teeth(glyph, scale, "source") if combs == "both" else []
+            of_source += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in other]
             words = label(glyph.outline)
         else:
             words = f"{glyph[0]}: {glyph[1]}"[:60]
         x, y = corner[0] + 0.04, corner[1] - CELL + 0.03
         axes.text(x, y, ascii_text(words), fontsize=6, color="0.35", parse_math=False)
     _draw(axes, outlines, drawn)
+    for line in comb_patches(of_source)[-1:]:
+        line.set(edgecolor=SOURCE, alpha=1.0, linewidth=0.4, linestyle=(0, (4, 2)))
+        axes.add_patch(line)
     em = next((g.outline.metrics.units_per_em for g in glyphs if isinstance(g, GlyphResult)), 1000.0)
-    colour_legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, f" of the {whose}")
+    words = f" of the {whose} in 1/em, convex positive" + ("; dashed: of the source" if combs == "both" else "")
+    words += cut_words(sum(int(t.cut.sum()) for t in drawn), scale * em)
+    colour_legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, words)
     return figure
 
 
@@ -157,6 +164,9 @@ def _placed(glyph: GlyphResult, corner: FloatArray) -> Callable[[FloatArray], Fl
 def _draw(axes: Any, curves: Sequence[FloatArray], drawn: Sequence[Teeth]) -> None:
     for patch in [*outline_patch(curves, **OUTLINE), *comb_patches(drawn)]:
         axes.add_patch(patch)
+    ends = [part.tips[part.cut] for part in drawn if part.cut.any()]
+    if ends:
+        axes.plot(*np.concatenate(ends).T, "k.", markersize=0.8, markeredgewidth=0)
 
 
 def _mark_breaks(axes: Any, glyph: GlyphResult, scale: float) -> None:
@@ -205,10 +215,12 @@ def _length(contour: Contour) -> float:
     return float(np.hypot(*np.diff(contour.points, axis=0).T).sum())
 
 
-def colour_legend(figure: Any, place: tuple[float, float, float, float], reach: float, whose: str = "") -> None:
+def colour_legend(
+    figure: Any, place: tuple[float, float, float, float], reach: float, words: str = " in 1/em, convex positive"
+) -> None:
     """The colours of curvature up to ``reach`` in 1/em, at a place of the page: left, bottom, width and height."""
     bar = colour_bar(figure, reach, cax=figure.add_axes(place), orientation="horizontal")
-    bar.set_label(f"curvature{whose} in 1/em, convex positive", fontsize=6)
+    bar.set_label(f"curvature{words}", fontsize=6)
     bar.ax.tick_params(labelsize=6)
 
 

@@ -17,8 +17,8 @@ from ...fitting.results import as_glyph
 from ...outlines.masters import Masters
 from ...types import FloatArray, rounded_up
 from ..settings import FigureKind
-from ..svg.comb import LONGEST, TOOTH, Teeth, teeth
-from .atlas import OUTLINE, SOURCE, colour_legend, headed, label
+from ..svg.comb import LONGEST, SOURCE, TOOTH, Teeth, teeth
+from .atlas import OUTLINE, colour_legend, headed, label
 from .basics import ascii_text, blank, comb_patches, outline_patch, saved, write_pages
 
 PAGE = (11.69, 8.27)
@@ -102,7 +102,9 @@ def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], sc
     most = f"at most {ratio[k]:.3g} at {tag} {at[k]:.4g}" if len(known) else "no arcs"
     ratios.set_title(f"energy, result / source: {most}", **WORDS)
     em = result.masters.metrics.units_per_em
-    colour_legend(figure, (0.35, 0.045, 0.3, 0.012), scale * em, ", combs of source and result")
+    colour_legend(
+        figure, (0.35, 0.045, 0.3, 0.012), scale * em, " in 1/em, convex positive, combs of source and result"
+    )
     return figure
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ..settings import CURRENT, PLAIN, Appearance, ImageKind, Settings, Whose
-from ..svg.comb import LONGEST, SIDES, Teeth, colour_classes, curvature_scale, palette, teeth
+from ...types import FloatArray
+from ..settings import CURRENT, PLAIN, Appearance, Combs, ImageKind, Settings
+from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, cut_words, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
 from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, saved
@@ -62,7 +64,7 @@ def map_image(
     glyph: GlyphResult,
     kind: ImageKind,
     *,
-    comb: Whose = "result",
+    comb: Combs = "result",
     scale: float | None = None,
     vertices: bool = True,
     in_corners: bool = False,
@@ -74,15 +76,18 @@ def map_image(
     return saved(figure, kind)
 
 
-def draw_map(axes: Any, glyph: GlyphResult, whose: Whose, scale: float, vertices: bool, in_corners: bool) -> None:
+def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices: bool, in_corners: bool) -> None:
     """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
-    outline = glyph.outline
+    outline, whose = glyph.outline, shown_by(combs)
     shown = [contour.curve if whose == "result" else contour.source for contour in glyph.contours]
     curves = [contour.cubics() for contour in shown if len(contour)]
     for patch in outline_patch(curves, facecolor=(0, 0, 0, 0.07), edgecolor="black", linewidth=1):
         axes.add_patch(patch)
-    for part in teeth(glyph, scale, whose, in_corners=in_corners):
+    drawn = teeth(glyph, scale, whose, in_corners=in_corners)
+    for part in drawn:
         _draw_teeth(axes, part)
+    for part in teeth(glyph, scale, "source") if combs == "both" else ():
+        axes.plot(*_closed(part.tips).T, color=SOURCE, linewidth=0.6, linestyle=(0, (4, 2)))
     if vertices:
         for contour in glyph.contours:
             points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
@@ -93,8 +98,18 @@ def draw_map(axes: Any, glyph: GlyphResult, whose: Whose, scale: float, vertices
     # A name with dollar signs is not mathematics.
     axes.set_title(f"gid {outline.gid}  {ascii_text(outline.name)}", parse_math=False)
     reach = scale * outline.metrics.units_per_em
-    bar = colour_bar(axes.figure, reach if reach > 0 else 1.0, ax=axes, location="bottom", shrink=0.5, aspect=40)
-    bar.set_label(f"curvature of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}")
+    # As wide as the glyph and its comb: letters are 8 points, a line has some 5 inches.
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    columns = int(75 * min(1.0, (right - left) / (top - bottom)))
+    place = axes.inset_axes((0.0, -0.05, 1.0, 0.02))
+    bar = colour_bar(axes.figure, reach if reach > 0 else 1.0, cax=place, orientation="horizontal")
+    bar.ax.tick_params(labelsize=8)
+    if columns < 30:
+        bar.set_ticks([-reach, reach], labels=[f"{-reach:.3g}", f"{reach:.3g}"], fontsize=6)
+    words = f"curvature of the {whose} in 1/em, convex positive"
+    words += "; dashed: of the source" if combs == "both" else ""
+    words += cut_words(sum(int(part.cut.sum()) for part in drawn), reach)
+    bar.set_label("\n".join(wrap(words, max(columns, 12))), fontsize=8)
 
 
 def _draw_teeth(axes: Any, part: Teeth) -> None:
@@ -102,6 +117,9 @@ def _draw_teeth(axes: Any, part: Teeth) -> None:
 
     colours = [palette()[index + SIDES] for index in colour_classes(part.relative).tolist()]
     axes.add_collection(LineCollection(list(np.stack([part.feet, part.tips], axis=1)), colors=colours, linewidths=0.5))
-    closed = np.concatenate([part.tips, part.tips[:1]])
-    axes.plot(*closed.T, color="black", alpha=0.45, linewidth=0.3)
+    axes.plot(*_closed(part.tips).T, color="black", alpha=0.45, linewidth=0.3)
     axes.plot(*part.tips[part.cut].T, "k.", markersize=1)
+
+
+def _closed(points: FloatArray) -> FloatArray:
+    return np.concatenate([points, points[:1]])

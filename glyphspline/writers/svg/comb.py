@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 
-from ...curves.curvature import ANGLE, Comb, relative, robust_scale
+from ...curves.curvature import ANGLE, Comb, relative, shared_scale
 from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.sampling import CORNER_ANGLE
 from ...types import BoolArray, FloatArray, IntArray
-from ..settings import WHOSE, Whose
+from ..settings import WHOSE, Combs, Whose
 
 SPACING = 1 / 140
 """Maximum spacing of teeth in em. At half of it teeth run together in print; at twice, the tips cut corners."""
@@ -22,13 +22,16 @@ SPACING = 1 / 140
 MOST_TEETH = 8000
 """Maximum number of teeth; beyond it spacing grows. A CJK glyph has some 2000, a hostile one could have millions."""
 
-TOOTH, LONGEST = 0.03, 1.25
-"""Length in em of a tooth at the shared scale. Longer teeth of neighbouring strokes cross on CJK glyphs. Maximum length
-of a tooth in units of the scale; shortened teeth have a mark. At 2.5 the fans of rounded corners cover a CJK glyph;
+TOOTH, LONGEST = 0.03, 2.5
+"""Length in em of a tooth at the shared scale. Maximum length of a tooth in units of the scale; shortened teeth have a
+mark. Bowls of a source reach 2 (see :func:`glyphspline.curves.curvature.shared_scale`), those of a result a little more;
 without a limit a single tooth may cross the page."""
 
 NEAR = 1 / 40
 """Distance in em within which a smooth result turns about a corner of the source, and swings out on both sides."""
+
+SOURCE = "#e8590c"
+"""Colour of the line through the tips of the source's comb in a map of both."""
 
 SIDES = 7
 """Colour classes on each side of zero. More cannot be distinguished on thin teeth, and each adds a path."""
@@ -50,14 +53,15 @@ class Teeth:
 
 
 def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
-    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.robust_scale`.
+    """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.shared_scale`.
 
     It is that of the sources, so that combs of sources and of all their results compare; a smooth result's turns about
     corners would make it larger. Where all sources are straight it is that of the results.
     """
     every = list(glyphs)
     order: tuple[Whose, ...] = ("source", "result")
-    found = (robust_scale(item for glyph in every for item in combs(glyph, whose=whose)) for whose in order)
+    em = every[0].outline.metrics.units_per_em if every else 1.0
+    found = (shared_scale((item for glyph in every for item in combs(glyph, whose=whose)), em) for whose in order)
     return next(filter(None, found), 0.0)
 
 
@@ -76,6 +80,17 @@ def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> 
         own = samples[at[0] : at[-1]]
         found.append(Comb(own[:, :2], own[:, 2:4], own[:, 4], own[:, 5], at - at[0]))
     return found
+
+
+def shown_by(combs: Combs) -> Whose:
+    """Whose outline and teeth a map shows."""
+    require_choice("comb", combs, (*WHOSE, "both"))
+    return "source" if combs == "source" else "result"
+
+
+def cut_words(number: int, reach: float) -> str:
+    """What a map says of its cut teeth; ``reach`` is its scale in 1/em."""
+    return f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" if number else ""
 
 
 def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:

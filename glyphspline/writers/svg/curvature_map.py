@@ -4,14 +4,33 @@ from __future__ import annotations
 
 from functools import cache, lru_cache
 from itertools import pairwise
+from math import floor
+from textwrap import wrap
 
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ..settings import Settings, Whose
-from .comb import LONGEST, SIDES, TOOTH, colour_classes, curvature_scale, curves_of, palette, sides_and_corners
+from ..settings import Combs, Settings, Whose
+from .comb import (
+    SIDES,
+    SOURCE,
+    TOOTH,
+    colour_classes,
+    curvature_scale,
+    curves_of,
+    cut_words,
+    palette,
+    shown_by,
+    sides_and_corners,
+)  # fmt: skip
 from .document import data_attributes, document, em_box, head, id_prefix, number, title, union, view_box_value
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
+
+WIDEST, STEP = 1.5, 0.02
+"""Width in em of the longest legend, and what widths are multiples of: those of many glyphs are equal."""
+
+LETTERS, ADVANCE = 0.034, 0.6
+"""Size in em of a legend's letters, and their advance in sizes, which is larger than that of common sans serifs."""
 
 STROKE = 3
 """Width of the outline in 1/1000 em. It would hide teeth of less than half of it, so these are left out."""
@@ -26,7 +45,7 @@ MEANING = (
 def to_curvature_svg(
     glyph: GlyphResult,
     *,
-    comb: Whose = "result",
+    comb: Combs = "result",
     scale: float | None = None,
     vertices: bool = True,
     control_polygon: bool = False,
@@ -35,13 +54,15 @@ def to_curvature_svg(
     """The outline with its curvature comb, as an SVG document that is legible on light and dark.
 
     A tooth starts on the curve and follows its normal, on the outer (convex) side, away from the centre of curvature.
-    Its length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 1.25 times that and end with a dot.
+    Its length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 2.5 times that and end with a dot.
     Colour is signed κ: blue and violet where the ink is convex, yellow and red where it is concave, whichever way the
-    contours run. The legend is in 1/em: curvature times units per em.
+    contours run. The legend, no wider than the glyph, is in 1/em: curvature times units per em; it says how many teeth
+    are cut.
 
     Args:
         glyph: a result of :func:`convert`.
-        comb: "result" is the interpolated curve; "source" is the outline as the font has it, with its exact curvature.
+        comb: "result" is the interpolated curve; "source" is the outline as the font has it, with its exact curvature;
+            "both" is the result's, and a dashed line through the tips of the source's.
         scale: the curvature, in 1/unit, of a full tooth. By default :func:`curvature_scale` of the glyph.
         vertices: mark the polygon's vertices, or the points on the curve of a source.
         control_polygon: draw the control polygon of each interpolation.
@@ -57,7 +78,7 @@ def to_curvature_svg(
         True
     """
     scale = curvature_scale([glyph]) if scale is None else scale
-    path = curves_data(curves_of(glyph, comb), glyph.options.precision)[0]
+    path = curves_data(curves_of(glyph, shown_by(comb)), glyph.options.precision)[0]
     return map_document(
         glyph, path, scale, comb, vertices=vertices, control_polygon=control_polygon, in_corners=in_corners
     ).decode()
@@ -73,7 +94,7 @@ def map_document(
     glyph: GlyphResult,
     path: PathData,
     scale: float,
-    whose: Whose = "result",
+    combs: Combs = "result",
     *,
     vertices: bool = True,
     control_polygon: bool = False,
@@ -84,10 +105,10 @@ def map_document(
 
     ``words``: what the title names instead of the glyph.
     """
-    outline, arrays = glyph.outline, glyph.arrays
+    outline, arrays, whose = glyph.outline, glyph.arrays, shown_by(combs)
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
-    layers, box = _comb(glyph, scale, whose, in_corners, precision)
+    layers, box, cut = _comb(glyph, scale, combs, in_corners, precision)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
     layers.append(
@@ -106,11 +127,19 @@ def map_document(
         joints = source.points[np.cumsum(source.degrees) - source.degrees]
         dots = dots_data(arrays.polygons.points if whose == "result" else joints, precision)
         layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
-    legend, width, height = _legend(em, scale, precision, whose)
-    left, base, margin = box[0] + 0.02 * em, box[1] - (0.06 + TOOTH) * em, 0.02 * em
+    width = min(max(floor((box[2] - box[0]) / (STEP * em)), 1) * STEP, WIDEST) * em
+    letters = min(LETTERS * em, width / 8)
+    meaning = f"κ of the {whose} in 1/em, convex positive"
+    meaning += "; dashed: of the source" if combs == "both" else ""
+    meaning += cut_words(cut, scale * em)
+    lines = wrap(meaning, max(int(width / (ADVANCE * letters)), 1))
+    said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
+    height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
+    left, base = box[0], box[1] - (0.06 + TOOTH) * em
     layers.append(
         f'<g class="legend" transform="translate({number(left, precision)} {number(-base, precision)})"'
-        f' stroke-width="{_width(em, 3)}">{legend}</g>\n</svg>\n'
+        f' stroke-width="{_width(em, 3)}">{_axis(em, scale, precision, width, letters)}'
+        f"{''.join(said)}</g></g>\n</svg>\n"
     )
     box = (box[0] - margin, base - height - margin, max(box[2], left + width) + margin, box[3] + margin)
     prefix, drawn = id_prefix(outline.name, outline.gid), "" if whose == "result" else ", source"
@@ -123,26 +152,43 @@ def map_document(
 
 
 def _comb(
-    glyph: GlyphResult, scale: float, whose: Whose, in_corners: bool, precision: int
-) -> tuple[list[str], Box | None]:
-    """The comb's paths (teeth by colour class, line of tips, marks of cut teeth), and the box around curve and comb."""
+    glyph: GlyphResult, scale: float, combs: Combs, in_corners: bool, precision: int
+) -> tuple[list[str], Box | None, int]:
+    """The comb's paths, the box around curves and combs, and the number of teeth that are cut.
+
+    Paths are teeth by colour class, the line of tips and marks of cut teeth; of the source of both, the line alone.
+    """
     from .path_text import LARGEST, comb_teeth, comb_text, dots_text  # here: the package opens without a compiler
 
-    em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
+    em, unit = glyph.outline.metrics.units_per_em, 10.0**precision
     least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
-    marks = sides_and_corners(glyph, whose, in_corners=in_corners)
-    ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
-    layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
-    if len(ends):
+    layers, box, number_cut = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None, 0
+    wanted: tuple[Whose, ...] = ("result", "source") if combs == "both" else (shown_by(combs),)
+    for whose in wanted:
+        marks = sides_and_corners(glyph, whose, in_corners=in_corners)
+        curves = curves_of(glyph, whose)
+        ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
+        if not len(ends):
+            continue
         low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
-        if max(*high, -min(low)) < LARGEST:
-            data, at = comb_text(ends, classes, offsets, precision)
-            parts = [data.tobytes()[a:b] for a, b in pairwise(at.tolist())]
-            parts.append(dots_text(ends[cut & (classes >= 0), 2:], precision).tobytes())
-            layers += [f'{begin}{part.decode()}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
-            unit = 10.0**precision
-            box = min(low[::2]) / unit, min(low[1::2]) / unit, max(high[::2]) / unit, max(high[1::2]) / unit
-    return [*layers, "</g>\n"], box
+        if max(*high, -min(low)) >= LARGEST:
+            continue
+        box = union((min(low[::2]) / unit, min(low[1::2]) / unit, max(high[::2]) / unit, max(high[1::2]) / unit), box)
+        data, at = comb_text(ends, classes, offsets, precision)
+        parts = [data.tobytes()[a:b].decode() for a, b in pairwise(at.tolist())]
+        if whose != shown_by(combs):
+            layers.append(f'<path class="source-comb" {_dashed(em)} d="{parts[-1]}"/>\n')
+            continue
+        cut &= classes >= 0
+        number_cut = int(cut.sum())
+        parts.append(dots_text(ends[cut, 2:], precision).tobytes().decode())
+        layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
+    return [*layers, "</g>\n"], box, number_cut
+
+
+def _dashed(em: float) -> str:
+    """The look of the line through the tips of the source's comb."""
+    return f'stroke="{SOURCE}" stroke-width="{_width(em, 2.4)}" stroke-dasharray="{_width(em, 10)} {_width(em, 5)}"'
 
 
 @cache
@@ -155,15 +201,12 @@ def _styles(em: float) -> list[str]:
     ]
 
 
-@lru_cache(maxsize=8)
-def _legend(em: float, scale: float, precision: int, whose: Whose) -> tuple[str, float, float]:
-    """The legend: a row of teeth over an axis from -κ to κ of the scale, in 1/em.
-
-    Its origin is at the left end of the axis; also its width, and its extent below the axis.
-    """
+@lru_cache(maxsize=128)
+def _axis(em: float, scale: float, precision: int, width: float, letters: float) -> str:
+    """A row of teeth over an axis from -κ to κ of the scale, in 1/em, from its left end; a group of text stays open."""
     from .path_text import comb_text  # here and not above: the package opens without a compiler
 
-    letters, width, reach = 0.034 * em, 0.56 * em, scale * em
+    reach = scale * em
     strength = np.linspace(-1, 1, 8 * SIDES + 1)
     feet = np.stack([(strength + 1) / 2 * width, 0 * strength], axis=1)
     tips = feet + np.stack([0 * strength, np.abs(strength) * TOOTH * em], axis=1)
@@ -172,23 +215,21 @@ def _legend(em: float, scale: float, precision: int, whose: Whose) -> tuple[str,
     strokes = [
         (colour, data[a:b].tobytes().decode()) for colour, (a, b) in zip(palette(), pairwise(at.tolist()), strict=False)
     ]
-    words = f"κ of the {whose} in 1/em, convex positive; dots: cut at {LONGEST * reach:.3g}"
-    labels = [
-        (0.0, -1.35, "start", f"\N{MINUS SIGN}{reach:.3g}"), (width / 2, -1.35, "middle", "0"),
-        (width, -1.35, "end", f"{reach:.3g}"), (0.0, -2.75, "start", words),
-    ]  # fmt: skip
-    texts = [
-        f'<text x="{number(x, precision)}" y="{number(-y * letters, precision)}" text-anchor="{anchor}">{label}</text>'
-        for x, y, anchor, label in labels
-    ]
-    content = (
+    labels = [(0.0, "start", f"\N{MINUS SIGN}{reach:.3g}"), (width / 2, "middle", "0"), (width, "end", f"{reach:.3g}")]
+    texts = [_words(x, -1.35, anchor, label, letters, precision) for x, anchor, label in labels]
+    return (
         f"<title>{MEANING}</title>"
         + "\n".join([f'<path stroke="{colour}" d="{path}"/>' for colour, path in strokes])
         + f'\n<path stroke="currentColor" d="M0 0h{number(width, precision)}"/>\n'
         + f'<g fill="currentColor" font-family="sans-serif" font-size="{number(letters, precision)}">'
-        + f"{''.join(texts)}</g>"
+        + "".join(texts)
     )
-    return content, max(width, 0.5 * letters * len(words)), 3.1 * letters
+
+
+def _words(x: float, line: float, anchor: str, words: str, letters: float, precision: int) -> str:
+    """A text of a legend; ``line`` is its baseline's height in sizes of its letters."""
+    y = number(-line * letters, precision)
+    return f'<text x="{number(x, precision)}" y="{y}" text-anchor="{anchor}">{words}</text>'
 
 
 def _width(em: float, thousandths: float) -> str:
