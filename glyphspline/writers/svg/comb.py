@@ -24,7 +24,7 @@ MOST_TEETH = 8000
 
 TOOTH, LONGEST = 0.03, 2.5
 """Length in em of a tooth at the shared scale. Maximum length of a tooth in units of the scale; shortened teeth have a
-mark. Bowls of a source reach 2 (see :func:`glyphspline.curves.curvature.shared_scale`), those of a result a little more;
+mark. Bowls of a source reach 2 (see :func:`glyphspline.curves.curvature.shared_scale`), of a result a little more;
 without a limit a single tooth may cross the page."""
 
 NEAR = 1 / 40
