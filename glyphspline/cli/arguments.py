@@ -16,6 +16,7 @@ from ..fields import LOOK, WRITTEN, About, option
 from ..typesetting.setting import Align, Direction, Place, Side
 from .config import names_of, settings
 from .groups import natural, place
+from .status import UNUSABLE
 
 if TYPE_CHECKING:
     from ..readers import Selection, Source
@@ -44,7 +45,7 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
             context.default_map = settings(path, names_of(named), context.command.name)
         except GlyphsplineError as error:
             typer.echo(f"glyphspline: {error}", err=True)
-            raise typer.Exit(2) from None
+            raise typer.Exit(UNUSABLE) from None
     return path
 
 

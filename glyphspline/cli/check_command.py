@@ -17,8 +17,10 @@ from . import arguments as opt
 from .config import CHECK, names_of, settings
 from .groups import Shown, collected, grouped, only
 from .messages import progress, say, stop
+from .running import say_missing
 
 if TYPE_CHECKING:
+    from ..readers import Selection, Source
     from ..runs.jobs.check import Asked
 
 STDOUT = Path("-")
@@ -32,12 +34,12 @@ def check(
     subset: opt.Subset,
     instance: opt.Instance,
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "config", "quiet")],
-) -> int:
+) -> bool:
     """Find what may be wrong with outlines as fonts have them: kinks, jumps of curvature, lumps and the like.
 
     The worst findings come first; kinks are WARN, the rest INFO. All glyphs are checked unless some are asked for,
-    those of a variable font along its axes too. Nothing is converted. The exit status is 1 only if --error-level asks
-    for it, and 2 if a font cannot be read.
+    those of a variable font along its axes too. Nothing is converted. Findings end the command with status 1 only if
+    --error-level asks for it.
     """
     from ..runs.font_search import find_fonts
     from ..runs.jobs.check import Face, check_fonts, worst_first
@@ -61,8 +63,18 @@ def check(
     if report.plot is not None and not alone:
         stop("--plot takes one font")
     faces: list[Face] = []
+    undone = False
+
+    def chosen(source: Source) -> Selection:
+        nonlocal undone
+        names = subset.of(source)
+        undone |= bool(names.missing)
+        if not run.quiet:
+            say_missing(names.missing, "" if alone else f"{source.path}: ")
+        return names
+
     for face in check_fonts(
-        files, asked, chosen=subset.of if subset.is_given else None, face_index=instance.face_index,
+        files, asked, chosen=chosen if subset.is_given else None, face_index=instance.face_index,
         location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
     ):  # fmt: skip
         faces.append(face)
@@ -100,9 +112,8 @@ def check(
     if not run.quiet:
         for line in sentences(faces, len(shown), report.rows, level):
             say(line)
-    if any(face.error is not None for face in faces):
-        return 2
-    return report.error_level is not None and any(face.reaches(report.error_level) for face in faces)
+    undone |= any(face.failed or face.error is not None for face in faces)
+    return undone or (report.error_level is not None and any(face.reaches(report.error_level) for face in faces))
 
 
 def asked_of(options: opt.CheckOptions, report: opt.ReportOptions, as_json: bool = False) -> Asked:

@@ -23,7 +23,8 @@ from .check_command import check
 from .diff_command import diff
 from .groups import grouped, only, place, without
 from .messages import listen, print_json, printable, progress, say, stop
-from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, workplace
+from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, say_missing, workplace
+from .status import RULE, UNDONE
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
 
@@ -36,6 +37,7 @@ BRUSHED = "龍好"
 app = typer.Typer(
     help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
     no_args_is_help=True,
+    epilog=RULE,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -59,7 +61,7 @@ def convert(
     single: opt.SingleFonts,
     run: opt.RunOptions,
     each: Annotated[bool, About("Write a folder in DIR for one font too.", WRITTEN)] = False,
-) -> int:
+) -> bool:
     """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
 
     One font goes to the folder itself, several to a folder each in it, each face of a collection to one in that.
@@ -85,7 +87,7 @@ def convert(
         say(runs_table(runs))
     if run.as_json:
         print_json(runs_facts(runs))
-    return any(one.failed for one in runs)
+    return any(one.undone for one in runs)
 
 
 def place_or_url(text: Any) -> str:
@@ -112,7 +114,7 @@ def dataset(
     run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
     fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
     text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
-) -> int:
+) -> bool:
     """Make a data set of the glyphs of fonts: Parquet files that datasets, pandas, DuckDB and Arrow open.
 
     Splits are by family. The same fonts and options give the same bytes, and a run that was interrupted goes on.
@@ -211,7 +213,7 @@ def atlas(
     ] = None,
     instance: opt.Instance = opt.FIRST,
     maps: Maps = BOTH,
-) -> int:
+) -> bool:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
 
     The combs are those of the results, and a dashed line is through the tips of the sources', unless --comb says
@@ -229,6 +231,8 @@ def atlas(
         stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
     source = open_source(font, instance.face_index or 0, instance.place)
     names = subset.of(source)
+    if not run.quiet:
+        say_missing(names.missing)
     if not names:
         stop("none of the glyphs asked for is in the font")
     chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
@@ -243,7 +247,7 @@ def atlas(
             )
     if not run.quiet:
         say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
-    return bool(failed)
+    return bool(failed or names.missing)
 
 
 app.command()(check)
@@ -282,7 +286,7 @@ def demo(
         Path | None, typer.Argument(metavar="[FONT]", help="A font of your own.", show_default=False)
     ] = None,
     out: opt.Out = Path("outputs/demo"),
-) -> int:
+) -> bool:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.
 
     龍 and 好 are converted with the preset paper.
@@ -292,7 +296,7 @@ def demo(
     from ..runs.warm import is_kept
     from ..runs.warm import warm as warm_up
 
-    failed, shown, paper = 0, [], RunSpec(Options(**PRESETS["paper"]))
+    undone, shown, paper = False, [], RunSpec(Options(**PRESETS["paper"]))
     asked = opt.as_typed(subset.text or "")
     texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
@@ -307,14 +311,14 @@ def demo(
                 stop(f"{path} has none of {text}: give --text")
             folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
             call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
-            failed += run_face(source, names, call, executor).failed
+            undone |= run_face(source, names, call, executor).undone
             shown.append(folder)
     if not run.quiet:
         pages = [f"  {folder / 'index.html'}" for folder in shown]
         typer.echo(
             "\n".join(["Open in a browser:", *pages, "Drawings are in svg/ beside it, curvature maps in curvature/."])
         )
-    return bool(failed)
+    return undone
 
 
 @app.command()
@@ -362,4 +366,4 @@ def main() -> None:
         app(prog_name="glyphspline")
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
+        sys.exit(UNDONE)

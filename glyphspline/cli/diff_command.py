@@ -12,6 +12,7 @@ from ..fields import About
 from . import arguments as opt
 from .groups import grouped, only
 from .messages import print_json, progress, say
+from .running import say_missing
 from .tables import difference_lines, differences_table
 
 if TYPE_CHECKING:
@@ -37,17 +38,17 @@ def diff(
     ] = None,
     instance: opt.Instance = opt.FIRST,
     html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
-) -> int:
+) -> bool:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
 
-    Exit status 1 if anything differs by more than the tolerance: an outline or an advance, contours or glyphs that only
-    one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless some are asked
-    for.
+    Fonts differ, with exit status 1, if anything does by more than the tolerance: an outline or an advance, contours or
+    glyphs that only one of them has, or glyphs that cannot be read. Kinks do not count. All glyphs are compared unless
+    some are asked for.
     """
     from ..runs.jobs.diff import compare_fonts
 
     sources = open_both(old, new, instance)
-    pairs = chosen_pairs(*sources, subset)
+    pairs, lacking = chosen_pairs(*sources, subset)
     with progress(run.quiet) as observer:
         found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
     if html is not None:
@@ -58,9 +59,10 @@ def diff(
     elif worst and rows:
         typer.echo(differences_table(worst, rows, found.tolerance))
     if not run.quiet:
+        say_missing(lacking)
         for line in difference_lines(found, 0 if run.as_json else rows):
             say(line)
-    return found.is_beyond
+    return found.is_beyond or bool(lacking)
 
 
 def open_both(old: Path, new: Path, instance: opt.Instance) -> tuple[Source, Source]:
@@ -86,20 +88,24 @@ def open_both(old: Path, new: Path, instance: opt.Instance) -> tuple[Source, Sou
     return sources[0], sources[1]
 
 
-def chosen_pairs(old: Source, new: Source, subset: opt.Subset) -> Pairs:
-    """Which glyphs are compared: all unless some are asked for, in either font; glyph indices are the old one's.
+def chosen_pairs(old: Source, new: Source, subset: opt.Subset) -> tuple[Pairs, list[str]]:
+    """Which glyphs are compared: all unless some are asked for, in either font; and what neither of them has.
+
+    Glyph indices are the old one's.
 
     Raises:
         GlyphsplineError: neither has any of them.
     """
+    from ..readers import Selection
     from ..runs.jobs.diff import pairs_of
 
     if not subset.is_given or subset.all_glyphs:
-        return pairs_of(old, new)
-    found = pairs_of(old, new, subset.of(old), subset.of(new) if subset.gids is None else ())
+        return pairs_of(old, new), []
+    of_old, of_new = subset.of(old), Selection() if subset.gids is not None else subset.of(new)
+    found = pairs_of(old, new, of_old, of_new)
     if not (found.pairs or found.only_old or found.only_new):
         raise GlyphsplineError("none of the glyphs asked for is in either font")
-    return found
+    return found, [one for one in of_old.missing if subset.gids is not None or one in of_new.missing]
 
 
 def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> None:

@@ -14,6 +14,7 @@ from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of
 from ..fitting.options import PRESETS, Options, Preset
 from .messages import errors, listen
+from .status import UNDONE
 
 Value = TypeVar("Value")
 
@@ -51,12 +52,12 @@ class PresetOption:
     )  # fmt: skip
 
 
-def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
-    """A command for typer, from a function that takes values and returns the exit status.
+def grouped(function: Callable[..., bool | None]) -> Callable[..., None]:
+    """A command for typer, from a function that takes values and returns whether something asked for was not done.
 
     A parameter is a dataclass, an option annotated with :class:`.About`, or an argument of typer. Expected errors end
-    the command with status 2, those of making the values too. A field whose option is not given, neither on the command
-    line nor in a file, keeps the value of the parameter's default, or that of the preset.
+    the command, those of making the values too: see :mod:`.status`. A field whose option is not given, neither on the
+    command line nor in a file, keeps the value of the parameter's default, or that of the preset.
     """
     hints = get_type_hints(function, include_extras=True)
     hints.pop("return")
@@ -80,9 +81,9 @@ def grouped(function: Callable[..., int | None]) -> Callable[..., None]:
         with errors(quiet or bool(given.get("json_log"))):
             listen(quiet)
             values = {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
-            status = function(**values)
-        if status:
-            raise typer.Exit(status)
+            undone = function(**values)
+        if undone:
+            raise typer.Exit(UNDONE)
 
     command.__name__, command.__doc__ = function.__name__, function.__doc__
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in flat}

@@ -13,8 +13,7 @@ import threading
 import time
 from contextlib import suppress
 
-STATUS = 130
-"""Exit status of an interrupted command."""
+from .status import INTERRUPTED
 
 WORDS = "interrupted; the same command goes on from here"
 
@@ -50,4 +49,4 @@ def end() -> None:
             sys.stderr.write("\r\x1b[K\x1b[?25h")  # an empty line, and the cursor, which a progress bar hides
         sys.stderr.write(f"{WORDS}\n")
         sys.stderr.flush()
-    os._exit(STATUS)
+    os._exit(INTERRUPTED)

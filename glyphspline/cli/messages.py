@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 import typer
 
 from . import interruption
+from .status import INTERRUPTED, UNUSABLE
 
 QUIET = "GLYPHSPLINE_QUIET"
 """Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
@@ -21,7 +22,7 @@ QUIET = "GLYPHSPLINE_QUIET"
 
 @contextmanager
 def errors(quiet: bool) -> Iterator[None]:
-    """Print an expected error as one line on standard error and exit with status 2; ``quiet``: compile silently."""
+    """Print an expected error as one line on standard error, and exit: unusable. ``quiet``: compile silently."""
     from ..errors import GlyphsplineError
 
     if quiet:
@@ -36,7 +37,7 @@ def errors(quiet: bool) -> Iterator[None]:
         stop("not enough memory")
     except KeyboardInterrupt:
         say(interruption.WORDS)
-        raise typer.Exit(interruption.STATUS) from None
+        raise typer.Exit(INTERRUPTED) from None
     finally:
         os.environ.pop(QUIET, None)
 
@@ -75,9 +76,9 @@ def listen(quiet: bool = False) -> None:
 
 
 def stop(message: str) -> NoReturn:
-    """Exit with a message and status 2: the call or the font is unusable."""
+    """Exit with a message: the call or the font is unusable."""
     say(f"glyphspline: {message}")
-    raise typer.Exit(2)
+    raise typer.Exit(UNUSABLE)
 
 
 def printable(text: str) -> str:

@@ -80,19 +80,24 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
 def convert_face(source: Source, name: str, call: Conversion, executor: Executor, alone: bool) -> FontRun:
     """Convert one face of the font called ``name``; those of a collection go to a folder each unless it is alone."""
-    from ..runs.summary import listed
-
     if source.num_faces > 1 and not alone:
         name = f"{name}, face {source.face_index}"
         call = replace(call, out=call.out / f"face-{source.face_index}")
     names = call.subset.of(source)
-    if names.missing and not call.run.quiet:
-        words = listed([with_character(phrase) for phrase in names.missing[:10]], len(names.missing))
-        say(("" if alone else f"{name}: ") + f"not in the font: {words}")
+    if not call.run.quiet:
+        say_missing(names.missing, "" if alone else f"{name}: ")
     if alone and not names:
         stop("none of the glyphs asked for is in the font")
     summary = run_face(source, names, call, executor, None if alone else name)
     return FontRun(name, call.out, summary)
+
+
+def say_missing(missing: Sequence[str], before: str = "") -> None:
+    """Name what is asked for and not in a font, by the phrases of :class:`.Selection`."""
+    from ..runs.summary import listed
+
+    if missing:
+        say(f"{before}not in the font: {listed([with_character(one) for one in missing[:10]], len(missing))}")
 
 
 def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None:
@@ -109,7 +114,7 @@ def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None
 
 
 def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
-    """Convert a variable font, or single fonts that become one, in all masters; whether a glyph failed."""
+    """Convert a variable font, or single fonts that become one, in all masters; whether something was not done."""
     from ..readers import open_source
     from ..runs.jobs.masters import convert_font_masters
 
@@ -118,6 +123,8 @@ def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleF
     run = call.run
     sources = [open_source(font, call.instance.face_index or 0) for font in (*fonts, *(single.others or ()))]
     names = call.subset.of(sources[0])
+    if not run.quiet:
+        say_missing(names.missing)
     if not names:
         stop("none of the glyphs asked for is in the font")
     with json_lines() if run.json_log else progress(run.quiet) as observer:
@@ -132,7 +139,7 @@ def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleF
             say(line)
     if run.as_json:
         print_json(facts)
-    return bool(summary.failed)
+    return bool(names.missing or summary.failed or summary.outside)
 
 
 def run_face(

@@ -112,6 +112,11 @@ class FontRun:
         """Number of glyphs that failed; a font that could not be read counts as one."""
         return self.counts[1] if self.summary else 1
 
+    @property
+    def undone(self) -> bool:
+        """Whether something asked for was not done."""
+        return self.summary is None or self.summary.undone
+
     def failures(self) -> Iterator[str]:
         """What failed, the first three and the number of the others."""
         if self.error is not None:

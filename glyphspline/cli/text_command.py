@@ -61,11 +61,10 @@ def text(
         str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
     ] = None,
     instance: opt.Instance = opt.FIRST,
-) -> int:
+) -> bool:
     """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
-    Each glyph is fitted once, however often it occurs. The exit status is 1 if the fonts lack characters of the
-    text, or glyphs cannot be read.
+    Each glyph is fitted once, however often it occurs.
     """
     from ..runs.schedule import kinds_for, workers
 
@@ -75,7 +74,6 @@ def text(
     with workers(1, kinds=kinds_for(options, names), expected=1) as executor:
         from ..readers import open_source
         from ..runs.jobs.text import TextJob, draw
-        from ..typesetting.placed import LEFT_OUT
 
         content = words_of(words, lines.text_file)
         source = open_source(font, instance.face_index or 0, instance.place)
@@ -99,7 +97,7 @@ def text(
         remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
     for line in () if run.quiet else remarks:
         say(line)
-    return 1 if layout.missing or any(f"{LEFT_OUT}: " in note for note in drawn.notes) else 0
+    return bool(layout.missing or not drawn.complete)
 
 
 def formats_of(files: Sequence[File], name: str | None) -> Iterator[tuple[File, str]]:

@@ -27,9 +27,13 @@ MAX_SEGMENTS, MAX_COMPONENTS = 200_000, 10_000
 """Limits far above any real glyph. A few hundred bytes of nested components can ask for 2^64 copies."""
 
 
+NO_AREA = "it encloses nothing"
+"""What notes say of contours without area. Most are single points, which fonts use for hints and anchors."""
+
+
 def notes_of(left_out: Sequence[int]) -> tuple[str, ...]:
     """One sentence for each contour that encloses nothing, by its number."""
-    return tuple(f"contour {number} left out: it encloses nothing" for number in left_out)
+    return tuple(f"contour {number} left out: {NO_AREA}" for number in left_out)
 
 
 def enter_component(nesting: Sequence[str | None], name: str) -> list[str | None]:

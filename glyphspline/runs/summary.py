@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
 
 from ..fitting.results import MEASURES, MeasureColumns
+from ..readers.pens import NO_AREA
 from ..types import counted
 
 SHOWN = 10
@@ -132,8 +133,8 @@ class Summary:
                 setattr(self, name, getattr(self, name) + 1)
                 named = self.named.setdefault(name, [])
                 named += [glyph] if len(named) < NAMED else []
-        if facts.notes and len(self.left_out) < NAMED:
-            self.left_out.append((glyph, ", ".join(facts.notes)))
+        if (notes := [note for note in facts.notes if NO_AREA not in note]) and len(self.left_out) < NAMED:
+            self.left_out.append((glyph, ", ".join(notes)))
         if facts.deviation is not None:
             keep_largest(self.worst, (facts.deviation, glyph))
 
@@ -180,6 +181,11 @@ class Summary:
             yield f"failed: {glyph}: {error}"
         if self.failed > len(self.failures):
             yield f"and {self.failed - len(self.failures)} more, in the manifest"
+
+    @property
+    def undone(self) -> bool:
+        """Whether something asked for was not done: a glyph is missing, failed, or is not within the tolerance."""
+        return bool(self.missing or self.failed or (self.aim and self.outside_tolerance))
 
     @property
     def failed(self) -> int:

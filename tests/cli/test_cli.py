@@ -38,7 +38,7 @@ runner = CliRunner()
 def test_convert_writes_what_it_says(tmp_path: Path) -> None:
     out = tmp_path / "out"
     result = runner.invoke(app, ["convert", FONT, "--text", "O \n龘", "--step", "90", "--out", str(out), "--jobs", "0"])
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 1, result.output
     assert result.stdout == ""
     assert "not in the font: U+9F98" in result.stderr
     assert re.search(r"1 glyph and 1 empty in [0-9.]+ s; open .*index.html", result.stderr)

@@ -11,6 +11,7 @@ from typing import Any
 from ...extras import has
 from ...outlines.outline import Outline
 from ...readers import Source
+from ...readers.pens import NO_AREA
 from ..engine import Item, Job, Observer, run
 from ..schedule import Place, sources
 
@@ -85,7 +86,7 @@ def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
     read = list(zip(names, source.outlines(names, errors="return"), strict=True))
     outlines = [outline for _, outline in read if isinstance(outline, Outline)]
     broken = [name for name, outline in read if not isinstance(outline, Outline)]
-    left_out = [sum("encloses nothing" in note for note in outline.notes) for outline in outlines]
+    left_out = [sum(NO_AREA in note for note in outline.notes) for outline in outlines]
     return {
         "contours": sum(len(outline.contours) for outline in outlines),
         "segments": sum(len(outline.arrays.degrees) for outline in outlines),

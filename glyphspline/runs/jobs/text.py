@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...errors import GlyphsplineError, OptionError
 from ...fitting.options import Options
-from ...typesetting.placed import Layout
+from ...readers.pens import NO_AREA
+from ...typesetting.placed import LEFT_OUT, Layout
 from ...typesetting.setting import Align, Side
 from ...writers.settings import Settings, paper_length
 from ..engine import Item, Job, reason, run, work
@@ -53,10 +54,16 @@ class TextJob:
 
 
 class Drawings(NamedTuple):
-    """The drawings of a text as bytes, in the order of the formats, and what is left out of them or noted."""
+    """The drawings of a text.
+
+    Attributes:
+        contents: bytes, in the order of the formats. notes: what is left out of them, or worth knowing.
+        complete: whether no glyph is left out, and all contours are within the tolerance.
+    """
 
     contents: list[bytes]
     notes: list[str]
+    complete: bool
 
 
 @dataclass(frozen=True)
@@ -150,6 +157,13 @@ def drawings(job: TextJob) -> Drawings:
 
         layout = along(layout, job.path, align=job.align, side=job.side, offset=job.offset)
     notes: dict[str, None] = {}
+    outside = False
+
+    def note(results: Sequence[GlyphResult]) -> None:
+        nonlocal outside
+        for result in results:
+            notes.update(dict.fromkeys([*result.outline.notes, *result.notes]))
+            outside |= False in result.arrays.measures.get("within_tolerance", ())
 
     @cache
     def whole(fit: bool) -> GlyphResult:
@@ -161,8 +175,7 @@ def drawings(job: TextJob) -> Drawings:
             if isinstance(found, GlyphsplineError):
                 raise found
             result = found
-            notes.update(dict.fromkeys(outline.notes))
-        notes.update(dict.fromkeys(result.notes))
+        note([result])
         return result
 
     def each_glyph(fit: bool) -> bytes:
@@ -171,7 +184,7 @@ def drawings(job: TextJob) -> Drawings:
         if bent is not None:
             raise GlyphsplineError("--each-glyph: bent text is one outline")
         results = layout.results(options, fitted) if fit else layout.unfitted(options)
-        notes.update(dict.fromkeys([note for result in results for note in (*result.outline.notes, *result.notes)]))
+        note(results)
         settings = sized(job, layout.placed(results)) if job.fit_width else job.settings
         return text_document(layout, results, settings.look)
 
@@ -186,7 +199,8 @@ def drawings(job: TextJob) -> Drawings:
             made = form.write(result, settings.scaled(metrics))
             contents.append(made.encode() if isinstance(made, str) else made)
         sign_of_life()
-    return Drawings(contents, list(notes))
+    left_out = any(one.startswith(f"{LEFT_OUT}: ") or f": {LEFT_OUT}: " in one for one in notes)
+    return Drawings(contents, [one for one in notes if NO_AREA not in one], not (left_out or outside))
 
 
 def sized(job: TextJob, result: GlyphResult) -> Settings:
