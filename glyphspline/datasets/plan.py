@@ -93,7 +93,7 @@ class Plan:
     @cached_property
     def record(self) -> dict[str, Any]:
         """The content of ``dataset.json``, which differs for other options or fonts."""
-        options = None if self.spec.options is None else asdict(self.spec.options)
+        options = None if self.spec.options is None else self.spec.options.facts()
         fonts = [[*f.key, f.file, f.status] for f in self.fonts]
         return {
             "glyphspline": __version__,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from ..errors import OptionError
@@ -140,6 +140,10 @@ class Options:
         said += [f"{name} {getattr(self, name):g}" for name in given] or [f"tolerance {self.thousandths:g}/1000 em"]
         said += [] if self.is_fixed else [f"effort {self.effort}"]
         return ", ".join(said)
+
+    def facts(self) -> dict[str, Any]:
+        """As JSON data, for files that say how they were made; ``thousandths`` only where it is not 1."""
+        return {name: value for name, value in asdict(self).items() if (name, value) != ("thousandths", 1.0)}
 
     def tolerance_for(self, units_per_em: float) -> float:
         """The geometric tolerance in font units."""

@@ -213,7 +213,7 @@ def describe(
         "selection": asked,
         "selected": len(glyphs),
         "missing": {"count": len(missing), "first": list(missing[:20])},
-        "options": asdict(spec.options) | effective,
+        "options": spec.options.facts() | effective,
         "formats": list(spec.formats),
         **asdict(spec.settings.look),
         **asdict(spec.maps),

@@ -136,7 +136,7 @@ def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     outline, digits = result.outline, result.options.precision
     curves = [with_extrema(contour.curve, outline.metrics.units_per_em) for contour in result.contours]
     lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
-    lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(asdict(result.options))}
+    lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(result.options.facts())}
     width, note = as_number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
     front.writeGlyph(outline.name, glyph, lambda pen: draw(curves, digits, pen))
