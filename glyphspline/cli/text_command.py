@@ -92,7 +92,7 @@ def text(
         else:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(drawing)
-    remarks = [*missing(layout), *drawn.notes]
+    remarks = [*missing(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
     if len(remarks) > SHOWN:
         remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
     for line in () if run.quiet else remarks:

@@ -82,6 +82,12 @@ class Limits:
         for name, value in asdict(self).items():
             require(is_positive(value), f"the limit of {name} is a positive number", value)
 
+    def error_of(self, segments: int) -> GlyphsplineError | None:
+        """The error of a glyph of so many segments, or None."""
+        if segments > self.segments:
+            return GlyphsplineError(f"{segments} segments, more than the {self.segments} allowed")
+        return None
+
 
 @dataclass(frozen=True)
 class RunSpec:

@@ -47,8 +47,8 @@ def items(found: Sequence[OutlineOrError], options: Options | None, limits: Limi
 
 def _item(outline: Outline, vertices: float, limits: Limits) -> Item | GlyphsplineError:
     segments = len(outline.arrays.degrees)
-    if segments > limits.segments:
-        return GlyphsplineError(f"{segments} segments, more than the {limits.segments} allowed")
+    if error := limits.error_of(segments):
+        return error
     if not vertices <= limits.vertices:
         return GlyphsplineError(f"about {vertices:.3g} vertices, more than the {limits.vertices} allowed")
     return Item(outline, segments + vertices, outline.metrics)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from io import BytesIO
@@ -12,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
@@ -29,6 +31,12 @@ if TYPE_CHECKING:
 REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
 OUTLINES = ("glyf", "CFF ", "CFF2")
 PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
+
+MOST_FACES = 1000
+"""Limit of faces of a collection: each takes four bytes of a hostile file, and the time of a font."""
+
+MOST_CHARACTERS = 0x110000
+"""Limit of code points in the segments of a table of characters: as many as there are. fontTools lists them all."""
 
 UNICODE_CMAPS = frozenset({(3, 10), (3, 1), *((0, encoding) for encoding in (0, 1, 2, 3, 4, 6))})
 """Platforms and encodings of the tables of characters that a font is read by."""
@@ -52,6 +60,8 @@ class Font(Source):
             raise FontError("not a TTF, OTF, TTC, WOFF or WOFF2 file")
         self.path, self.face_index, self.format, self._data = path, face_index, FORMATS[data[:4]], data
         self.num_faces = readTTCHeader(BytesIO(data)).numFonts if data[:4] == b"ttcf" else 1
+        if self.num_faces > MOST_FACES:
+            raise FontError(f"a collection of {self.num_faces} faces, more than the {MOST_FACES} allowed")
         if not 0 <= face_index < self.num_faces:
             raise FontError(f"no face {face_index}: the file has {self.num_faces}, counted from 0")
         self._plain = unpacked(data)
@@ -88,6 +98,7 @@ class Font(Source):
         if named:
             self.glyph_names = tuple(tables.getGlyphOrder())
             self.num_glyphs = len(self.glyph_names)
+            check_characters(tables.reader["cmap"] if "cmap" in tables else b"")
             mapped = (tables.getBestCmap() or {}).items()
             self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
 
@@ -126,6 +137,32 @@ class Font(Source):
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
         return BulkReader(self.path, self.face_index, self.location, self._hb)
+
+
+def check_characters(data: bytes) -> None:
+    """Refuse a table of characters whose segments hold more code points than there are, some of them over and over.
+
+    Raises:
+        FontError: a subtable of the bytes ``data`` does. What is cut short is left to fontTools.
+    """
+    for at in range(8, len(data) - 3, 8)[: int.from_bytes(data[2:4], "big")]:
+        with suppress(struct.error, ValueError):
+            if _code_points(data, *struct.unpack_from(">L", data, at)) > MOST_CHARACTERS:
+                raise FontError("a broken font: its table of characters has more code points than there are")
+
+
+def _code_points(data: bytes, offset: int) -> int:
+    """How many code points the segments of a subtable hold, each as often as it occurs."""
+    kind = int.from_bytes(data[offset : offset + 2], "big")
+    if kind in (12, 13):
+        (count,) = struct.unpack_from(">L", data, offset + 12)
+        first, last, _ = np.frombuffer(data, ">u4", 3 * count, offset + 16).reshape(-1, 3).T.astype(np.int64)
+    elif kind == 4:
+        count = int.from_bytes(data[offset + 6 : offset + 8], "big") // 2
+        last, _, first = np.split(np.frombuffer(data, ">u2", 2 * count + 1, offset + 14), [count, count + 1])
+    else:
+        return 0
+    return int((last.astype(np.int64) - first + 1).clip(0).sum())
 
 
 def metrics_of(tables: TTFont) -> FontMetrics:

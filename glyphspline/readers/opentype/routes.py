@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
@@ -13,8 +15,12 @@ from fontTools.misc.roundTools import otRound
 from fontTools.pens.transformPen import TransformPen
 from fontTools.ttLib import TTFont
 
+from ...errors import GlyphsplineError
 from ..pens import ContourPen
 from .containers import unpacked
+
+MOST_MOVES = 4_000_000
+"""Limit of points times variations of a glyph of ``glyf``: real ones have some 50,000, and fontTools lists them all."""
 
 
 class HarfBuzz:
@@ -90,6 +96,8 @@ class FontTools:
         reading of the same glyph would not find the fault.
         """
         try:
+            if self._normalized:
+                check_variations(self._tables, name)
             pen = ContourPen(self._glyphs, name)
             glyph = self._glyphs[name]
             glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
@@ -105,3 +113,22 @@ class FontTools:
         if "glyf" not in self._tables or self._normalized or not self._tables["glyf"][name].isComposite():
             return 0.0
         return float(self._glyphs[name].lsb - self._tables["glyf"][name].xMin)
+
+
+def check_variations(tables: TTFont, name: str) -> None:
+    """Refuse a glyph of ``glyf`` that varies in too many ways for its points, before they are listed.
+
+    Raises:
+        GlyphsplineError: it does. What is cut short is left to fontTools.
+    """
+    with suppress(struct.error):
+        data, gid = tables.reader["gvar"] if "gvar" in tables else b"", tables.getGlyphID(name)
+        flags, start = struct.unpack_from(">HL", data, 14)
+        if flags & 1:
+            (at,) = struct.unpack_from(">L", data, 20 + 4 * gid)
+        else:
+            at = 2 * struct.unpack_from(">H", data, 20 + 2 * gid)[0]
+        count = struct.unpack_from(">H", data, start + at)[0] & 0xFFF
+        points = tables["gvar"].getNumPoints_(tables["glyf"][name])
+        if count * points > MOST_MOVES:
+            raise GlyphsplineError(f"{count} variations of {points} points, more than {MOST_MOVES} moves")

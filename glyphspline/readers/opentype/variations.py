@@ -24,6 +24,7 @@ from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
 from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, enter_component
 from ..source import Head
+from .routes import check_variations
 
 MOST_MASTERS = 500
 """Masters of a glyph beyond which it is refused: fonts of a dozen axes have some 80, and weights take a matrix of their
@@ -112,6 +113,7 @@ class Variations:
 
     def _read_parts(self, name: str, nesting: Sequence[str | None]) -> _Parts:
         glyf = self._tables["glyf"]
+        check_variations(self._tables, name)
         coordinates, control = glyf._getCoordinatesAndControls(name, self._tables["hmtx"].metrics)
         points = np.array(coordinates[:-2], dtype=np.float64)  # without the phantom points of vertical metrics
         deltas: dict[Region, FloatArray] = {}

@@ -29,6 +29,7 @@ from ...types import BoolArray, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
 from ..schedule import Head, Side, readers, side_of, sources, workers
+from ..spec import Limits
 
 if TYPE_CHECKING:
     from ...outlines.masters import Masters
@@ -82,7 +83,8 @@ class CheckJob(Job[Head, Checked]):
         """Outlines of one em together: each drawing has its own."""
         (read,) = readers(self.side)
         return [
-            each if isinstance(each, Exception) else Item(each, kind=each.metrics.units_per_em) for each in read(tasks)
+            each if isinstance(each, GlyphsplineError) else _item(each, len(each.arrays.degrees))
+            for each in read(tasks)
         ]
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> Checked:
@@ -126,7 +128,8 @@ class AxesJob(CheckJob):
         found: list[Item | Exception] = []
         for name, _, _ in tasks:
             try:
-                found.append(Item(masters := source.masters(name), kind=masters.metrics.units_per_em))
+                masters = source.masters(name)
+                found.append(_item(masters, sum(len(contour.degrees) for contour in masters.contours)))
             except GlyphsplineError as error:
                 found.append(error)
         return found
@@ -136,6 +139,11 @@ class AxesJob(CheckJob):
         from ...checks.on_axes import on_axes
 
         return on_axes(glyphs, dict(self.side.place[2]), self.axes, self.steps, self.thresholds, self.outer)
+
+
+def _item(glyph: Outline | Masters, segments: int) -> Item | Exception:
+    """A glyph that is checked with others of its em; one that is too large is an error."""
+    return Limits().error_of(segments) or Item(glyph, kind=glyph.metrics.units_per_em)
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:

@@ -65,12 +65,10 @@ class CompareJob(Job[Pair, Found]):
 
 def _item(old: OutlineOrError, new: OutlineOrError) -> Item | GlyphsplineError:
     """Both outlines of a glyph, or why one of them cannot be compared."""
-    most = Limits.segments
     for which, outline in (("old", old), ("new", new)):
-        if isinstance(outline, GlyphsplineError):
-            return GlyphsplineError(f"{which}: {reason(outline)}")
-        if len(outline.arrays.degrees) > most:
-            return GlyphsplineError(f"{which}: {len(outline.arrays.degrees)} segments, more than the {most} allowed")
+        error = outline if isinstance(outline, GlyphsplineError) else Limits().error_of(len(outline.arrays.degrees))
+        if error:
+            return GlyphsplineError(f"{which}: {reason(error)}")
     pair: tuple[Any, Any] = old, new
     return Item(pair, sum(len(outline.arrays.degrees) for outline in pair))
 
