@@ -33,7 +33,7 @@ class Measured(NamedTuple):
 def measured(*arguments: str | Path, cwd: Path, limit: float = 900.0) -> Measured:
     """Run ``glyphspline`` with arguments; it is killed, which is an error, after so many seconds of wall clock."""
     call = [sys.executable, "-m", "glyphspline", *map(str, arguments)]
-    with open(cwd / "out", "w+b") as out, open(cwd / "said", "w+b") as said:
+    with open(cwd / "stdout.txt", "w+b") as out, open(cwd / "stderr.txt", "w+b") as said:
         started = time.monotonic()
         process = subprocess.Popen(
             call, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=said, start_new_session=True

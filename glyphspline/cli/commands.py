@@ -246,7 +246,9 @@ def atlas(
                 source, names, out, options, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer
             )
     if not run.quiet:
-        say(f"{pages} pages written to {out}" + (f"; {failed} glyphs failed" if failed else ""))
+        say(f"{pages} pages written to {out}" + (f"; {len(failed)} glyphs failed" if failed else ""))
+        for line in [*failed[:10], *([f"and {len(failed) - 10} more"] if len(failed) > 10 else [])]:
+            say(f"failed: {line}")
     return bool(failed or names.missing)
 
 

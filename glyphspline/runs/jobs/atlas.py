@@ -78,7 +78,7 @@ def make_atlas(
     maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
-) -> tuple[int, int]:
+) -> tuple[int, list[str]]:
     """Write the atlas of some glyphs.
 
     Args:
@@ -90,7 +90,7 @@ def make_atlas(
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Returns:
-        Pages written, and glyphs that failed.
+        Number of pages written; glyphs that failed, with the reasons.
     """
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
@@ -108,7 +108,7 @@ def make_atlas(
             in_corners=maps.corner_teeth,
             profiled=lambda glyph: glyph.outline.name in chosen,
         )  # fmt: skip
-    return pages, len(failed)
+    return pages, failed
 
 
 def make_axis_atlas(
@@ -121,7 +121,7 @@ def make_axis_atlas(
     maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
-) -> tuple[int, int]:
+) -> tuple[int, list[str]]:
     """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
 
     Args:
@@ -131,7 +131,7 @@ def make_axis_atlas(
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Returns:
-        Pages written, and glyphs that failed.
+        Number of pages written; glyphs that failed, with the reasons.
 
     Raises:
         GlyphsplineError: the font is not variable, or has no such axis.
@@ -151,13 +151,13 @@ def make_axis_atlas(
         pages = write_axis_atlas(
             path, _shown(made, failed), axis, source.location, scale, f"{source.family} {source.style}",
         )  # fmt: skip
-    return pages, len(failed)
+    return pages, failed
 
 
 def _shown(glyphs: Iterator[Any], failed: list[str]) -> Iterator[Any]:
-    """Results, and names and errors of glyphs that failed, without those that are empty; ``failed`` gets the names."""
+    """Results, and names and errors of glyphs that failed, without those that are empty; ``failed`` gets the rest."""
     for glyph in glyphs:
         if isinstance(glyph, tuple):
-            failed.append(glyph[0])
+            failed.append(": ".join(glyph))
         if isinstance(glyph, tuple) or glyph.contours:
             yield glyph

@@ -27,7 +27,7 @@ from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from ...readers import Font, Source
 from ...readers.source import reason, reusing
-from .font_glyphs import Drawn, Flavour, decomposed, drawn_outline, drawn_result, users
+from .font_glyphs import Drawn, Flavour, decomposed, drawn_outline, drawn_result, drop_endless, users
 
 log = logging.getLogger(__name__)
 
@@ -87,6 +87,8 @@ def to_font(
     beyond, errors, added = [], [], 0
     with reusing(source.path, source.kind):
         font = base_tables(source)
+        if "glyf" in font:
+            drop_endless(font)
         in_place = ("glyf" if flavour == "ttf" else "CFF ") in font
         target = _InPlace(font, flavour) if in_place else _Rebuilt(font, source, flavour, family)
         for result in glyphs:

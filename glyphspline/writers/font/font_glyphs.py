@@ -15,6 +15,7 @@ from fontTools.pens.cu2quPen import Cu2QuPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen, TTGlyphPointPen
 from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables._g_l_y_f import Glyph
 
 from ...curves.bezier import as_cubic
 from ...curves.integrals import area
@@ -211,6 +212,27 @@ def users(font: TTFont, parts: Iterable[str]) -> list[str]:
         return known[name]
 
     return [name for name in font.getGlyphOrder() if uses(name, ())]
+
+
+def drop_endless(font: TTFont) -> None:
+    """Empty the composites of ``glyf`` that no font can have, and that fontTools would measure for ever.
+
+    Their components are in a loop, do not exist, or with their points are more than 65,535.
+    """
+    glyf, known = font["glyf"], dict[str, float]()
+
+    def size(name: str, above: tuple[str, ...]) -> float:
+        if name in above or len(above) > 64 or name not in glyf.glyphs:
+            return math.inf
+        if name not in known:
+            glyph = glyf[name]
+            parts = [part.glyphName for part in glyph.components] if glyph.isComposite() else []
+            known[name] = len(getattr(glyph, "coordinates", ())) + sum(1 + size(part, (*above, name)) for part in parts)
+        return known[name]
+
+    for name in font.getGlyphOrder():
+        if glyf[name].isComposite() and size(name, ()) > 0xFFFF:
+            glyf[name] = Glyph()
 
 
 def parts_of(font: TTFont, name: str) -> list[str]:

@@ -21,8 +21,9 @@ from fontTools.ttLib import TTFont
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import MasterContour
 from ...readers import Font
+from ...readers.source import reusing
 from ...types import FloatArray, IntArray
-from .font_glyphs import LIMIT, Flavour, parts_of
+from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of
 from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
 from .variable_glyf import Quadratics
 
@@ -85,6 +86,8 @@ def to_variable_font(
     font.recalcBBoxes = False
     if "DSIG" in font and getattr(font["DSIG"], "signatureRecords", None):
         del font["DSIG"]  # a signature of the bytes as they were
+    if "glyf" in font:
+        drop_endless(font)
     names = font.getGlyphOrder()
     gids = {name: gid for gid, name in enumerate(source.glyph_names)}
     glyphs: dict[str, StoredGlyph] = {}
@@ -118,10 +121,11 @@ def to_variable_font(
             left[name] = error.message
         except np.linalg.LinAlgError:
             left[name] = "no quadratics could be fitted to its curves"
-    if quadratics:
-        quadratics.finish()
     file = BytesIO()
-    font.save(file, reorderTables=False)
+    with reusing(source.path, source.kind):
+        if quadratics:
+            quadratics.finish()
+        font.save(file, reorderTables=False)
     return file.getvalue(), VariableSummary(glyphs, tuple(composites), left)
 
 

@@ -133,8 +133,8 @@ class Quadratics:
                     heights[name] = (height, bearing + top - glyph.yMax)
             if glyph.isComposite():
                 values = glyph.getCompositeMaxpValues(glyf)
-                maxp.maxCompositePoints = max(maxp.maxCompositePoints, values.nPoints)
-                maxp.maxCompositeContours = max(maxp.maxCompositeContours, values.nContours)
+                maxp.maxCompositePoints = min(max(maxp.maxCompositePoints, values.nPoints), 0xFFFF)
+                maxp.maxCompositeContours = min(max(maxp.maxCompositeContours, values.nContours), 0xFFFF)
             elif glyph.numberOfContours:
                 maxp.maxPoints = max(maxp.maxPoints, len(glyph.coordinates))
                 maxp.maxContours = max(maxp.maxContours, glyph.numberOfContours)
