@@ -43,13 +43,13 @@ TEXT = "abcdefghijklmnopqr"
 CASES = [
     ("worst.ttf", "convert {font} --all --format svg --jobs 1 --out out", 1, ["laugh4", "laugh10", "self", "loop"]),
     ("worst.otf", "convert {font} --all --format svg --jobs 1 --out out", 1, ["nested", "self", "most", "long"]),
-    ("worst.ttf", "convert {font} --all --masters --format ttf --jobs 1 --out out", 1, ["most"]),
+    ("worst.ttf", "convert {font} --gids 0-4,12-14,17,18 --masters --format ttf --jobs 1 --out out", 1, ["most"]),
     ("worst.ttf", f"text {{font}} {TEXT} --out out.svg", 1, ["laugh10"]),
     ("worst.otf", f"text {{font}} {TEXT} --out out.svg", 1, ["nested", "self", "most", "long"]),
     ("worst.ttf", "check {font} --jobs 1", 0, ["laugh4"]),
     ("worst.otf", "check {font} --jobs 1", 0, ["nested", "self", "most"]),
     ("worst.ttf", "diff {font} {font} --jobs 1", 1, ["laugh4"]),
-    ("worst.ttf", "atlas {font} --gids 0-4,6-15 --jobs 1 --out out.pdf", 1, ["laugh4", "self"]),
+    ("worst.ttf", "atlas {font} --gids 0-3,6-7,13-15 --jobs 1 --out out.pdf", 1, ["laugh4", "self"]),
     ("worst.ttf", "dataset {font} --jobs 1 --out out", 1, ["laugh4"]),
     ("worst.ttf", "info {font}", 0, []),
 ]
