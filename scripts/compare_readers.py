@@ -5,7 +5,8 @@
 
 Variable fonts are read at their default and at each named instance, or without these at both ends of each axis.
 HarfBuzz has coordinates in single precision, and does not round them where fontTools does, in components and instances:
-up to that they are equal. Of a char string's move without a line after it HarfBuzz says nothing. The exit status is 1 if any glyph differs.
+up to that they are equal. Of a char string's move without a line after it HarfBuzz says nothing. The exit status is 1
+if any glyph differs.
 """
 
 from __future__ import annotations
