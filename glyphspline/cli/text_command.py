@@ -74,6 +74,7 @@ def text(
     with workers(1, kinds=kinds_for(options, names), expected=1) as executor:
         from ..readers import open_source
         from ..runs.jobs.text import TextJob, draw
+        from ..typesetting.placed import LEFT_OUT
 
         content = words_of(words, lines.text_file)
         source = open_source(font, instance.face_index or 0, instance.place)
