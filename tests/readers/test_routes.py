@@ -9,7 +9,7 @@ import pytest
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.tables._g_l_y_f import GlyphComponent
+from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS, GlyphComponent
 
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Contour
@@ -82,6 +82,19 @@ def with_matched_point() -> TTFont:
     builder.setupCharacterMap({})
     builder.setupPost()
     return builder.font
+
+
+def test_a_composite_moves_as_the_component_whose_metrics_it_has(tmp_path: Path) -> None:
+    font = with_matched_point()
+    both = font["glyf"]["both"]
+    both.components = both.components[:1]
+    both.components[0].flags |= USE_MY_METRICS
+    font["hmtx"].metrics |= {"square": (700, 117), "both": (700, 93)}
+    font.save(tmp_path / "metrics.ttf")
+    outline = open_font(tmp_path / "metrics.ttf").outline("both")
+    assert outline.contours[0].points[:, 0].min() == 117
+    other, _ = FontTools((tmp_path / "metrics.ttf").read_bytes(), 0, {}).draw("both")
+    np.testing.assert_array_equal(other.contours[0].points, outline.contours[0].points)
 
 
 def test_a_broken_char_string_is_an_error_and_other_glyphs_still_read(tmp_path: Path) -> None:

@@ -14,9 +14,10 @@ import uharfbuzz as hb
 from fontTools.misc.roundTools import otRound
 from fontTools.pens.transformPen import TransformPen
 from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS
 
 from ...errors import GlyphsplineError
-from ..pens import ContourPen
+from ..pens import ContourPen, enter_component
 from .containers import unpacked
 
 MOST_MOVES = 4_000_000
@@ -109,10 +110,20 @@ class FontTools:
             raise
 
     def _shift(self, name: str) -> float:
-        """How far a composite glyph moves to its left side bearing: fontTools moves only simple glyphs there."""
-        if "glyf" not in self._tables or self._normalized or not self._tables["glyf"][name].isComposite():
+        """How far a composite glyph moves to its left side bearing: fontTools moves only simple glyphs there.
+
+        Where it has the metrics of a component, it moves as that one does, as in rasterisers.
+        """
+        glyf = self._tables["glyf"] if "glyf" in self._tables and not self._normalized else None
+        if glyf is None or not glyf[name].isComposite():
             return 0.0
-        return float(self._glyphs[name].lsb - self._tables["glyf"][name].xMin)
+        nesting: list[str | None] = [name]
+        while glyf[name].isComposite():
+            own = [part.glyphName for part in glyf[name].components if part.flags & USE_MY_METRICS]
+            if not own:
+                break
+            nesting, name = enter_component(nesting, own[-1]), own[-1]
+        return float(self._glyphs[name].lsb - getattr(glyf[name], "xMin", 0))
 
 
 def check_variations(tables: TTFont, name: str) -> None:
