@@ -132,13 +132,16 @@ def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float)
     before[offsets[:-1]] = offsets[1:] - 1
     products = segments.last[before].conj() * segments.first
     reverse = np.flatnonzero(products.real < 0)
-    rounding = ROUNDING * (1 / np.abs(segments.last[before[reverse]]) + 1 / np.abs(segments.first[reverse]))
+    arriving, leaving = np.abs(segments.last[before[reverse]]), np.abs(segments.first[reverse])
     opens = np.pi - np.abs(np.angle(products[reverse]))
+    exact = opens <= ROUNDING * (1 / arriving + 1 / leaving)
+    lines = (segments.degrees[before[reverse]] == 1) & (segments.degrees[reverse] == 1)
+    wide = lines & (np.minimum(arriving, leaving) * np.sin(opens) > 2 * limits.spike)  # at the end of the shorter one
+    chosen = exact | ((opens <= SHARP) & ~wide)
+    tips = reverse[chosen]
+    owners = np.searchsorted(offsets, tips, side="right") - 1
     rows = []
-    for tip, exactly in zip(
-        reverse[opens <= SHARP].tolist(), (opens <= rounding)[opens <= SHARP].tolist(), strict=True
-    ):
-        c = int(np.searchsorted(offsets, tip, side="right")) - 1
+    for tip, c, exactly in zip(tips.tolist(), owners.tolist(), exact[chosen].tolist(), strict=True):
         contour, joint = cubics[offsets[c] : offsets[c + 1]], tip - int(offsets[c])
         run, what = spur_length(contour, joint, apart) if exactly else 0.0, DOUBLED
         if run < limits.doubled:
