@@ -55,7 +55,7 @@ KINDS = (
     Kind("spike", "INFO", "units", "a spike of {value}"),
     Kind("retracted", "INFO", "units", "a handle of no length, of a curve of {value}"),
     Kind("unlevel", "INFO", "units", "handles at an extreme point {value} off level"),
-    Kind("turn", "INFO", "°", "turns by {value} at a joint meant to be smooth, beside a short segment or handle"),
+    Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
 )
 
 

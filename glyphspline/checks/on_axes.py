@@ -118,7 +118,7 @@ def _kinks(
         turn, made = rows.numbers[k, 1:3]
         of_contour = glyphs[g].contours[contour]
         lines = of_contour.degrees[joint - 1] == of_contour.degrees[joint] == 1
-        meant = lines and turn - made >= thresholds.line_angle
+        meant = lines and turn - made >= thresholds.kink
         weights = glyphs[g].weights_at(rows.locations[k])
         rounded = thresholds.rounding * by_rounding(of_contour, joint, weights)
         arm = _arm(of_contour, joint, weights)

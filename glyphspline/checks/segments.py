@@ -117,9 +117,10 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
 
     A joint is smooth if it turns by less than a corner does, of two lines by less than their own limit. It kinks if it
     turns by more than the limit, and, where both handles are in whole units, by more than rounding may make, and if
-    that moves the far end of the shorter segment beside it. Other turns have a limit of their own. Curvature jumps are
-    reported where both sides are cubics, as a chain of quadratics has them everywhere, and where all points are in
-    whole units only those larger than what rounding may make.
+    that moves the far end of the shorter segment beside it. Other turns have a limit of their own, and those of two
+    lines the limit of kinks: strokes and serifs taper so on purpose, too. Curvature jumps are reported where both sides
+    are cubics, as a chain of quadratics has them everywhere, and where all points are in whole units only those larger
+    than what rounding may make.
     """
     points, degrees, offsets, before, _, first, last = segments
     table, count = np.empty((3 * len(points), 7)), 0
@@ -133,12 +134,12 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
             p, q = points[i], points[j]
             kinks = turn >= least_kink(last[i], first[j], limits.kink, limits.rounding)
             if kinks or (turn >= limits.turn and not lines):
-                arm = min(arc(p), arc(q))
-                kinks = kinks and turn * arm >= limits.kink_height
-                if kinks or turn >= limits.turn:
+                tapers, arm = kinks and lines, min(arc(p), arc(q))
+                kinks = kinks and not lines and turn * arm >= limits.kink_height
+                if kinks or tapers or turn >= limits.turn:
                     what, seen = KINK if kinks else TURN, turn / limits.corner_angle * arm
                     count = put(table, count, what, c, place, np.degrees(turn), np.nan, seen)
-            if lines and not kinks:
+            elif lines:
                 chord = q[3] - p[0]
                 off = abs((chord.conjugate() * (q[0] - p[0])).imag) / length(chord)
                 if off <= limits.leftover:
