@@ -8,7 +8,6 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
 from svgpathtools import parse_path
@@ -18,11 +17,10 @@ import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.cli.text_command import BY_SUFFIX
 from glyphspline.types import FloatArray
-from tests.places import FONTS
+from tests.places import DEJAVU, FONTS
 
 BRUSH = FONTS / "kouzan-gyosho.ttf"
 EM = 1024
-SANS = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 SVG = "{http://www.w3.org/2000/svg}"
 
 runner = CliRunner()
@@ -139,7 +137,7 @@ def measured(folder: Path, *arguments: str) -> list[FloatArray]:
     """The ink of a text of DejaVu Sans with sharp corners, as written in SVG and in DXF."""
     files = [folder / f"sign{suffix}" for suffix in (".svg", ".dxf")]
     outs = [word for file in files for word in ("-o", str(file))]
-    result = runner.invoke(app, ["text", str(SANS), *arguments, "--corners", "sharp", *outs])
+    result = runner.invoke(app, ["text", str(DEJAVU), *arguments, "--corners", "sharp", *outs])
     assert result.exit_code in (0, 1), result.output
     return [ink(file) for file in files]
 

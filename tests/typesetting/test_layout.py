@@ -24,7 +24,7 @@ from glyphspline.typesetting.bidi import ISOLATES, REMOVED, embedding_levels, vi
 from glyphspline.typesetting.paragraph import clusters
 from glyphspline.typesetting.placed import Layout
 from glyphspline.typesetting.scripts import scripts_of, upright_in_columns
-from tests.places import ROOT
+from tests.places import DEJAVU, ROOT
 from tests.text_fonts import advance, text_font
 
 UNICODE = Path(__file__).with_name("unicode")
@@ -650,3 +650,17 @@ def test_many_characters_are_shaped_in_parts(font: gs.Font) -> None:
 def test_layout_is_a_function_whatever_was_imported() -> None:
     code = "import glyphspline.typesetting.bent as bent, glyphspline as gs; bent.SHARE; gs.layout.__kwdefaults__"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_heights_are_those_drawn_or_else_those_of_the_table(tmp_path: Path) -> None:
+    file = text_font(tmp_path / "text.ttf")
+    tables = TTFont(file)
+    assert gs.open_font(file).cap_height is None
+    os2 = tables["OS/2"]
+    os2.version, os2.sCapHeight, os2.sxHeight = 4, 700, 480
+    os2.usDefaultChar = os2.usBreakChar = os2.usMaxContext = 0
+    tables.save(file)
+    font = gs.open_font(file)
+    assert (font.cap_height, font.x_height) == (700.0, 480.0), "the font has neither H nor x"
+    drawn = gs.open_font(DEJAVU)
+    assert (drawn.cap_height, drawn.x_height) == (1493.0, 1120.0)

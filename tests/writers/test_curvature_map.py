@@ -7,10 +7,8 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib.image import imread
@@ -32,7 +30,7 @@ from glyphspline.writers.svg.comb import (
 )  # fmt: skip
 from glyphspline.writers.svg.curvature_map import to_curvature_svg
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour, result
-from tests.places import FONTS
+from tests.places import DEJAVU, FONTS
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -201,9 +199,8 @@ def test_the_legend_is_as_wide_as_the_glyph(width: float) -> None:
 @pytest.mark.parametrize("corners", ["sharp", "smooth"])
 def test_no_tooth_of_a_bowl_is_cut(corners: Any) -> None:
     """In faces whose bowls are 4 times as sharp as they are mostly, and however close the fit; corners may be cut."""
-    faces = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     for face, letters in (("STIXGeneral.ttf", "oSe"), ("DejaVuSans.ttf", "oSW"), ("cmr10.ttf", "oa")):
-        font = gs.open_font(faces / face)
+        font = gs.open_font(DEJAVU.parent / face)
         em, outlines = font.metrics.units_per_em, [font.outline(font.cmap[ord(letter)]) for letter in letters]
         for share in (5e-4, 3e-3):
             made = gs.convert_many(outlines, gs.Options(corners=corners, tolerance=share * em))
