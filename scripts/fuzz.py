@@ -76,14 +76,16 @@ def attempt(name: str, found: Mutant, way: str, known: Lines | None = None) -> t
         put(here / "sound", sources()[name])
         outcome = ran(call_of(name, way, "sound/"), here, known or Lines())
         faults = [f"ended by {signal.Signals(-outcome.status).name}"] if outcome.status < 0 else []
-        faults += [f"status {outcome.status}"] if outcome.status > 2 else []
+        faults += [f"status {outcome.status}"] if outcome.status > 2 and "Traceback" not in outcome.errors else []
         mine = {path.partition("/")[0] for path in found.files} | WRITTEN | {"sound"}
         faults += [f"written elsewhere: {path.name}" for path in here.iterdir() if path.name not in mine]
         faults += [f"left: {path.suffix}" for path in (*here.rglob("*.part"), *here.with_name("logs").glob("tmp/*"))]
         entries = manifest(here / "out")
         for text in [outcome.errors, *(entry["error"] or "" for entry in entries)]:
             if unexpected := UNEXPECTED.search(EXPECTED.sub("", text)):
-                faults.append(unexpected[0].strip()[-1500:])
+                faults.append(
+                    unexpected[0].strip()[-1500:] if unexpected[1] == "Traceback" else unexpected[0].partition("\n")[0]
+                )
         drawings = {
             entry["glyph"]: here / "out" / entry["files"]["svg"] for entry in entries if "svg" in entry["files"]
         }

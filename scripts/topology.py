@@ -1,12 +1,15 @@
 """How often a written glyph has crossings that its source has not, or contours without area, and is not flagged.
 
-``python scripts/topology.py [--glyphs 60] [--jobs 2] [--faces serif,ukai]``
+``python scripts/topology.py [--glyphs 60] [--contours 500] [--seed 0] [--jobs 2] [--faces serif,ukai]``
 
 Glyphs are spread evenly over the ideographs of five faces, of the Debian packages fonts-lxgw-wenkai, fonts-arphic-ukai,
 fonts-noto-cjk and fonts-kouzan-mouhitsu, or in a folder of GLYPHSPLINE_FACES; those that are not installed are skipped.
 Each is converted with the default options in both modes of corners and both efforts, and ``tests/topology.py``, which
 shares nothing with the package, counts in exact arithmetic what went wrong in the text of the SVG, compared with the
 font as fontTools reads it. Glyphs where something did once, ``Face.known``, are always among them.
+
+``tests/hard_contours.py`` draws contours that are hard to judge, thinner than the tolerance or in tangles. Each is
+converted in both modes with three tolerances, and counted in the same way.
 
 Every defect that is not flagged is listed, then a table: glyphs with new crossings of a contour with itself, with new
 crossings of two contours, and with collapsed contours; of all these, glyphs whose measures say all of it, and those
@@ -16,22 +19,25 @@ whose measures do not. The exit status is 1 if there are any of the last kind.
 from __future__ import annotations
 
 import logging
+import random
 import sys
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
+from glyphspline.fitting.options import Corners, Effort
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from scripts.survey import faces, parser, surveyed, table
-from tests.topology import defects, font_contours, unflagged
+from tests.hard_contours import hard_contour, outline_of
+from tests.topology import Drawing, defects, font_contours, unflagged
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,8 @@ FACES = (
     Face("Kouzan gyosho", "kouzan-mouhitsu-gyosho.ttf", "龍槌矜隧授"),
 )
 
-WAYS: tuple[tuple[Any, Any], ...] = tuple(product(("smooth", "sharp"), ("fast", "best")))
+WAYS = [gs.Options(corners=c, effort=e) for c, e in product(get_args(Corners), get_args(Effort))]
+HARD_WAYS = [gs.Options(corners=c, tolerance=t) for c, t in product(get_args(Corners), (0.5, 1.0, 5.0))]
 
 
 @dataclass(frozen=True)
@@ -59,8 +66,9 @@ class Glyph:
     """What went wrong with a glyph in one way of converting it.
 
     Attributes:
-        face, character, way: which it is.
+        face, character, way: which it is; of what is drawn here, its kind and number.
         own, pairs, collapsed: new crossings of contours with themselves and with others, and contours without area.
+        uncounted: whether the measures say that crossings were not counted.
         silent: in words, what its measures say nothing of.
         seconds: of counting.
     """
@@ -71,6 +79,7 @@ class Glyph:
     own: int
     pairs: int
     collapsed: int
+    uncounted: bool
     silent: tuple[str, ...]
     seconds: float
 
@@ -88,22 +97,38 @@ def opened(path: Path) -> tuple[Any, Any, dict[int, str]]:
 
 
 def survey(task: tuple[Face, Path, str]) -> list[Glyph]:
-    """A glyph in every way."""
+    """A glyph of a font in every way."""
     face, path, character = task
     font, glyphs, names = opened(path)
     name = names[ord(character)]
     source, outline = font_contours(glyphs, name), font.outline(name)
-    found = []
-    for corners, effort in WAYS:
-        result = gs.convert(outline, gs.Options(corners=corners, effort=effort))
-        text, start = gs.to_svg(result), time.process_time()
-        new, collapsed = defects(text, source)
-        seconds = time.process_time() - start
-        own = sum(count for (i, j), count in new.items() if i == j)
-        silent = unflagged(new, collapsed, [contour.measures for contour in result.contours])
-        pairs, way = sum(new.values()) - own, f"{corners} {effort}"
-        found.append(Glyph(face.name, character, way, own, pairs, len(collapsed), tuple(silent), seconds))
-    return found
+    return [
+        converted(face.name, character, f"{options.corners} {options.effort}", outline, source, options)
+        for options in WAYS
+    ]
+
+
+def hard(number: int) -> list[Glyph]:
+    """A hard contour in every way."""
+    kind, source = hard_contour(random.Random(number))
+    outline = outline_of(kind, source)
+    return [
+        converted(kind, str(number), f"{options.corners} {options.tolerance:g}", outline, source, options)
+        for options in HARD_WAYS
+    ]
+
+
+def converted(face: str, character: str, way: str, outline: gs.Outline, source: Drawing, options: gs.Options) -> Glyph:
+    """Convert a glyph, and count what went wrong."""
+    result = gs.convert(outline, options)
+    text, start = gs.to_svg(result), time.process_time()
+    new, collapsed = defects(text, source)
+    seconds = time.process_time() - start
+    measures = [contour.measures for contour in result.contours]
+    own = sum(count for (i, j), count in new.items() if i == j)
+    uncounted = any(each.new_crossings is None for each in measures)
+    silent = tuple(unflagged(new, collapsed, measures))
+    return Glyph(face, character, way, own, sum(new.values()) - own, len(collapsed), uncounted, silent, seconds)
 
 
 def tasks(count: int, names: Iterable[str]) -> list[tuple[Face, Path, str]]:
@@ -122,27 +147,31 @@ def tasks(count: int, names: Iterable[str]) -> list[tuple[Face, Path, str]]:
 def table_of(glyphs: list[Glyph]) -> str:
     """A line for each face and way, in Markdown."""
     rows: list[list[object]] = []
-    for face, (corners, effort) in product(FACES, WAYS):
-        those = [g for g in glyphs if (g.face, g.way) == (face.name, f"{corners} {effort}")]
-        if those:
-            columns = [(g.own, g.pairs, g.collapsed) for g in those]
-            counts = [sum(bool(x) for x in column) for column in zip(*columns, strict=True)]
-            silent = sum(bool(g.silent) for g in those)
-            flagged = sum(g.wrong for g in those) - silent
-            rows.append([face.name, f"{corners} {effort}", len(those), *counts, flagged, silent])
-    headings = "face,way,glyphs,cross themselves,cross others,collapsed,all flagged,not flagged"
+    for face, way in dict.fromkeys((g.face, g.way) for g in glyphs):
+        those = [g for g in glyphs if (g.face, g.way) == (face, way)]
+        columns = [(g.own, g.pairs, g.collapsed, g.uncounted) for g in those]
+        counts = [sum(map(bool, column)) for column in zip(*columns, strict=True)]
+        silent = sum(bool(g.silent) for g in those)
+        rows.append([face, way, len(those), *counts, sum(g.wrong for g in those) - silent, silent])
+    headings = "glyphs of,way,glyphs,cross themselves,cross others,collapsed,not counted,all flagged,not flagged"
     return table(headings.split(","), rows)
 
 
 def main() -> int:
-    """Survey the faces, print what is not flagged and the table."""
+    """Survey the faces and hard contours, print what is not flagged and the table."""
     options = parser(__doc__)
     options.add_argument("--glyphs", type=int, default=60, help="of each face")
+    options.add_argument("--contours", type=int, default=500, help="that are hard")
+    options.add_argument("--seed", type=int, default=0, help="number of the first of these")
     options.add_argument("--faces", default="", help="parts of names, with commas between them")
     arguments = options.parse_args()
     logging.getLogger("fontTools").setLevel(logging.ERROR)
     found: list[Glyph] = []
-    for glyphs in surveyed(survey, tasks(arguments.glyphs, arguments.faces.split(",")), jobs=arguments.jobs, chunk=4):
+    drawn = range(arguments.seed, arguments.seed + arguments.contours)
+    for glyphs in chain(
+        surveyed(survey, tasks(arguments.glyphs, arguments.faces.split(",")), jobs=arguments.jobs, chunk=4),
+        surveyed(hard, drawn, jobs=arguments.jobs, chunk=4),
+    ):
         found += glyphs
         for glyph in glyphs:
             for words in glyph.silent:
@@ -150,6 +179,7 @@ def main() -> int:
     if not found:
         print("none of the faces is installed", file=sys.stderr)
         return 2
+    found.sort(key=lambda glyph: (not glyph.way.endswith(("fast", "best")), glyph.face, glyph.way))
     print(table_of(found))
     print(f"{1e3 * sum(glyph.seconds for glyph in found) / len(found):.0f} ms to count a glyph's")
     return int(any(glyph.silent for glyph in found))

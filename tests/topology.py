@@ -192,9 +192,9 @@ def defects(written: Drawing | str, source: Drawing) -> tuple[dict[tuple[int, in
 def unflagged(found: dict[tuple[int, int], int], collapsed: list[int], measures: Sequence[Any]) -> list[str]:
     """The :func:`defects` of a glyph of which the measures of its contours say nothing, each in words.
 
-    A crossing of two contours has to be in ``new_crossings`` of both.
+    A crossing of two contours has to be in ``new_crossings`` of both. None says that crossings were not counted.
     """
-    silent = [pair for pair in found if not all(measures[k].new_crossings for k in pair)]
+    silent = [pair for pair in found if any(measures[k].new_crossings == 0 for k in pair)]
     still = [k for k in collapsed if not getattr(measures[k], "collapsed", False)]
     return [
         *(f"{found[i, j]} crossings of contours {i} and {j}" for i, j in silent if i != j),

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -51,8 +52,8 @@ class SvgDrawings(Source):
         path: file or folder, as given. face_index, location: 0 and empty.
         family, style: the name of the file or folder without suffix, and "Regular".
         metrics: of the first drawing.
-        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names;
-            broken drawings last.
+        glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names. A
+            broken drawing has its file's name.
         cmap: code point to glyph.
     """
 
@@ -61,37 +62,41 @@ class SvgDrawings(Source):
     def __init__(self, path: Path) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
         self._files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
-        self._broken: dict[str, FontError] = {}
-        outlines = [outline for file in self._files if (outline := self._read_or_broken(file))]
+        read = [(file.stem, self._read_or_broken(file)) for file in self._files]
+        outlines = [one for _, one in read if isinstance(one, Outline)]
         if not outlines:
-            raise next(iter(self._broken.values()), FontError("a folder without SVG drawings"))
-        self._outlines: dict[str, Outline] = {}
-        for outline in sorted(outlines, key=lambda outline: outline.gid):
-            if outline.name in self._outlines:
-                raise FontError("two drawings of one name", glyph=outline.name)
-            self._outlines[outline.name] = outline
-        self.glyph_names = (*self._outlines, *(name for name in self._broken if name not in self._outlines))
-        self.metrics = self._outlines[self.glyph_names[0]].metrics
-        self.cmap = first_claims((outline.name, outline.unicodes) for outline in self._outlines.values())
+            raise next((one for _, one in read if isinstance(one, FontError)), FontError("no SVG drawings"))
+        unknown = math.inf if any(outline.gid for outline in outlines) else 0
+        numbered = [
+            (one.gid, one.name, one) if isinstance(one, Outline) else (unknown, name, one) for name, one in read
+        ]
+        self._outlines: dict[str, Outline | FontError] = {}
+        for _, name, one in sorted(numbered, key=lambda each: each[0]):
+            if name in self._outlines:
+                raise FontError("two drawings of one name", glyph=name)
+            self._outlines[name] = one
+        self.glyph_names = tuple(self._outlines)
+        self.metrics = min(outlines, key=lambda outline: outline.gid).metrics
+        self.cmap = first_claims((outline.name, outline.unicodes) for outline in outlines)
 
     @cached_property
     def sha256(self) -> str:
         """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
         return hashlib.sha256(b"".join(file.read_bytes() for file in self._files)).hexdigest()
 
-    def _read_or_broken(self, file: Path) -> Outline | None:
-        """A drawing. A broken one has its file's name, comes after the others, and is an error when it is read."""
+    @staticmethod
+    def _read_or_broken(file: Path) -> Outline | FontError:
+        """A drawing, or the error that is raised when it is asked for."""
         try:
             return read_drawing(file)
         except FontError as error:
-            self._broken[file.stem] = error
-            return None
+            return error
 
     def _outline(self, head: Head) -> Outline:
-        if head.name not in self._outlines:
-            error = self._broken[head.name]
-            raise FontError(error.message, font=error.font)
-        return replace(self._outlines[head.name], gid=head.gid)
+        found = self._outlines[head.name]
+        if isinstance(found, FontError):
+            raise FontError(found.message, font=found.font)
+        return replace(found, gid=head.gid)
 
 
 def read_drawing(file: Path) -> Outline:
@@ -209,9 +214,7 @@ def shapes(
     if not everywhere and (tag in NOT_DRAWN or style.get("display") == "none"):
         return
     if element.get("transform"):
-        from svgpathtools.parser import parse_transform  # imports SciPy, which fonts do not need
-
-        matrix = matrix @ np.asarray(parse_transform(element.get("transform")), dtype=np.float64)
+        matrix = matrix @ _transform(element.get("transform"))
     if tag == "svg" and (depth or everywhere):
         matrix = matrix @ viewport(element)
     filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
@@ -219,6 +222,18 @@ def shapes(
         yield element, matrix, filled
     for child in element:
         yield from shapes(child, matrix, filled, left_out, depth + 1, everywhere)
+
+
+def _transform(text: str) -> FloatArray:
+    """The (3, 3) matrix of a transform attribute."""
+    from svgpathtools.parser import parse_transform  # imports SciPy, which fonts do not need
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # what is skipped otherwise
+        try:
+            return np.asarray(parse_transform(text), dtype=np.float64)
+        except Warning as warning:
+            raise GlyphsplineError(f"a transform that cannot be read: {text[:40]}") from warning
 
 
 def styles(element: Any) -> dict[str, str]:

@@ -11,9 +11,11 @@ from typing import Any
 import pytest
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables.DefaultTable import DefaultTable
 
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.readers import Font, open_font
+from glyphspline.readers.facts import file_facts
 from glyphspline.readers.pens import MAX_SEGMENTS, ContourPen
 from tests.places import FONTS
 
@@ -140,3 +142,14 @@ def test_damaged_fonts_raise_nothing_but_our_own_errors(file: str, tmp_path: Pat
         except GlyphsplineError as error:
             blamed.add(error.font == str(damaged))
     assert blamed == {True}
+
+
+@pytest.mark.parametrize("cmap", [b"", b"\0\0", b"\0\0\0\5\0\3\0\1\0\0"])
+def test_a_table_of_characters_cut_short_is_an_error_for_facts_too(cmap: bytes, tmp_path: Path) -> None:
+    tables = TTFont(FONTS / "edge-cases.ttf")
+    tables["cmap"] = DefaultTable("cmap")
+    tables["cmap"].data = cmap
+    tables.save(tmp_path / "cut.ttf")
+    for read in (open_font, file_facts):
+        with pytest.raises(FontError, match=r"cut\.ttf: a broken font: "):
+            read(tmp_path / "cut.ttf")

@@ -106,9 +106,14 @@ class Font(Source):
         return open_font, (self.path, self.face_index, dict(self.location))
 
     def counts(self) -> tuple[int, int]:
-        """The numbers of glyphs and of characters, without their names."""
+        """The numbers of glyphs and of characters, without their names.
+
+        Raises:
+            FontError: the table of characters is cut short.
+        """
         cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
-        tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
+        with opening(self.path):
+            tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
         return self._hb.face.glyph_count, len(self._hb.face.unicodes) if tables & UNICODE_CMAPS else 0
 
     @cached_property
