@@ -477,17 +477,22 @@ def parameters(piece: Piece, point: Vector) -> list[Fraction]:
         square = b * b - 4 * a * c
         if square < 0:
             return []
-        root = Fraction(*(_integer_root(n) for n in square.as_integer_ratio()))
+        root = _root(square)
         roots = sorted({(-b - root) / (2 * a), (-b + root) / (2 * a)})
     else:
         roots = [-common[0] / common[1]]
     return [s for s in roots if 0 <= s <= 1]
 
 
-def _integer_root(n: int) -> int:
-    if isqrt(n) ** 2 != n:
-        raise ArithmeticError("a joint at the double point of a piece, whose parameters are not rational")
-    return isqrt(n)
+def _root(square: Fraction) -> Fraction:
+    """A square root; one that is not rational, as of a joint at the double point of a piece, to 200 bits.
+
+    That turns the directions in which branches leave the point by as little.
+    """
+    n, d = square.as_integer_ratio()
+    if isqrt(n) ** 2 == n and isqrt(d) ** 2 == d:
+        return Fraction(isqrt(n), isqrt(d))
+    return Fraction(isqrt((n << 400) // d), 1 << 200)
 
 
 class Branch(NamedTuple):

@@ -49,9 +49,20 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
                 if small < radius and one.reach(a, a_end) > 0.1 * radius:
                     continue
             along = other.way(b, b_end) >= 0
-            sides = _is_left(one, a, other, b, not along, small), _is_left(one, a_end, other, b_end, along, small)
-            if None not in sides and sides[0] != sides[1]:
-                found.append((c, d, a, b))
+            circles = [(small, TIED)]
+            # In a point, strands may cross plainly, at an angle that chord errors do not change. Then a smaller circle
+            # decides, which leaves out other crossings, as at the tip of a fold.
+            if (a, b) == (a_end, b_end) and radius / 200 < small:
+                circles = [(radius / 200, 0.1), *circles]
+            for size, tied in circles:
+                sides = [
+                    _is_left(one, x, other, y, way, size, tied)
+                    for x, y, way in ((a, b, not along), (a_end, b_end, along))
+                ]
+                if None not in sides:
+                    if sides[0] != sides[1]:
+                        found.append((c, d, a, b))
+                    break
     return np.array(found, dtype=np.float64).reshape(-1, 4)
 
 
@@ -187,11 +198,13 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     return found
 
 
-def _is_left(one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float) -> bool | None:
+def _is_left(
+    one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float, tied: float
+) -> bool | None:
     """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
     ahead, back = (leaving_angle(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
     leaves = leaving_angle(other.cubics, a, b, forward, radius, one.cubics)
     whole = 2 * np.pi
-    if any(abs((leaves - x + np.pi) % whole - np.pi) <= TIED for x in (ahead, back)):
+    if any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back)):
         return None
     return bool((leaves - ahead) % whole < (back - ahead) % whole)

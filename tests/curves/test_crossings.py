@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
@@ -132,6 +134,18 @@ def test_a_loop_at_a_joint_that_is_smaller_than_the_chords_there_is_found() -> N
     ((_, places),) = crossings_of(np.concatenate([[there, back], around]))
     assert np.allclose(places, (0.99937, 1.00108), atol=1e-4)
     assert not crossings_of(np.concatenate([[there, back + np.array([0.1, 0])], around]))
+
+
+def test_crossings_beside_the_tip_of_a_fold_are_found_both() -> None:
+    """The tip penetrates by 2e-4 of 1,000, and a chord ends 4e-6 from one of the two crossings."""
+    chain = [
+        [(274.62, 993.59), (274.56, 993.55), (274.47, 993.5), (274.41, 993.47)],
+        [(274.41, 993.47), (274.39, 993.46), (274.37, 993.45), (274.38, 993.45)],
+        [(274.38, 993.45), (274.38, 993.45), (274.38, 993.45), (274.39, 993.46)],
+        [(274.39, 993.46), (274.4, 993.46), (274.41, 993.45), (274.42, 993.44)],
+        *([a, a, b, b] for a, b in pairwise([(274.42, 993.44), (274.42, 0.0), (280.0, 0.0), (274.62, 993.59)])),
+    ]
+    assert sorted((int(x), int(y)) for _, (x, y) in crossings_of(np.array(chain))) == [(1, 2), (1, 3)]
 
 
 def test_a_loop_within_a_segment_is_found() -> None:

@@ -11,6 +11,7 @@ import pytest
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
+from scripts.topology import hard
 from tests.places import FONTS
 from tests.topology import Drawing, defects, font_contours, path_contours, unflagged
 
@@ -51,3 +52,11 @@ def test_a_contour_that_becomes_a_line_is_in_the_measures(effort: Any) -> None:
     outline = gs.Outline("teardrop", contours=(gs.Contour(points, np.array([3, 3, 3, 3])),))
     result = gs.convert(outline, gs.Options(corners="sharp", effort=effort, tolerance=0.25))
     assert unflagged(*defects(gs.to_svg(result), TEARDROP), [c.measures for c in result.contours]) == []
+
+
+def test_new_crossings_of_contours_thinner_than_the_tolerance_and_of_tangles_are_in_the_measures() -> None:
+    """A short form of ``make check-topology``, with contours that went wrong once."""
+    found = [glyph for number in (*range(20), 266) for glyph in hard(number)]
+    assert [(glyph.character, glyph.way, glyph.silent) for glyph in found if glyph.silent] == []
+    assert sum(glyph.wrong for glyph in found) > 3
+    assert {glyph.face for glyph in found} == {"tangle", "ring", "loop", "hair", "back", "lens"}
