@@ -5,16 +5,19 @@ The classes do not depend on drawing; :func:`install` adds their display methods
 
 from __future__ import annotations
 
+import re
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .curves.bezier import as_cubic, cubic_approximation
+from .curves.bezier import as_cubic, cubic_approximation, normal_part
 from .curves.bspline import Spline
 from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
 from .fitting.results import BOUNDS, QUANTITIES, GlyphResult, Measures, as_glyph, shown
+from .interpolation.result import Interpolation
+from .outlines.contour_arrays import Polylines
 from .outlines.outline import Contour, Outline
 from .types import FloatArray, rounded_up
 
@@ -27,13 +30,23 @@ SHOWN = (
 )  # fmt: skip
 """Measures shown in a table."""
 
+MARKS = {"vertices": ("#e80", 0.022), "knots": ("#0a7", 0.014), "footpoints": ("currentColor", 0.007)}
+"""Colours of points on a curve, and their diameter as a share of its extent."""
+
+STRAIGHT = 0.02
+"""Share of the largest curvature below which torsion is not drawn: where a curve does not bend it is none."""
+
+REACH = 0.12
+"""Length of a comb's tooth at the scale, as a share of the extent of a curve alone: there is room around it."""
+
 
 def install() -> None:
     """Add the methods that notebooks call to the classes."""
     GlyphResult._repr_svg_ = glyph_svg  # type: ignore[attr-defined]
     GlyphResult._repr_html_ = glyph_html  # type: ignore[attr-defined]
     Outline._repr_svg_ = outline_svg  # type: ignore[attr-defined]
-    Spline._repr_svg_ = spline_svg  # type: ignore[attr-defined]
+    Spline._repr_svg_ = Interpolation._repr_svg_ = curve_svg  # type: ignore[attr-defined]
+    Interpolation._repr_html_ = interpolation_html  # type: ignore[attr-defined]
 
 
 def glyph_svg(glyph: GlyphResult) -> str:
@@ -68,26 +81,119 @@ def outline_svg(outline: Outline) -> str:
     return _sized(to_svg(as_glyph(outline)))
 
 
-def spline_svg(spline: Spline) -> str:
-    """The curve, its control polygon, and its knots on the curve."""
-    from .writers.svg.document import head, number, view_box_value
-    from .writers.svg.path_data import dots_data, polyline_data
+def curve_svg(curve: Spline | Interpolation) -> str:
+    """The curve with its comb, its control polygon and its knots; of an interpolation vertices and footpoints too.
 
-    control, knots = spline.control_points, spline(spline.knots)
-    every = np.concatenate([control, knots])
+    A curve in space is drawn by matplotlib, beside its curvature and torsion.
+    """
+    from .writers.svg.document import head, number, view_box_value
+    from .writers.svg.path_data import dots_data, polyline_data, polylines_data
+
+    spline = curve if isinstance(curve, Spline) else curve.spline
+    if spline.control_points.shape[1] > 2:
+        return _space_svg(curve)
+    control, marks, cubics = spline.control_points, _marks(curve), _cubics(spline)
+    strokes, comb = [], _comb_of(cubics, None)
+    for colour, teeth in comb.items():
+        ends = np.array([0, *range(2, 2 * len(teeth) + 1, 2)])
+        strokes.append((colour, Polylines(teeth.reshape(-1, 2), ends, np.zeros(len(teeth), dtype=np.bool_))))
+    every = np.concatenate([control, *marks.values(), *(lines.points for _, lines in strokes)])
     (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
     extent = max(float(right - left), float(top - bottom)) or 1.0
     margin, width = 0.04 * extent, number(0.005 * extent, 9)
     digits = max(0, 4 - int(np.floor(np.log10(extent))))
     box = view_box_value((left - margin, bottom - margin, right + margin, top + margin), digits)
-    curve = _cubic_data(spline, digits)
     pen = f' fill="none" stroke="currentColor" stroke-width="{width}" stroke-linejoin="round" stroke-linecap="round"'
-    return _sized(
-        head(box, "spline-title", f"Spline of degree {spline.degree}, {len(control)} control points", pen)
-        + f'<path stroke="#75c" stroke-opacity=".7" d="{polyline_data(control, digits, closed=spline.closed)}"/>'
-        f'<path d="{curve}"/><path stroke="#0a7" stroke-width="{number(0.016 * extent, 9)}"'
-        f' d="{dots_data(knots, digits)}"/></svg>'
-    )
+    layers = [f'<g class="comb" stroke-width="{number(0.0015 * extent, 9)}">']
+    layers += [f'<path stroke="{c}" d="{polylines_data(lines, digits)[0].text}"/>' for c, lines in strokes]
+    net = polyline_data(control, digits, closed=spline.closed)
+    layers.append(f'</g><path stroke="#75c" stroke-opacity=".7" d="{net}"/><path d="{_cubic_data(spline, digits)}"/>')
+    for name, points in marks.items():
+        colour, share = MARKS[name]
+        dots = dots_data(points, digits)
+        layers.append(f'<path class="{name}" stroke="{colour}" stroke-width="{number(share * extent, 9)}" d="{dots}"/>')
+    title = f"Spline of degree {spline.degree}, {len(control)} control points"
+    return _sized(head(box, "spline-title", title, pen) + "".join(layers) + "</svg>")
+
+
+def interpolation_html(found: Interpolation) -> str:
+    """The curve with its comb, vertices, knots and footpoints, and what became of the interpolation."""
+    legend = " · ".join(f'<span style="color:{MARKS[name][0]}">●</span> {name}' for name in _marks(found))
+    return f"{curve_svg(found)}<p>{escape(repr(found))}<br>{legend}</p>"
+
+
+def _marks(curve: Spline | Interpolation) -> dict[str, FloatArray]:
+    """Points to be marked, those in front last."""
+    if isinstance(curve, Spline):
+        return {"knots": curve(curve.knots)}
+    spline, vertices = curve.spline, {} if curve.points is None else {"vertices": curve.points}
+    return {**vertices, "knots": spline(spline.knots), "footpoints": spline(curve.parameters)}
+
+
+def _comb_of(cubics: FloatArray, scale: float | None) -> dict[str, FloatArray]:
+    """Teeth (k, 2, 2) of a curve in the plane by colour; its own extent is the em."""
+    from .writers.svg.comb import SIDES, SPACING, TOOTH, colour_classes, palette, teeth_of
+
+    extent = float(np.ptp(cubics, axis=(0, 1)).max())
+    item = curvature_comb(cubics, SPACING * extent)
+    drawn = teeth_of(item, extent * REACH / TOOTH, robust_scale([item]) if scale is None else scale)
+    teeth, classes = np.stack([drawn.feet, drawn.tips], axis=1), colour_classes(drawn.relative)
+    return {colour: teeth[classes == k] for k, colour in enumerate(palette(), -SIDES) if (classes == k).any()}
+
+
+def _space_svg(curve: Spline | Interpolation) -> str:
+    from .writers.figures.basics import blank, saved
+
+    spline = curve if isinstance(curve, Spline) else curve.spline
+    torsion = spline.control_points.shape[1] == 3
+    figure = blank(9.0, 3.6, layout="constrained")
+    grid = figure.add_gridspec(1 + torsion, 2)
+    _in_space(curve, figure.add_subplot(grid[:, 0], projection="3d"), None, comb=True)
+    t = _between_knots(spline)
+    inner, last = t[:, :-1], t[:, -1:]  # from both sides of a knot, where derivatives may jump
+    bends = np.concatenate([spline.curvature(inner), spline.curvature(last, side="left")], axis=1)
+    drawn = [("|κ|", "tab:purple", bends)]
+    if torsion:
+        twists = np.concatenate([spline.torsion(inner), spline.torsion(last, side="left")], axis=1)
+        drawn.append(("torsion", "tab:blue", np.where(bends > STRAIGHT * bends.max(), twists, np.nan)))
+    for row, (name, colour, values) in enumerate(drawn):
+        axes = figure.add_subplot(grid[row, 1])
+        axes.plot(t.T, values.T, color=colour, linewidth=1)
+        axes.plot(spline.knots, np.zeros(len(spline.knots)), "|", color=MARKS["knots"][0])
+        axes.set_ylabel(f"{name}, 1/unit")
+    axes.set_xlabel("parameter t")
+    # matplotlib's style would hold for everything on the page; what it says of lines is the default, but for joins.
+    drawing = re.sub("<style.*?</style>", "", saved(figure, "svg").decode(), flags=re.DOTALL)
+    return drawing[drawing.index("<svg") :].replace("<svg ", '<svg stroke-linejoin="round" style="max-width:100%" ', 1)
+
+
+def _between_knots(spline: Spline) -> FloatArray:
+    """(pieces, 24) parameters of each span, both its ends included."""
+    return np.linspace(spline.knots[spline.spans], spline.knots[spline.spans + 1], 24, axis=1)
+
+
+def _in_space(curve: Spline | Interpolation, axes: Any, scale: float | None, *, comb: bool) -> None:
+    """Draw onto axes with three dimensions; a curve in more by its principal directions."""
+    spline = curve if isinstance(curve, Spline) else curve.spline
+    centre = spline.control_points.mean(axis=0)
+    _, _, directions = np.linalg.svd(spline.control_points - centre)
+    flat = np.eye(3) if len(centre) == 3 else directions[:3].T
+    t = np.unique(_between_knots(spline))
+    points = spline(t)
+    if comb:
+        normals, extent = normal_part(spline(t, 1), spline(t, 2)), float(np.ptp(points, axis=0).max())
+        bends = np.linalg.norm(normals, axis=1)
+        unit = (np.nanpercentile(bends, 80) or 1.0) if scale is None else scale
+        length = np.minimum(1.0, 1.25 * unit / np.maximum(bends, 1e-300))[:, None]
+        tips = points - REACH * extent * normals / unit * length
+        teeth = np.stack([points, tips, np.full_like(tips, np.nan)], axis=1).reshape(-1, len(centre)) @ flat
+        axes.plot(*teeth.T, color="tab:purple", linewidth=0.4)
+    axes.plot(*(points @ flat).T, color="black", linewidth=1.2)
+    for name, marked in _marks(curve).items():
+        colour, share = MARKS[name]
+        colour = "black" if colour == "currentColor" else colour
+        axes.plot(*(marked @ flat).T, "o", color=colour, markersize=250 * share)
+    axes.set_aspect("equal")
 
 
 def _cubic_data(spline: Spline, digits: int) -> str:
@@ -104,7 +210,7 @@ def _sized(svg: str) -> str:
 
 
 def plot(
-    thing: GlyphResult | Outline | Contour | Spline,
+    thing: GlyphResult | Outline | Contour | Spline | Interpolation,
     axes: Axes | None = None,
     *,
     comb: bool = False,
@@ -114,12 +220,16 @@ def plot(
     source: bool = False,
     **style: Any,
 ) -> Axes:
-    """Draw an outline, a contour, a spline or a glyph's result onto matplotlib axes, y up, in font units.
+    """Draw an outline, a contour, a spline, an interpolation or a glyph's result onto matplotlib axes, y up.
+
+    An interpolation has its vertices, knots and footpoints marked. A curve in space is drawn with three dimensions, one
+    in R^4 and beyond by its three principal directions; only ``comb`` and ``scale`` apply to it, and no sign.
 
     Args:
-        thing: what to draw. axes: where; None is pyplot's current axes.
+        thing: what to draw. axes: where; None is pyplot's current axes, or new ones with three dimensions.
         comb: draw the curvature comb. scale: curvature in 1/unit of a full tooth; None is computed from ``thing``.
-        polygon: draw a result's polygon. control_polygon: of a spline or of a result's splines. source: of a result.
+        polygon: of a result or an interpolation. control_polygon: of a spline or of a result's splines. source: draw
+            the outline of a result.
         style: of the curve, as for a ``PathPatch``: ``edgecolor``, ``linewidth``, ``facecolor``, …
 
     Returns:
@@ -127,14 +237,21 @@ def plot(
     """
     from .writers.figures.basics import outline_patch
 
+    marks = _marks(thing) if isinstance(thing, Interpolation) else {}
+    found, thing = thing, thing.spline if isinstance(thing, Interpolation) else thing
+    space = isinstance(thing, Spline) and thing.control_points.shape[1] > 2
     if axes is None:
         from matplotlib import pyplot
 
-        axes = pyplot.gca()
+        axes = pyplot.figure().add_subplot(projection="3d") if space else pyplot.gca()
+    if space:
+        _in_space(found, axes, scale, comb=comb)
+        return axes
     closed, sources, polygons = True, [], []
     if isinstance(thing, Spline):
         closed, curves, splines = thing.closed, [_cubics(thing)], [thing]
         em = float(np.ptp(thing.control_points, axis=0).max())
+        polygons = [marks["vertices"]] if "vertices" in marks else []
     else:
         glyph = as_glyph(thing)
         curves = [contour.curve.cubics() for contour in glyph.contours]
@@ -160,6 +277,9 @@ def plot(
     for spline in splines if control_polygon else ():
         points = _closed(spline.control_points) if spline.closed else spline.control_points
         axes.plot(*points.T, ".--", color="tab:purple", linewidth=0.7, markersize=3)
+    for name, points in marks.items():
+        colour, share = MARKS[name]
+        axes.plot(*points.T, "o", color="black" if colour == "currentColor" else colour, markersize=250 * share)
     axes.set_aspect("equal")
     axes.autoscale_view()
     return axes

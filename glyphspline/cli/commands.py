@@ -14,6 +14,7 @@ import typer
 from ..datasets.spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
 from ..fields import WRITTEN, About
+from ..files import make_folder, write_whole
 from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
 from ..writers.settings import BOTH, Maps
@@ -291,7 +292,7 @@ def demo(
 ) -> bool:
     """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.
 
-    龍 and 好 are converted with the preset paper.
+    龍 and 好 are converted with the preset paper. The package's notebooks are copied to notebooks/.
     """
     from ..readers import open_source
     from ..runs.schedule import kinds_for
@@ -315,11 +316,16 @@ def demo(
             call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
             undone |= run_face(source, names, call, executor).undone
             shown.append(folder)
+    notebooks = out / "notebooks"
+    make_folder(notebooks)
+    for path in sorted((Path(__file__).parents[1] / "examples").glob("*.ipynb")):
+        write_whole(str(notebooks / path.name), path.read_bytes())
     if not run.quiet:
         pages = [f"  {folder / 'index.html'}" for folder in shown]
-        typer.echo(
-            "\n".join(["Open in a browser:", *pages, "Drawings are in svg/ beside it, curvature maps in curvature/."])
-        )
+        typer.echo("\n".join([
+            "Open in a browser:", *pages, "Drawings are in svg/ beside it, curvature maps in curvature/.",
+            f"Open in Jupyter: {notebooks / 'example.ipynb'}",
+        ]))  # fmt: skip
     return undone
 
 

@@ -37,6 +37,14 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def normal_part(first: FloatArray, second: FloatArray) -> FloatArray:
+    """(..., d) curvature vector, of length |κ|, from first and second derivatives (..., d); NaN at zero speed."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        speed = np.linalg.norm(first, axis=-1, keepdims=True)
+        along, bend = first / speed, second / speed
+        return (bend - (bend * along).sum(axis=-1, keepdims=True) * along) / speed
+
+
 def signed_curvature(first: FloatArray, second: FloatArray) -> FloatArray:
     """Curvature from first and second derivatives (..., 2): positive turns left; infinite at zero speed."""
     speed = np.hypot(first[..., 0], first[..., 1])

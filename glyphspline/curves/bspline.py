@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..errors import OptionError
 from ..types import FloatArray, IntArray, counted
 from . import DEGREES
-from .bezier import cubic_approximation, derivative_points, evaluate, signed_curvature
+from .bezier import cubic_approximation, derivative_points, evaluate, normal_part, signed_curvature
 
 Side: TypeAlias = Literal["left", "right"]
 """From where a derivative is taken at a knot."""
@@ -21,7 +21,7 @@ Side: TypeAlias = Literal["left", "right"]
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A B-spline curve in the plane, or in R^d. Curvature and drawing are for the plane.
+    """A B-spline curve in the plane, or in R^d. Drawing is for the plane.
 
     A knot may be repeated up to ``degree`` times: with multiplicity k the curve has degree - k continuous derivatives
     there. At a cubic's triple knot it has a corner, in a control point.
@@ -152,15 +152,37 @@ class Spline:
         return values.reshape(*t.shape, self.control_points.shape[1])
 
     def curvature(self, t: ArrayLike, side: Side = "right") -> FloatArray:
-        """Signed curvature at t, in 1/unit: positive where the curve turns left, infinite where the speed is zero.
+        """Curvature at t, in 1/unit, infinite where the speed is zero.
 
-        The domain, what lies beyond it, and the side are as for calling the spline.
+        It is positive where a curve in the plane turns left, and has no sign in more dimensions. The domain, what lies
+        beyond it, and the side are as for calling the spline.
+        """
+        first, second = self(t, 1, side), self(t, 2, side)
+        if self.control_points.shape[1] == 2:
+            return signed_curvature(first, second)
+        found: FloatArray = np.linalg.norm(normal_part(first, second), axis=-1)
+        return np.where(np.isnan(found), np.inf, found)
+
+    def torsion(self, t: ArrayLike, side: Side = "right") -> FloatArray:
+        """Torsion at t of a curve in R^3, in 1/unit: positive for a right-handed screw, NaN where it has no curvature.
 
         Raises:
-            OptionError: the spline is not in the plane.
+            OptionError: the spline is not in R^3.
+
+        Example:
+            >>> import numpy as np
+            >>> from glyphspline import interpolate
+            >>> t = np.linspace(0, 6, 25)
+            >>> screw = interpolate(np.stack([np.cos(t), np.sin(t), t], axis=1), closed=False).spline
+            >>> screw.curvature(4).round(1).item(), screw.torsion(4).round(1).item()
+            (0.5, 0.5)
         """
-        self._require_plane("curvature with a sign")
-        return signed_curvature(self(t, 1, side), self(t, 2, side))
+        if self.control_points.shape[1] != 3:
+            raise OptionError(f"torsion needs a spline in R^3, not in R^{self.control_points.shape[1]}")
+        first, second, third = (self(t, order, side) for order in (1, 2, 3))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            axis = np.cross(first, second)
+            return np.asarray((axis * third).sum(axis=-1) / (axis * axis).sum(axis=-1))
 
     def _require_plane(self, what: str) -> None:
         d = self.control_points.shape[1]

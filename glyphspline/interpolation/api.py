@@ -90,7 +90,8 @@ def interpolate(
     (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
     if isinstance(result, PolygonError):
         raise result
-    return result
+    given = np.array(points, dtype=np.float64)
+    return replace(result, points=np.delete(given, result.merged, axis=0) if len(result.merged) else given)
 
 
 @overload

@@ -54,7 +54,11 @@ def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> 
     spline = glyph.contours[0].interpolations[0].spline
     open_arc = gs.interpolate(L_SHAPE, closed=False).spline
     quintic = gs.interpolate(L_SHAPE, degree=5).spline
-    for thing, paths in ((glyph, 5), (glyph.outline, 1), (spline, 3), (open_arc, 3), (quintic, 3)):
+    random = np.random.default_rng(1)
+    splines = [gs.Spline(random.normal(size=(d + 4, 2)), np.arange(5.0), d, closed=False) for d in range(2, 7)]
+    (lines,) = gs.convert(gs.Outline("L", contours=(polygon_contour(L_SHAPE),)), gs.Options(corners="sharp")).contours
+    splines += [lines.spline, spline, open_arc, quintic]
+    for thing, paths in ((glyph, 5), (glyph.outline, 1), *((spline, 3) for spline in splines)):
         root = ElementTree.fromstring(svg_of(thing))
         assert len(list(root.iter(f"{SVG}path"))) >= paths
     html = html_of(glyph)
@@ -68,6 +72,45 @@ def test_a_spline_shows_its_knots_where_the_curve_passes(glyph: gs.GlyphResult) 
     dots = list(ElementTree.fromstring(svg_of(spline)).iter(f"{SVG}path"))[-1].attrib["d"]
     moves = np.array(re.findall(r"[Mm](-?[\d.]+) ?(-?[\d.]+)h0", dots), dtype=float)
     np.testing.assert_allclose(np.cumsum(moves, axis=0) * (1, -1), spline(spline.knots), atol=0.01)
+
+
+@pytest.mark.parametrize("degree", [3, 5])
+def test_an_interpolation_shows_its_vertices_knots_and_footpoints(axes: Any, degree: int) -> None:
+    found = gs.interpolate([*L_SHAPE[:1], *L_SHAPE], degree=degree)  # one is merged
+    root = ElementTree.fromstring(svg_of(found))
+    drawn = {path.get("class"): path.attrib["d"] for path in root.iter(f"{SVG}path")}
+    assert list(drawn)[-3:] == ["vertices", "knots", "footpoints"]
+    for name, expected in (("vertices", L_SHAPE), ("footpoints", found.spline(found.parameters))):
+        moves = np.array(re.findall(r"[Mm](-?[\d.]+) ?(-?[\d.]+)h0", drawn[name]), dtype=float)
+        np.testing.assert_allclose(np.cumsum(moves, axis=0) * (1, -1), expected, atol=0.02)
+    assert len(list(root.iter(f"{SVG}g"))) == 1  # the comb
+    assert "converged" in html_of(found)
+    assert "vertices" in html_of(found)
+    gs.plot(found, axes, comb=True, polygon=True, control_polygon=True)
+    assert [len(np.asarray(line.get_xydata())) for line in axes.lines[-3:]] == [6, 7, 6]
+    np.testing.assert_array_equal(np.asarray(axes.lines[0].get_xydata())[:-1], L_SHAPE)
+    (many,) = gs.interpolate_many([L_SHAPE])
+    assert many.points is None
+    assert 'class="vertices"' not in svg_of(many)
+
+
+@pytest.mark.parametrize("dimension", [3, 6])
+def test_curves_in_space_show_curvature_and_torsion(dimension: int) -> None:
+    t = np.linspace(0, 5, 9)
+    points = np.stack([np.cos(k * t) if k % 2 else np.sin(k * t) for k in range(1, dimension + 1)], axis=1)
+    for closed in (True, False):
+        found = gs.interpolate(points, closed=closed)
+        drawing = svg_of(found)
+        ElementTree.fromstring(drawing)
+        assert "<style" not in drawing  # it would hold for the whole page
+        assert ("torsion" in drawing) == (dimension == 3)
+        axes: Any = gs.plot(found.spline, comb=True)
+        assert axes.name == "3d"
+        assert len(axes.lines) == 3
+        line = np.stack(axes.lines[1].get_data_3d(), axis=1)
+        size = np.hypot.reduce(np.diff(line[[0, -1]], axis=0)[0])
+        assert dimension > 3 or np.allclose(line[0], points[0], atol=1e-5) or closed
+        assert closed == (size < 1e-9)
 
 
 def test_plot_draws_onto_the_axes_given(axes: Any, glyph: gs.GlyphResult) -> None:
@@ -189,7 +232,7 @@ def test_the_example_notebook_runs_and_keeps_no_outputs() -> None:
     import nbclient
     import nbformat
 
-    path = ROOT / "scripts" / "notebooks" / "example.ipynb"
+    path = ROOT / "glyphspline" / "examples" / "example.ipynb"
     notebook: Any = nbformat.read(path, as_version=4)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not any(cell.outputs or cell.execution_count for cell in code)

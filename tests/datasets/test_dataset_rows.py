@@ -403,7 +403,7 @@ def test_the_notebook_runs_and_keeps_no_outputs() -> None:
     import nbclient
     import nbformat
 
-    path = FONTS.parent / "scripts" / "notebooks" / "dataset.ipynb"
+    path = FONTS.parent / "glyphspline" / "examples" / "dataset.ipynb"
     notebook: Any = nbformat.read(path, as_version=4)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not any(cell.outputs or cell.execution_count for cell in code)

@@ -50,6 +50,8 @@ def test_arcs_keep_their_control_points_and_intervals_between_triple_knots(resul
             np.testing.assert_allclose(P[own], one.control_points, atol=1e-9)
             assert (P[own[:-1]] == one.control_points[:-1]).all()
             np.testing.assert_allclose(np.diff(u[own[1:-1]]), np.diff(one.knots), atol=1e-9)
+            t = u[own[1]] + np.linspace(1e-6, 1 - 1e-6, 50) * one.period
+            assert set(np.flatnonzero(spline.basis(t).any(axis=0)).tolist()) == set(own.tolist())  # no other arc's
             inner = u[own[2:-2]]
             for order in range(3):
                 jumps = spline(inner, order) - spline(inner, order, side="left")

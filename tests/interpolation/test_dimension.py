@@ -235,10 +235,28 @@ def test_a_spline_in_space() -> None:
         np.testing.assert_allclose(blend(r.parameters), np.tensordot(weights, masters, 1), atol=3e-5)
 
 
+def test_curvature_and_torsion_of_a_screw() -> None:
+    t, radius, rise = np.linspace(0, 8, 200), 3.0, 2.0
+    screw = np.stack([radius * np.cos(t), radius * np.sin(t), rise * t], axis=1)
+    curve = gs.interpolate(screw, closed=False, residual_tolerance=1e-10).spline
+    at = np.linspace(0.2, 0.8, 50) * curve.period
+    square = radius**2 + rise**2
+    np.testing.assert_allclose(curve.curvature(at), radius / square, rtol=1e-3)
+    np.testing.assert_allclose(curve.torsion(at), rise / square, rtol=0.05)
+    mirrored = gs.Spline(curve.control_points * (1, 1, -1), curve.knots, closed=False)
+    np.testing.assert_allclose(mirrored.torsion(at), -curve.torsion(at))
+    flat = gs.Spline(curve.control_points * (1, 1, 0), curve.knots, closed=False)
+    plane = gs.Spline(curve.control_points[:, :2], curve.knots, closed=False)
+    np.testing.assert_allclose(flat.curvature(at), np.abs(plane.curvature(at)))
+    assert (flat.torsion(at) == 0).all()
+    still = gs.Spline(np.zeros((4, 3)), np.array([0.0, 1]), closed=False)
+    assert np.isinf(still.curvature(0.5))
+
+
 def test_what_needs_the_plane_says_so() -> None:
     spline = gs.interpolate(polygon(7, 5)).spline
-    with pytest.raises(gs.OptionError, match=r"curvature with a sign needs a spline in the plane, not in R\^5"):
-        spline.curvature(0.0)
+    with pytest.raises(gs.OptionError, match=r"torsion needs a spline in R\^3, not in R\^5"):
+        spline.torsion(0.0)
     with pytest.raises(gs.OptionError, match="drawing needs a spline in the plane"):
         spline.draw(None)
     for given in ([1.0, 0.0], np.ones(5)):
