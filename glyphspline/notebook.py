@@ -238,15 +238,16 @@ def plot(
     from .writers.figures.basics import outline_patch
 
     marks = _marks(thing) if isinstance(thing, Interpolation) else {}
-    found, thing = thing, thing.spline if isinstance(thing, Interpolation) else thing
-    space = isinstance(thing, Spline) and thing.control_points.shape[1] > 2
+    drawn = thing.spline if isinstance(thing, Interpolation) else thing
+    space = isinstance(drawn, Spline) and drawn.control_points.shape[1] > 2
     if axes is None:
         from matplotlib import pyplot
 
         axes = pyplot.figure().add_subplot(projection="3d") if space else pyplot.gca()
-    if space:
-        _in_space(found, axes, scale, comb=comb)
+    if isinstance(thing, Spline | Interpolation) and space:
+        _in_space(thing, axes, scale, comb=comb)
         return axes
+    thing = drawn
     closed, sources, polygons = True, [], []
     if isinstance(thing, Spline):
         closed, curves, splines = thing.closed, [_cubics(thing)], [thing]

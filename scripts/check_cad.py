@@ -239,8 +239,8 @@ def main() -> int:
                 for look in given.looks.split(","):
                     result = gs.convert(font.outline(name), LOOKS[look])
                     meeting = not_simple(result)
-                    for said in meeting.values():
-                        print(f"not judged: {Path(path).name} {name} {look}: {said}")
+                    for which in meeting.values():
+                        print(f"not judged: {Path(path).name} {name} {look}: {which}")
                     itself = [c for c, d in meeting if c == d]
                     contours, named = contours + len(result.contours), named + len(itself)
                     for kind in given.kinds.split(","):

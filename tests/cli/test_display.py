@@ -57,6 +57,7 @@ def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> 
     random = np.random.default_rng(1)
     splines = [gs.Spline(random.normal(size=(d + 4, 2)), np.arange(5.0), d, closed=False) for d in range(2, 7)]
     (lines,) = gs.convert(gs.Outline("L", contours=(polygon_contour(L_SHAPE),)), gs.Options(corners="sharp")).contours
+    assert lines.spline is not None
     splines += [lines.spline, spline, open_arc, quintic]
     for thing, paths in ((glyph, 5), (glyph.outline, 1), *((spline, 3) for spline in splines)):
         root = ElementTree.fromstring(svg_of(thing))
