@@ -84,6 +84,11 @@ FAULTS: dict[str, tuple[str, Contour, float]] = {
     "handle of a quadratic on its end": ("retracted", closed([10, 9, 10, 9], [300, -40], [0, -200], [0, 0]), np.nan),
     "handles not level": ("unlevel", arch_of([-50, -2], [60, 2.4]), 2.4),
     "handles not upright": ("unlevel", arch_of([-50, -2], [60, 2.4], turned=True), 2.4),
+    "two lines that turn": (
+        "turn",
+        closed([200, 5], [400, 0], [400, 300], [0, 310], [0, 0]),
+        2 * np.degrees(np.arctan(1 / 40)),
+    ),
     "a turn beside a short segment": ("turn", short_and_turned(6), np.degrees(np.arctan(6 / 60))),
     "short curve": ("short", closed([300, 0], [300, 1, 300.5, 2, 301, 2], [0, 300], [0, 0]), np.nan),
 }

@@ -22,6 +22,7 @@ from glyphspline.runs.jobs import check as check_run
 from glyphspline.runs.jobs.check import Asked, AxesJob, CheckJob, GlyphFindings, check_font, check_fonts
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS
+from tests.readers.test_bulk import build, simple
 from tests.variable_fonts import quadratic, variable_font
 
 KOUZAN = FONTS / "kouzan-gyosho.ttf"
@@ -161,6 +162,15 @@ def test_what_components_have_is_told_of_the_first_glyph_only(tmp_path: Path) ->
         assert [item.glyph for item in of(found(path, axes=axes, once=False), "doubled")] == ["a", "b"]
     font = gs.open_source(path)
     assert [item.glyph for item in of(list(check_font(font, ["b"])), "doubled")] == ["b"]
+
+
+def test_a_doubled_point_is_told_where_the_shape_is_known(tmp_path: Path) -> None:
+    square = [(0, 0, 1), (120, 0, 1), (300, 0, 1), (300, 300, 1), (0, 300, 1)]
+    build(tmp_path / "again.ttf", {"plain": simple(square), "doubled": simple([*square[:4], *square[3:]])})
+    source = gs.open_font(tmp_path / "again.ttf")
+    rows = check_font(source, source.glyph_names)
+    found = {row.glyph: [each.kind for each in row.findings if each.kind in ("leftover", "repeated")] for row in rows}
+    assert found == {".notdef": [], "plain": ["leftover"], "doubled": ["repeated", "leftover"]}
 
 
 def test_parts_that_cross_are_told_again_where_they_stand_otherwise(tmp_path: Path) -> None:

@@ -158,6 +158,10 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
             data = b""
             for contour in [contours[number] for number in key[1:] if number >= 0]:
                 data += (np.round(contour.points - begin, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
+            if (repeats := glyphs[key[0]].repeats) is not None:
+                first = sum(len(contour.degrees) for contour in contours[: key[1]])
+                repeats = repeats[first : first + len(contours[key[1]].degrees)]
+                data += repeats.tobytes() if repeats.any() else b""
             known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
         found[k] = known[key]
     return found
