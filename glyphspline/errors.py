@@ -57,6 +57,11 @@ class OutputError(GlyphsplineError, OSError):
     """A file or folder that cannot be written, or one of a run that cannot be read."""
 
 
+def words_of(error: Exception) -> str:
+    """The message of an exception, without the number that the system gives its errors."""
+    return (isinstance(error, OSError) and error.strerror) or str(error)
+
+
 def require(good: bool, rule: str, value: object) -> None:
     """Raise an OptionError, such as "step is a positive distance, not 0", unless ``good``."""
     if not good:

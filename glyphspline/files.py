@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from .errors import OutputError
+from .errors import OutputError, words_of
 
 PARTIAL = ".part"
 """Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
@@ -25,7 +25,28 @@ def writing(path: Path | str) -> Iterator[None]:
     except OutputError:
         raise
     except OSError as error:
-        raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
+        raise OutputError(f"cannot be written: {words_of(error)}", font=str(path)) from error
+
+
+def make_place(path: Path) -> None:
+    """Make the folder of a file that is going to be written.
+
+    Raises:
+        OutputError: the file could not be written.
+    """
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+
+
+def write_made(path: Path, content: bytes) -> None:
+    """Write a file, and its folder if there is none.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    make_place(path)
+    with writing(path):
+        path.write_bytes(content)
 
 
 def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
@@ -87,7 +108,7 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"cannot be made: {error.strerror or error}", font=str(path)) from error
+        raise OutputError(f"cannot be made: {words_of(error)}", font=str(path)) from error
 
 
 def remove_partials(folder: Path) -> None:

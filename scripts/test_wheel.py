@@ -76,7 +76,7 @@ COMMANDS: dict[str, Sequence[str | Path]] = {
     "check": ["check", VARIABLE],
     "diff": ["diff", BRUSH, FONTS / "kouzan-kaisho.ttf", "--text", "龍"],
     "text": ["text", BRUSH, "好", "--out", "text.svg"],
-    "dataset": ["dataset", BRUSH, "--characters", "龍好", "--out", "dataset"],
+    "dataset": ["dataset", BRUSH, "--text", "龍好", "--out", "dataset"],
     "demo": ["demo", BRUSH, "--out", "demo"],
 }
 

@@ -9,7 +9,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, words_of
 from ..files import writing
 from .finding import SMALLER_IS_WORSE, Finding, badness
 
@@ -73,7 +73,7 @@ class Baseline:
         try:
             data: Any = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
-            raise GlyphsplineError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+            raise GlyphsplineError(f"cannot be read: {words_of(error)}", font=str(path)) from error
         except ValueError as error:
             raise GlyphsplineError(f"is not JSON: {error}", font=str(path)) from error
         if not isinstance(data, Mapping) or data.get("format") != FORMAT:

@@ -148,8 +148,8 @@ class Instance:
         return found
 
 
-FIRST = Instance(0)
-"""The first font of a file."""
+FIRST = Instance()
+"""No font of a file is asked for, nor a place: the first one, at its default."""
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
@@ -10,17 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args
 import typer
 
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
-from ..errors import OptionError, OutputError
+from ..errors import OptionError
 from ..fields import options_of
-from ..files import writing
+from ..files import make_place, write_made
 from . import arguments as opt
 from .config import CHECK, names_of, settings
 from .groups import Shown, collected, grouped, only
 from .messages import progress, say, stop
-from .running import say_missing
+from .running import say_face, say_missing
 
 if TYPE_CHECKING:
-    from ..readers import Selection, Source
+    from ..readers import Source
     from ..runs.jobs.check import Asked
 
 STDOUT = Path("-")
@@ -53,8 +54,8 @@ def check(
     if report.plot is not None and report.plot.suffix[1:].lower() not in get_args(FigureKind):
         raise OptionError(f"--plot is a file of {', '.join(get_args(FigureKind))}, not {report.plot}")
     for path in (*texts, report.plot, report.write_baseline):  # before anything is checked
-        if path not in (None, STDOUT) and not path.parent.is_dir():
-            raise OutputError("cannot be written: there is no such folder", font=str(path))
+        if path not in (None, STDOUT):
+            make_place(path)
     asked = asked_of(options, report, run.as_json)
     files = find_fonts(fonts)
     if not files:
@@ -65,8 +66,12 @@ def check(
     faces: list[Face] = []
     undone = False
 
-    def chosen(source: Source) -> Selection:
+    def chosen(source: Source) -> Sequence[str]:
         nonlocal undone
+        if alone:
+            say_face(source, instance, run.quiet)
+        if not subset.is_given:
+            return source.glyph_names
         names = subset.of(source)
         undone |= bool(names.missing)
         if not run.quiet:
@@ -74,7 +79,7 @@ def check(
         return names
 
     for face in check_fonts(
-        files, asked, chosen=chosen if subset.is_given else None, face_index=instance.face_index,
+        files, asked, chosen=chosen, face_index=instance.face_index,
         location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
     ):  # fmt: skip
         faces.append(face)
@@ -186,5 +191,4 @@ def put(path: Path, content: str | bytes) -> None:
     if path == STDOUT and isinstance(content, str):
         typer.echo(content, nl=not content.endswith("\n"))
         return
-    with writing(path):
-        path.write_bytes(content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
+    write_made(path, content.encode(errors="replace") if isinstance(content, str) else content)  # of paths

@@ -24,7 +24,16 @@ from .check_command import check
 from .diff_command import diff
 from .groups import grouped, only, place, without
 from .messages import listen, print_json, printable, progress, say, stop
-from .running import Conversion, check_masters, convert_fonts, convert_masters, run_face, say_missing, workplace
+from .running import (
+    Conversion,
+    check_masters,
+    convert_fonts,
+    convert_masters,
+    run_face,
+    say_face,
+    say_missing,
+    workplace,
+)
 from .status import RULE, UNDONE
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
@@ -125,7 +134,7 @@ def dataset(
     spec = replace(spec, characters=opt.as_typed(spec.characters), options=spec.options if fit else None)
     if text_file is not None:
         if spec.characters:
-            raise OptionError("give --characters or --text-file, not both")
+            raise OptionError("give --text or --text-file, not both")
         text = text_file.read_text(encoding="utf-8-sig")
         spec = replace(spec, characters="".join(sorted(set(text) - set("\r\n"))))
     with progress(run.quiet) as observer:
@@ -231,6 +240,7 @@ def atlas(
     if axis is not None and (profiles is not None or maps.corner_teeth or maps.comb != "both"):
         stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
     source = open_source(font, instance.face_index or 0, instance.place)
+    say_face(source, instance, run.quiet)
     names = subset.of(source)
     if not run.quiet:
         say_missing(names.missing)
@@ -274,9 +284,11 @@ def view(
     from ..extras import need
 
     need("view")
+    from ..readers import open_source
     from ..viewer import serve
 
     face = instance.face_index or 0
+    say_face(open_source(font, face), instance, quiet=False)
     serve(font, face, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
@@ -309,6 +321,7 @@ def demo(
     with workplace(run.jobs, None, specs[0]) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
             source = open_source(path)
+            say_face(source, opt.FIRST, run.quiet)
             names = source.select(text=text)
             if not names:
                 stop(f"{path} has none of {text}: give --text")

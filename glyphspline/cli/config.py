@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..checks.kinds import Thresholds
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, words_of
 
 PROJECT = "pyproject.toml"
 
@@ -76,7 +76,7 @@ def _read(file: Path) -> Mapping[str, Any]:
     try:
         table = tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise GlyphsplineError(f"cannot be read: {error.strerror or error}", font=str(file)) from error
+        raise GlyphsplineError(f"cannot be read: {words_of(error)}", font=str(file)) from error
     except ValueError as error:
         raise GlyphsplineError(f"is not TOML: {error}", font=str(file)) from error
     if file.name == PROJECT:

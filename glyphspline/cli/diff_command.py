@@ -12,7 +12,7 @@ from ..fields import About
 from . import arguments as opt
 from .groups import grouped, only
 from .messages import print_json, progress, say
-from .running import say_missing
+from .running import say_face, say_missing
 from .tables import difference_lines, differences_table
 
 if TYPE_CHECKING:
@@ -48,6 +48,8 @@ def diff(
     from ..runs.jobs.diff import compare_fonts
 
     sources = open_both(old, new, instance)
+    for source in sources:
+        say_face(source, instance, run.quiet)
     pairs, lacking = chosen_pairs(*sources, subset)
     with progress(run.quiet) as observer:
         found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
@@ -114,7 +116,7 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
     Raises:
         OutputError: the file cannot be written.
     """
-    from ..files import writing
+    from ..files import write_made
     from ..outlines.outline import Outline
     from ..report.comparison import comparison_page
 
@@ -128,5 +130,4 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
         facts.append(f"the worst {DRAWN} of {len(found.differences)} are drawn")
     heading = f"{old.path.name} and {new.path.name}"
     page = comparison_page(heading, facts, list(zip(worst, *read, strict=True)), found.tolerance)
-    with writing(path):
-        path.write_text(page, encoding="utf-8")
+    write_made(path, page.encode())

@@ -23,7 +23,7 @@ QUIET = "GLYPHSPLINE_QUIET"
 @contextmanager
 def errors(quiet: bool) -> Iterator[None]:
     """Print an expected error as one line on standard error, and exit: unusable. ``quiet``: compile silently."""
-    from ..errors import GlyphsplineError
+    from ..errors import GlyphsplineError, words_of
 
     if quiet:
         os.environ[QUIET] = "1"
@@ -32,7 +32,8 @@ def errors(quiet: bool) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except (GlyphsplineError, OSError, UnicodeDecodeError) as error:
-        stop(str(error))
+        name = getattr(error, "filename", None)
+        stop(f"{name}: {words_of(error)}" if name else words_of(error))
     except MemoryError:
         stop("not enough memory")
     except KeyboardInterrupt:

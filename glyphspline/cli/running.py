@@ -83,6 +83,8 @@ def convert_face(source: Source, name: str, call: Conversion, executor: Executor
     if source.num_faces > 1 and not alone:
         name = f"{name}, face {source.face_index}"
         call = replace(call, out=call.out / f"face-{source.face_index}")
+    if alone:
+        say_face(source, call.instance, call.run.quiet or call.run.json_log)
     names = call.subset.of(source)
     if not call.run.quiet:
         say_missing(names.missing, "" if alone else f"{name}: ")
@@ -98,6 +100,13 @@ def say_missing(missing: Sequence[str], before: str = "") -> None:
 
     if missing:
         say(f"{before}not in the font: {listed([with_character(one) for one in missing[:10]], len(missing))}")
+
+
+def say_face(source: Source, instance: opt.Instance, quiet: bool) -> None:
+    """Name the face of a collection that is taken where none is asked for."""
+    if source.num_faces > 1 and instance.face_index is None and not quiet:
+        name = f"{source.family} {source.style}".strip()
+        say(f"face {source.face_index} of {source.num_faces} is taken, {name}: --face-index N takes another")
 
 
 def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None:
@@ -122,6 +131,8 @@ def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleF
         stop("--masters takes one font")
     run = call.run
     sources = [open_source(font, call.instance.face_index or 0) for font in (*fonts, *(single.others or ()))]
+    for source in sources:
+        say_face(source, call.instance, run.quiet)
     names = call.subset.of(sources[0])
     if not run.quiet:
         say_missing(names.missing)

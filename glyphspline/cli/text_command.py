@@ -13,12 +13,14 @@ import typer
 
 from ..errors import GlyphsplineError, OptionError
 from ..fields import WRITTEN, About
+from ..files import write_made
 from ..fitting.options import Options
 from ..types import INCHES
 from ..writers.settings import Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
 from .messages import say
+from .running import say_face
 
 if TYPE_CHECKING:
     from ..readers import AnySource
@@ -78,6 +80,7 @@ def text(
 
         content = words_of(words, lines.text_file)
         source = open_source(font, instance.face_index or 0, instance.place)
+        say_face(source, instance, run.quiet)
         em, settings = source.metrics.units_per_em, replace(settings, look=sized(settings.look, lines, source))
         look = settings.look
         curve = curve_of(lines, along, em, look)
@@ -91,8 +94,7 @@ def text(
         if str(file) == "-":
             sys.stdout.buffer.write(drawing)
         else:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(drawing)
+            write_made(file, drawing)
     remarks = [*missing(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
     if len(remarks) > SHOWN:
         remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]

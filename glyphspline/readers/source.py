@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar, overload
 
-from ..errors import FontError, GlyphsplineError
+from ..errors import FontError, GlyphsplineError, words_of
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import FontMetrics, Outline
 from ..types import counted
@@ -285,7 +285,7 @@ def opening(path: Path, kind: str = "font") -> Iterator[None]:
     except GlyphsplineError as error:
         raise FontError(error.message, font=error.font or str(path), glyph=error.glyph) from error
     except OSError as error:
-        raise FontError(f"cannot be read: {error.strerror or error}", font=str(path)) from error
+        raise FontError(f"cannot be read: {words_of(error)}", font=str(path)) from error
     except Exception as error:  # broken data raises any of a dozen types, AssertionError among them
         raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
 

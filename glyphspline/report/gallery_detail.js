@@ -46,7 +46,7 @@
       position = Math.max(0, Math.min(rows.length - 1, to));
       const row = rows[position];
       shows(row);
-      find("title").textContent = row.text && row.text.trim() ? `${row.text}  ${row.name}` : row.name;
+      find("title").textContent = row.text.trim() && row.text !== row.name ? `${row.text}  ${row.name}` : row.name;
       find("about").textContent = [row.run.family, row.run.style, `gid ${row.gid}`, row.unicodes, row.status]
         .filter(Boolean).join(" · ");
       find("count").textContent = `${position + 1} of ${rows.length}`;

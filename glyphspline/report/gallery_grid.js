@@ -46,7 +46,7 @@
       const row = rows[position];
       const picture = GS.svg("svg", { viewBox: GS.box(row.run, row.advance).join(" "), "aria-hidden": "true" });
       const button = GS.element("button", { class: `card ${row.status}`, type: "button", tabindex: position === current ? "0" : "-1" },
-        picture, GS.element("span", { class: "name" }, row.text && row.text.trim() ? `${row.text} ` : "", GS.element("b", {}, row.name)),
+        picture, GS.element("span", { class: "name" }, row.text.trim() && row.text !== row.name ? `${row.text} ` : "", GS.element("b", {}, row.name)),
         ...(several ? [GS.element("span", { class: "font", title: fontOf(row) }, fontOf(row))] : []),
         GS.element("span", { class: "fact" }, label(row)));
       const item = GS.element("div", { role: "listitem", class: "cell", "aria-posinset": String(position + 1),

@@ -23,7 +23,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, words_of
 from ..extras import need
 from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
@@ -64,7 +64,7 @@ class ClusterExecutor(Executor):
         try:
             self._client = distributed.Client(address, timeout=patience, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
-            raise GlyphsplineError(f"no scheduler at {address}: {error}") from error
+            raise GlyphsplineError(f"no scheduler at {address}: {words_of(error)}") from error
         self._processes: Processes = seconds, tuple(preload)
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()

@@ -24,7 +24,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from filelock import FileLock, Timeout
 
-from ..errors import OutputError
+from ..errors import OutputError, words_of
 from ..files import O_BINARY, make_folder, replacing, sizes, writing
 from ..report.data import encoded
 from .schedule import Head, Side
@@ -65,7 +65,7 @@ def locked(folder: Path) -> Iterator[None]:
         raise OutputError(f"another run is writing to it: {note}", font=str(folder)) from None
     except OSError as error:
         if error.errno not in UNSUPPORTED:
-            raise OutputError(f"cannot be written: {error.strerror or error}", font=str(path)) from error
+            raise OutputError(f"cannot be written: {words_of(error)}", font=str(path)) from error
         log.warning("%s: its file system has no locks: no other run may write to it now", folder)
     try:
         with suppress(OSError):  # Windows: the lock is of the byte written first

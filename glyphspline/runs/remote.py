@@ -20,7 +20,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO, TypeVar, cast
 from urllib.parse import unquote, urlsplit
 
-from ..errors import FontError, GlyphsplineError, OutputError
+from ..errors import FontError, GlyphsplineError, OutputError, words_of
 from ..extras import need
 from ..files import make_folder, remove_partials, replacing, sizes, writing
 
@@ -294,5 +294,5 @@ def cache_folder() -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     except OSError as error:
-        raise OutputError(f"cannot be made: {error.strerror or error}", font=str(folder)) from error
+        raise OutputError(f"cannot be made: {words_of(error)}", font=str(folder)) from error
     return folder

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..curves.bspline import Spline
-from ..errors import OutputError
+from ..errors import OutputError, words_of
 from ..fitting.convert_masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
@@ -60,7 +60,7 @@ def stored(path: Path, kind: type[Result]) -> Result:
     try:
         return from_text(path.read_text(encoding="utf-8"), kind)
     except (OSError, ValueError) as error:
-        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+        raise OutputError(f"cannot be read: {words_of(error)}", font=str(path)) from error
 
 
 def _plain(value: Any) -> Any:

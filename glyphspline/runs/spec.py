@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require
+from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require, words_of
 from ..fields import WRITTEN, arguments, check, instance_arguments, option
 from ..files import write_whole
 from ..fitting.options import Options
@@ -285,7 +285,7 @@ def read_run(out: Path) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+        raise OutputError(f"cannot be read: {words_of(error)}", font=str(path)) from error
     return dict(run)
 
 

@@ -109,7 +109,7 @@ def test_exit_status(names: list[str], more: list[str], status: int, tmp_path: P
         (["--axis", "wght"], "not a variable font"),
         (["--text", "Z"], "none of the glyphs asked for is in the font"),
         (["--baseline", "nothing.json"], "nothing.json: cannot be read"),
-        (["--html", "no/folder/page.html"], "page.html: cannot be written"),
+        (["--html", "/dev/null/folder/page.html"], "page.html: cannot be written: Not a directory"),
     ],
 )
 def test_calls_that_cannot_be_followed(more: list[str], words: str, tmp_path: Path) -> None:

@@ -189,7 +189,7 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
         (["check", FONT, "--text", "好"], "1 glyph: "),
         (["diff", FONT, FONT, "--text", "好"], "1 glyph compared"),
         (["atlas", FONT, "--text", "O好", "--profiles", "好", "--out", "good.pdf"], "2 pages"),
-        (["dataset", FONT, "--characters", "好", "--no-fit", "--jobs", "0", "--out", "good"], "1 row of 1 glyph"),
+        (["dataset", FONT, "--text", "好", "--no-fit", "--jobs", "0", "--out", "good"], "1 row of 1 glyph"),
         (["demo", FONT, "--text", "好", "--jobs", "0", "--out", "good"], "1 glyph in"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import matplotlib
@@ -97,5 +98,43 @@ def test_contours_of_one_point_are_not_worth_a_word(tmp_path: Path) -> None:
     assert (result.exit_code, result.output) == (0, "")
 
 
+@pytest.mark.parametrize(
+    "call", ["convert --text 永 --format svg -j 0 -o {new}", "text 永 -o {new}.svg", "check --text 永 -j 0"]
+)
+def test_a_collection_says_which_face_is_taken(call: str, tmp_path: Path) -> None:
+    command, *rest = call.format(new=tmp_path / "new").split()
+    for more, said in (([], True), (["--face-index", "0"], False)):
+        result = CliRunner().invoke(app, [command, str(FONTS / "kouzan.ttc"), *rest, *more])
+        assert result.exit_code == 0, result.output
+        assert ("face 0 of 2 is taken, Kouzan" in result.stderr) == said
+
+
 def test_the_help_has_the_rule() -> None:
     assert "Exit status: 0 all was done; 1" in " ".join(CliRunner().invoke(app, ["--help"]).output.split())
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "check {font} -j 0 --html {new}/deep/a.html --csv {new}/b/b.csv --ghmarkdown {new}/c/c.md "
+        "--plot {new}/d/d.svg --write-baseline {new}/e/e.json",
+        "diff {font} {font} -j 0 --html {new}/deep/f.html",
+        "text {font} o -o {new}/deep/g.svg",
+        "atlas {font} --text o -o {new}/deep/h.pdf",
+    ],
+)
+def test_files_have_their_folders_made(call: str, tmp_path: Path) -> None:
+    words = call.format(font=VARIABLE, new=tmp_path / "new").split()
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 0, result.output
+    assert all(Path(word).is_file() for word in words if word.startswith(str(tmp_path)))
+
+
+@pytest.mark.parametrize("option", ["--text-file", "--fallback-font"])
+def test_messages_of_the_system_name_the_file_and_have_no_number(option: str, tmp_path: Path) -> None:
+    words = "" if option == "--text-file" else "O"
+    call = ["text", str(GYOSHO), *filter(None, [words]), option, str(tmp_path / "none"), "-o", str(tmp_path / "a.svg")]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 2
+    assert re.search(f"^glyphspline: {tmp_path}/none: .*No such file or directory$", result.stderr, re.MULTILINE)
+    assert "Errno" not in result.output

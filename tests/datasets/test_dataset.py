@@ -639,6 +639,7 @@ def test_the_command_makes_what_the_function_makes(tmp_path: Path) -> None:
         (["--points", "2"], "--points is a whole number from 3"),
         (["--validation", "0.9", "--test", "0.2"], "more than all families"),
         (["--characters", "A", "--text-file", "x"], "not both"),
+        (["--text", "A", "--text-file", "x"], "give --text or"),
         (["--step", "20", "--corners", "sharp"], "corners"),
     ],
 )
