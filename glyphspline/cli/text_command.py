@@ -16,7 +16,7 @@ from ..fields import WRITTEN, About
 from ..files import write_made
 from ..fitting.options import Options
 from ..types import INCHES
-from ..writers.settings import Settings, paper_length
+from ..writers.settings import Maps, Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
 from .messages import say
@@ -57,6 +57,7 @@ def text(
     along: opt.PathOptions,
     options: Annotated[Options, without("measure")],
     settings: Annotated[Settings, without("size")],
+    maps: Maps,
     drawings: opt.DrawingOptions,
     run: Annotated[opt.RunOptions, only("config", "quiet")],
     words: Annotated[
@@ -88,7 +89,7 @@ def text(
         drawn = draw(TextJob(
             layout, options, names, replace(settings, title=layout.text), drawings.each_glyph, curve, along.bend,
             lines.align or ("center" if along.circle else "start"), along.side,
-            length("offset", along.offset, em, look) or 0.0, lines.fit_width,
+            length("offset", along.offset, em, look) or 0.0, lines.fit_width, maps,
         ), executor)  # fmt: skip
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         if str(file) == "-":

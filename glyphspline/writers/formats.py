@@ -120,8 +120,8 @@ def _lazy(place: str, *more: Any) -> Callable[[GlyphResult, Settings], str | byt
     """A function that is imported when it is first called: a run imports only what it writes with."""
     module, name = place.split(":")
 
-    def write(result: GlyphResult, settings: Settings) -> str | bytes:
-        written: str | bytes = getattr(import_module(f".{module}", __package__), name)(result, settings, *more)
+    def write(result: GlyphResult, settings: Settings, **how: Any) -> str | bytes:
+        written: str | bytes = getattr(import_module(f".{module}", __package__), name)(result, settings, *more, **how)
         return written
 
     return write

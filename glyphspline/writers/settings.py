@@ -231,5 +231,5 @@ class Maps:
         return None if self.comb_scale is None else self.comb_scale / units_per_em
 
 
-BOTH = Maps("both")
-"""Maps of an atlas, which shows the source beside the result."""
+PLAIN_MAPS, BOTH = Maps(), Maps("both")
+"""Maps of which nothing is asked for; those of an atlas, which shows the source beside the result."""

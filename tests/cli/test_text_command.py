@@ -184,6 +184,18 @@ def test_the_title_is_the_text(tmp_path: Path) -> None:
         assert root.find(f"{SVG}title").text == title
 
 
+def test_a_map_of_a_text_shows_what_is_asked_for(tmp_path: Path) -> None:
+    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "both", "--comb-scale", "8"))
+    assert float(root.attrib["data-scale"]) == pytest.approx(8 / EM, rel=1e-5)
+    assert "source-comb" in [path.get("class") for path in root.iter(f"{SVG}path")]
+    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "source"))
+    assert next(path for path in root if path.get("class") == "source").attrib["d"]
+    files = [tmp_path / f"{comb}.png" for comb in ("result", "both")]
+    for file in files:
+        assert text("g", "-o", file, "--format", "curvature-png", "--comb", file.stem).exit_code == 0
+    assert files[0].read_bytes() != files[1].read_bytes()
+
+
 def test_a_line_is_as_wide_as_asked_for() -> None:
     look = ("-o", "-", "--format", "svg", "--fill", "none", "--stroke", "red")
     for width, units in (("0.5mm", 0.05 * EM), ("0.02em", 0.02 * EM), ("7", 7)):

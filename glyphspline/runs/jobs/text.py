@@ -16,11 +16,11 @@ from ...fitting.options import Options
 from ...readers.pens import NO_AREA
 from ...typesetting.placed import LEFT_OUT, Layout
 from ...typesetting.setting import Align, Side
-from ...writers.settings import Settings, paper_length
+from ...writers.settings import PLAIN_MAPS, Maps, Settings, paper_length
 from ..engine import Item, Job, reason, run, work
 from ..pool import TimeLimitError, WorkerLostError, sign_of_life
 from ..schedule import Place, place_of, sources
-from ..spec import Limits
+from ..spec import MAPS, Limits
 from .convert import ConvertJob
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ class TextJob:
         layout: the text on its lines. options: of the fit. formats: names, one for each drawing.
         settings: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
         path: in font units, that the text is to follow, or None. bend: its letters too. align, side, offset: on it.
+        maps: what curvature maps show.
         fit_width: length of all ink of the lines with its unit, which makes the size; None: that of ``settings``.
     """
 
@@ -51,6 +52,7 @@ class TextJob:
     side: Side = "left"
     offset: float = 0.0
     fit_width: str | None = None
+    maps: Maps = PLAIN_MAPS
 
 
 class Drawings(NamedTuple):
@@ -196,7 +198,8 @@ def drawings(job: TextJob) -> Drawings:
         else:
             result = whole(form.fitted)
             settings = sized(job, result) if job.fit_width else job.settings
-            made = form.write(result, settings.scaled(metrics))
+            write: Any = form.write
+            made = write(result, settings.scaled(metrics), **({"maps": job.maps} if name in MAPS else {}))
             contents.append(made.encode() if isinstance(made, str) else made)
         sign_of_life()
     left_out = any(one.startswith(f"{LEFT_OUT}: ") or f": {LEFT_OUT}: " in one for one in notes)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...fitting.results import GlyphResult
 from ...types import FloatArray
-from ..settings import CURRENT, PLAIN, Appearance, Combs, ImageKind, Settings
+from ..settings import CURRENT, PLAIN, PLAIN_MAPS, Appearance, Combs, ImageKind, Maps, Settings
 from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, cut_words, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
@@ -27,9 +27,10 @@ def write_drawing(result: GlyphResult, settings: Settings, kind: ImageKind) -> b
     return drawing_image(result, kind, settings.look)
 
 
-def write_map(result: GlyphResult, settings: Settings, kind: ImageKind) -> bytes:
+def write_map(result: GlyphResult, settings: Settings, kind: ImageKind, maps: Maps = PLAIN_MAPS) -> bytes:
     """The file of a result's curvature map."""
-    return map_image(result, kind)
+    scale = maps.scale_for(result.outline.metrics.units_per_em)
+    return map_image(result, kind, comb=maps.comb, scale=scale, in_corners=maps.corner_teeth)
 
 
 def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN, ink: Box | None = None) -> bytes:

@@ -10,7 +10,7 @@ from textwrap import wrap
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ..settings import Combs, Settings, Whose
+from ..settings import PLAIN_MAPS, Combs, Maps, Settings, Whose
 from .comb import (
     SIDES,
     SOURCE,
@@ -84,10 +84,11 @@ def to_curvature_svg(
     ).decode()
 
 
-def write_map(result: GlyphResult, settings: Settings) -> str:
+def write_map(result: GlyphResult, settings: Settings, maps: Maps = PLAIN_MAPS) -> bytes:
     """The file of a result."""
-    path = curves_data(result.arrays.curves, result.options.precision)[0]
-    return map_document(result, path, curvature_scale([result]), words=settings.title).decode()
+    scale = maps.scale_for(result.outline.metrics.units_per_em) or curvature_scale([result])
+    path = curves_data(curves_of(result, shown_by(maps.comb)), result.options.precision)[0]
+    return map_document(result, path, scale, maps.comb, in_corners=maps.corner_teeth, words=settings.title)
 
 
 def map_document(
