@@ -126,7 +126,8 @@
   };
 
   const title = ({ unicodes, glyph }) => {
-    at("title").textContent = `${unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("")} ${glyph}`;
+    const text = unicodes.split(" ").filter(Boolean).map((u) => String.fromCodePoint(parseInt(u.slice(2), 16))).join("");
+    at("title").textContent = text === glyph ? glyph : `${text} ${glyph}`;
   };
   const tell = () => {
     title(shown);
