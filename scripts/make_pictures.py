@@ -155,6 +155,7 @@ def viewer(page: Any) -> None:
         page.emulate_media(color_scheme="dark")
         page.goto(address)
         page.fill("#words", "g")
+        page.wait_for_selector("#picture .result", state="attached")
         page.locator("[name=preset][value=paper]").check(force=True)
         page.locator("#compare").check()
         for layer in ("comb", "control"):
