@@ -70,7 +70,7 @@ for job in jobs:
             for wire in part.Wires:
                 enclosed = 0.0
                 for edge in wire.Edges:
-                    p = edge.discretize(20000 if "Spline" in type(edge.Curve).__name__ else 2)
+                    p = edge.discretize(8000 if "Spline" in type(edge.Curve).__name__ else 2)
                     swept = sum(a.x * b.y - a.y * b.x for a, b in zip(p, p[1:])) / 2
                     enclosed += swept if edge.Orientation == "Forward" else -swept
                 enclosed = abs(enclosed)
@@ -97,8 +97,9 @@ def in_freecad(jobs: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]
     # Without a script's end freecadcmd reads commands. The status says nothing: some builds crash when they close.
     environment = {**os.environ, "HOME": str(folder)}
     subprocess.run(
-        [program, str(macro)], stdin=subprocess.DEVNULL, capture_output=True, timeout=300, env=environment, check=False
-    )
+        [program, str(macro)], stdin=subprocess.DEVNULL, capture_output=True, timeout=60 * len(jobs), env=environment,
+        check=False,
+    )  # fmt: skip
     return json.loads((folder / "said.json").read_text())
 
 
