@@ -69,7 +69,7 @@ def add_source(pieces: Pieces, count: int, c: int, i: int, j: int, cubics: Float
         square = 0.0
         for v in range(len(own)):
             square += np.hypot(own[v, 3, 0] - own[v, 0, 0], own[v, 3, 1] - own[v, 0, 1]) ** 2
-        factor = 3 / np.sqrt(square / len(own))
+        factor = 3 / np.sqrt(square / len(own)) if square > 0.0 else 3.0  # see chords
         for end in range(2):
             pieces.places[at + end] = s + end
             pieces.vertices[at + end] = own[:, 3 * end]

@@ -204,11 +204,14 @@ def _certified(
 
 
 def chords(pieces: Pieces) -> FloatArray:
-    """(P,) distance of each piece's first two vertices, the root mean square of those in the masters."""
+    """(P,) distance of each piece's first two vertices, the root mean square of those in the masters.
+
+    It is 1 for a segment of the source that ends where it begins.
+    """
     first = pieces.starts[:-1]
     steps = pieces.vertices[first + 1] - pieces.vertices[first]
     squares: FloatArray = (np.hypot(steps[..., 0], steps[..., 1]) ** 2).mean(axis=1)
-    return np.sqrt(squares)
+    return np.sqrt(np.where(squares > 0.0, squares, 1.0))
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
