@@ -1,0 +1,136 @@
+"""Whether commands that start worker processes always end, with all that they should have.
+
+``python -m scripts.starts [--starts 2000] [--loaded 500] [--killed 100] [--jobs 4] [--seed 0]``
+
+Each start is a ``convert`` with two workers in a folder of its own, several at a time. Of all starts some run beside
+four busy processes for each core, and in some a worker, or the process from which workers are forked, is killed at a
+random moment. A start is good if it ends in ten minutes, with status 0 and the same files as an undisturbed run. The
+stacks of one that does not end are printed. The exit status is 1 if any start is not good. Linux alone.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from scripts.survey import ROOT, parser, table
+
+FONT = ROOT / "fonts_test" / "edge-cases.ttf"
+CONVERT = [sys.executable, "-X", "faulthandler", "-m", "glyphspline", "convert", str(FONT), "--all", "--step", "60"]
+CONVERT += ["--format", "svg", "--quiet"]
+PATIENCE = 600.0
+
+
+@dataclass(frozen=True)
+class Start:
+    """A start: whether processes were killed in it, whether it ended, and with all files; its seconds; what it said."""
+
+    killed: int
+    ended: bool
+    whole: bool
+    seconds: float
+    words: str
+
+
+def written(folder: Path) -> dict[str, bytes]:
+    """The drawings and the manifest of a run."""
+    return {str(f.relative_to(folder)): f.read_bytes() for f in folder.rglob("*") if f.suffix in (".svg", ".jsonl")}
+
+
+def workers(parent: int) -> list[int]:
+    """The process from which the workers of a command are forked, and the workers."""
+    found: list[int] = []
+    for child in Path(f"/proc/{parent}/task/{parent}/children").read_text().split():
+        with suppress(OSError):
+            if "forkserver" in Path(f"/proc/{child}/cmdline").read_text():
+                found += [int(child), *workers(int(child))]
+    return found
+
+
+def start(number: int, seed: int, kills: bool, expected: dict[str, bytes], usual: float) -> Start:
+    """Start a command, kill one of its workers if asked for, and look at what it has written."""
+    rng = random.Random(f"{seed} {number}")
+    with tempfile.TemporaryDirectory(prefix="starts-") as folder:
+        began, killed = time.monotonic(), 0
+        run = subprocess.Popen([*CONVERT, "--jobs", "2", "-o", f"{folder}/out"], stderr=subprocess.PIPE, text=True)
+        if kills:
+            time.sleep(rng.uniform(0, usual))
+            while not killed and run.poll() is None:
+                with suppress(OSError):
+                    if those := workers(run.pid):
+                        os.kill(rng.choice(those), signal.SIGKILL)
+                        killed = 1
+                time.sleep(0.01)
+        try:
+            _, words = run.communicate(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            run.send_signal(signal.SIGABRT)  # has it print the stacks of its threads
+            _, words = run.communicate()
+            return Start(killed, False, False, time.monotonic() - began, words)
+        whole = run.returncode == 0 and written(Path(folder) / "out") == expected
+        return Start(killed, True, whole, time.monotonic() - began, words)
+
+
+@contextmanager
+def load(processes: int) -> Iterator[None]:
+    """Processes that are busy."""
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(processes)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def main() -> int:
+    """Start, and print what came of it."""
+    options = parser(__doc__, jobs=False)
+    options.add_argument("--starts", type=int, default=2000, help="in all")
+    options.add_argument("--loaded", type=int, default=500, help="beside busy processes")
+    options.add_argument("--killed", type=int, default=100, help="in which a process is killed")
+    options.add_argument("--jobs", type=int, default=4, help="starts at a time")
+    options.add_argument("--seed", type=int, default=0)
+    arguments = options.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        began = time.monotonic()
+        subprocess.run([*CONVERT, "--jobs", "2", "-o", f"{folder}/out"], check=True)
+        usual, expected = time.monotonic() - began, written(Path(folder) / "out")
+    calm = arguments.starts - arguments.loaded - arguments.killed
+    headings = ["starts", "number", "killed in", "ended", "whole", "longest"]
+    print(table(headings), flush=True)
+    bad, number = 0, 0
+    for words, count, busy, kills in (
+        ("a process killed", arguments.killed, 0, True),
+        ("alone", calm, 0, False),
+        ("under load", arguments.loaded, 4 * (os.cpu_count() or 1), False),
+    ):
+        with load(busy), ThreadPoolExecutor(arguments.jobs) as threads:
+            made = [
+                threads.submit(start, k, arguments.seed, kills, expected, usual) for k in range(number, number + count)
+            ]
+            found = [each.result() for each in made]
+        number += count
+        for each in found:
+            if not each.whole:
+                bad += 1
+                print(f"{words}, {each.seconds:.0f} s, ended: {each.ended}: {each.words[-3000:]}", flush=True)
+        longest = max((each.seconds for each in found), default=0.0)
+        counts = [sum(each.killed for each in found), sum(e.ended for e in found), sum(e.whole for e in found)]
+        print(table(headings, [[words, count, *counts, f"{longest:.0f} s"]]).splitlines()[-1], flush=True)
+    return int(bad > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
