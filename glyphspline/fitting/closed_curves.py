@@ -11,6 +11,7 @@ from ..curves.cubics import spline_beziers
 from ..curves.pairing import SHARPNESS, pair_stretches
 from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
+from ..interpolation.batch import NONE_HELD
 from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.method import Fallback, Method, method_of
 from ..interpolation.polygon import explain
@@ -19,7 +20,7 @@ from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, 
 from ..outlines.places import sampled
 from ..outlines.sampling import MOST_VERTICES
 from ..outlines.segments import all_cubics
-from ..types import FloatArray, IntArray, Views
+from ..types import BoolArray, FloatArray, IntArray, Views
 from .measures import distance_columns, solved_columns
 from .options import Options
 from .results import ConvertedContours
@@ -39,20 +40,24 @@ def method_for(options: Options, fallback: Fallback) -> Method:
     )  # fmt: skip
 
 
-def interpolated(points: FloatArray, offsets: IntArray, options: Options) -> BatchedInterpolation:
+def interpolated(
+    points: FloatArray, offsets: IntArray, options: Options, held: BoolArray = NONE_HELD
+) -> BatchedInterpolation:
     """Interpolate closed polygons.
 
     Lemma 2 has an interval everywhere on graded polygons, which need no fallback; others have that of the options.
 
     Args:
-        points: (n, 2) end to end, with offsets.
+        points: (n, 2) end to end, with offsets. held: see :func:`.api.interpolate_batch`.
 
     Raises:
         PolygonError: one that cannot be interpolated; its ``contour`` is the number of the polygon.
     """
     ratio, ends = min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9), pairwise(offsets.tolist())
     even = np.array([chords_of(points[first:last], ratio)[1] for first, last in ends], dtype=np.bool_)
-    found = interpolate_batch(points, offsets, method_for(options, options.fallback), by_knot=even, threads=1)
+    found = interpolate_batch(
+        points, offsets, method_for(options, options.fallback), by_knot=even, held=held, threads=1
+    )
     for k in np.flatnonzero(found.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
     return found

@@ -16,7 +16,7 @@ Continuity = Literal["c2", "g1"]
 Preset = Literal["paper", "type", "brush"]
 
 PRESETS: dict[str, dict[str, Any]] = {
-    "paper": {"corners": "smooth", "margin": 0.0},
+    "paper": {"corners": "smooth", "margin": 0.0, "hold_corners": False},
     "type": {"corners": "sharp", "continuity": "c2", "effort": "best"},
     "brush": {"corners": "smooth", "thousandths": 3.0},
 }
@@ -35,6 +35,8 @@ class Options:
         step, count: sample by arc length or by number instead of by tolerance.
         corners: "sharp" splits at corners, "smooth" is one closed C2 curve a contour (the paper). None is "sharp", with
             ``step`` or ``count`` "smooth"; it is replaced by what it stands for.
+        hold_corners: in "smooth", hold the control point of each corner at the corner: the curve passes inside of it, at
+            most at the tolerance, and bends once. False interpolates every vertex, as the paper does.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
         continuity: of "sharp" between corners: "c2" is one spline of variant 2, "g1" cubics that only share tangents,
@@ -84,6 +86,12 @@ class Options:
         CORNERS,
     )  # fmt: skip
     corner_angle: float = option(CORNER_ANGLE, "Set how sharp a turn counts as a corner.", CORNERS, "DEGREES")
+    hold_corners: bool = option(
+        True,
+        "Hold the control point of each corner at the corner (smooth), so that no rings stand beside it; or pass "
+        "through the corner, as the paper does.",
+        CORNERS, flags="--hold-corners/--pass-corners",
+    )  # fmt: skip
     continuity: Continuity = option(
         "c2",
         "Fit between corners one spline whose curvature has no jumps (c2), or cubics that only meet without a "

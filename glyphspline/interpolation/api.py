@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import BoolArray, FloatArray, IntArray
-from .batch import empty_results, filled, over_threads, run_batch
+from .batch import NONE_HELD, empty_results, filled, over_threads, run_batch
 from .driver import interpolate_any_degree, interpolate_any_vertex, solved
 from .method import Fallback, Finish, Method, Parametrisation, Tangents, method_of
 from .polygon import as_points, as_tangents, explain
@@ -267,6 +267,7 @@ def interpolate_batch(
     end_tangents: FloatArray | None = None,
     by_knot: BoolArray | None = None,
     residual_tolerances: FloatArray | None = None,
+    held: BoolArray = NONE_HELD,
     threads: int | None = None,
 ) -> BatchedInterpolation:
     """Interpolation of many polygons in shared arrays. A bad polygon has a status and raises no exception.
@@ -279,6 +280,8 @@ def interpolate_batch(
         end_tangents: (K, 2, d) of open arcs, NaN for natural ends; None: all are natural.
         by_knot: (K,) polygons with ``fallback="knot"`` instead of the method's.
         residual_tolerances: (K,) in place of the method's.
+        held: (N,) vertices of closed polygons whose control points stay at them, which the curve need not pass through;
+            or ().
         threads: number of threads; None for one a core. Results do not depend on it.
     """
     count, closed = len(offsets) - 1, method.closed
@@ -290,7 +293,7 @@ def interpolate_batch(
     else:
         tolerances = residual_tolerances.copy()
     if not method.stepwise:
-        return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads)
+        return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads, held)
     arrays = empty_results(len(points), count, closed, points.shape[1])
     u, P, parameters, bounds, kept, whole, rates = arrays
     whole[:] = np.array([1, 0, -1, 0, 0, 0])

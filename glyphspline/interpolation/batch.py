@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .method import CHORD_EXPONENT, SETTLED, Method
 from .result import BatchedInterpolation
 
@@ -23,6 +23,7 @@ LEAST_VERTICES = 1024
 
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
+NONE_HELD = np.empty(0, dtype=np.bool_)
 
 
 def run_batch(
@@ -34,6 +35,7 @@ def run_batch(
     knots: FloatArray | None,
     end_tangents: FloatArray | None,
     threads: int | None = 1,
+    held: BoolArray = NONE_HELD,
 ) -> BatchedInterpolation:
     """Run the compiled driver over concatenated polygons; arguments as :func:`.api.interpolate_batch` has them.
 
@@ -52,7 +54,7 @@ def run_batch(
     def work(part: tuple[int, int]) -> Any:
         return _driver().run(
             *part, points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
-            float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, settled, *found,
+            float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, settled, held, *found,
             _memory(offsets, *part, d),
         )  # fmt: skip
 

@@ -8,15 +8,17 @@ certified.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...curves.pairing import SHARPNESS, pair_stretches
 from ...errors import GlyphsplineError
+from ...interpolation.batch import NONE_HELD
 from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
-from ...types import FloatArray, IntArray, Views
+from ...types import BoolArray, FloatArray, IntArray, Views
 from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
 from ..ladders import SMOOTH_TRIES, TRY_APART
@@ -45,9 +47,14 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = SMOOTH_TRIES[attempt]
-        search = _Search(canonical_contours(contours), options, share * tolerance)
+        search = _Search(
+            canonical_contours(contours), options, share * tolerance, options.hold_corners and attempt == 0
+        )
         # One round also removes vertices that seem unnecessary.
         search.refine(1 if early is None else early)
+        if missed := [k for k, found in search.kept.items() if search.hold[k] and not search.passes(found)]:
+            search.hold[missed] = False
+            search.refine(1 if early is None else early, missed)
         search.thin()
         return search.converted(contours, tolerance)
 
@@ -62,6 +69,7 @@ class Round:
         trial: the polygons, and the distances of the curves as written from the outline.
         found: the curves through the polygons. pieces: ragged (n, 4, 2), the curves as Béziers; written: the same,
             rounded as they are written.
+        held: ragged, the vertices whose control points stay at them; () where none does.
         most: (k,) the largest bound of each contour.
     """
 
@@ -69,6 +77,7 @@ class Round:
     found: BatchedInterpolation
     pieces: FloatArray
     written: FloatArray
+    held: BoolArray
     most: FloatArray
 
     def part(self, values: FloatArray, i: int) -> FloatArray:
@@ -80,23 +89,34 @@ class _Search:
     """The search for the vertices of a glyph's contours.
 
     Attributes:
-        near: the distance allowed, in font units.
+        near: the distance allowed, in font units. hold: (K,) whether control points of corners are held at them.
         kept: by contour, a round and which part of it: that with the fewest vertices that passed; if none did, that
             with the smallest bound.
     """
 
-    def __init__(self, contours: CanonicalContours, options: Options, near: float) -> None:
+    def __init__(self, contours: CanonicalContours, options: Options, near: float, hold: bool) -> None:
         self.contours, self.options, self.near = contours, options, near
+        self.hold = np.full(len(contours.flipped), hold)
         self.angle = float(np.radians(options.corner_angle))
         self.kept: dict[int, tuple[Round, int]] = {}
 
-    def refine(self, early: int) -> None:
-        """Start from vertices spaced by the outline; add and remove vertices until all contours pass."""
+    def refine(self, early: int, again: Sequence[int] = ()) -> None:
+        """Start from vertices spaced by the outline; add and remove vertices until all contours pass.
+
+        Args:
+            early: rounds that also remove vertices. again: the contours to fit; none are all of them.
+        """
         contours, options, near, count = self.contours, self.options, self.near, len(self.contours.flipped)
         left, which = np.full(count, PRUNINGS[options.effort]), np.arange(count)
         passed, every = np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
         ratio, factor = options.max_ratio, growth_of(options.max_ratio, options.variant)
-        fields, places, offsets = steps.first_places(contours, self.angle, ratio, factor, near, options.variant)
+        fields, places, offsets = steps.first_places(
+            contours, self.angle, ratio, factor, near, options.variant, self.hold
+        )
+        if again:
+            which = np.array(sorted(again), dtype=np.int64)
+            parts = [places[offsets[k] : offsets[k + 1]] for k in which.tolist()]
+            places, offsets = np.concatenate(parts), offsets_of([len(part) for part in parts])
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
             passed[which] = done.most <= near
@@ -135,7 +155,9 @@ class _Search:
         """Interpolate contours through their points at places, measure, and keep improvements."""
         points = steps.polygons(self.contours, which, places, offsets)
         try:
-            found = interpolated(points, offsets, self.options)
+            held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
+            held = held if held.any() else NONE_HELD
+            found = interpolated(points, offsets, self.options, held)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else int(which[error.contour])
             raise
@@ -144,7 +166,7 @@ class _Search:
             return self.attempt(which, places[np.concatenate(kept)], offsets_of([len(part) for part in kept]))
         pieces, written = beziers(found.controls, found.knots, offsets, 10.0**self.options.precision)
         trial = steps.measured(self.contours, which, places, offsets, points, written, self.near)
-        done = Round(trial, found, pieces, written, np.maximum.reduceat(trial.bounds, offsets[:-1]))
+        done = Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
         for i, k in enumerate(which.tolist()):
             if k not in self.kept or self.is_better((done, i), self.kept[k]):
                 self.kept[k] = done, i
@@ -167,6 +189,10 @@ class _Search:
         kept = [self.kept[k] for k in range(len(flipped))]
         points = [found.part(found.trial.points, i) for found, i in kept]
         pieces = [found.part(found.pieces, i) for found, i in kept]
+        for n, (found, i) in enumerate(kept):
+            held = found.part(found.held, i) if len(found.held) else found.held
+            if held.any():  # the vertex is where the curve passes by
+                points[n] = np.where(held[:, None], pieces[n][:, 0], points[n])
         controls = [found.part(found.found.controls, i) for found, i in kept]
         offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
         bounds, gaps = zip(*(self.certificate(k, tolerance) for k in range(len(kept))), strict=True)

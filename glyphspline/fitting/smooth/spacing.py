@@ -33,6 +33,10 @@ AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 GROWTH, FASTEST = 0.97, 4.0
 """Share of the ratio allowed by which chords grow, and the ratio beyond which faster growth takes more of them."""
 
+AT_HELD = 0.167
+"""Chords growing by 4 away from a corner whose control point is held: the curve is off by this times the chord beside
+the corner and the sine of half its angle, at the corner alone."""
+
 AT_CORNER_3, GROWTH_3 = 0.1, 2.5
 """The same for variant 3."""
 
@@ -55,14 +59,14 @@ MARGIN = 0.3
 @compiled
 def first_field(
     cubics: FloatArray, lengths: FloatArray, turns: FloatArray, corner_angle: float, factor: float, near: float,
-    variant: int, field: FloatArray,
+    variant: int, hold: bool, field: FloatArray,
 ) -> None:  # fmt: skip
     """Write the field of a contour, at all entries of ``lengths`` in turn.
 
     Args:
         cubics: (m, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
         corner_angle: turn in radians from which a joint is a vertex. factor: by which chords grow at most.
-        near: distance allowed, in font units. field: (m TABLE + 1,).
+        near: distance allowed, in font units. hold: whether control points of corners are held at them. field: (m TABLE + 1,).
     """
     at_corner = AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
@@ -97,7 +101,10 @@ def first_field(
             field[at] = min(field[at], max(h, near))
     for j in range(m):
         # Corners count as if the sine of their angle were at least this.
-        h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
+        if hold and turns[j] >= corner_angle:
+            h = first / AT_HELD * near / max(np.sin(turns[j] / 2), 0.1)
+        else:
+            h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
         jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
         if jump > 0:
             h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))

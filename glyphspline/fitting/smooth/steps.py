@@ -22,7 +22,13 @@ from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowere
 
 @compiled
 def first_places(
-    contours: CanonicalContours, corner_angle: float, ratio: float, factor: float, near: float, variant: int
+    contours: CanonicalContours,
+    corner_angle: float,
+    ratio: float,
+    factor: float,
+    near: float,
+    variant: int,
+    hold: BoolArray,
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """The fields of all contours end to end, and ragged places to begin with."""
     count = len(contours.offsets) - 1
@@ -36,13 +42,23 @@ def first_places(
             contours.turns[a:b],
         )
         field, joints = table_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
-        first_field(cubics, lengths, turns, corner_angle, factor, near, variant, field)
+        first_field(cubics, lengths, turns, corner_angle, factor, near, variant, hold[k], field)
         corners = at_corners(joints, turns, corner_angle)
         even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
         part = graded(cubics, lengths, even, ratio)
         values = appended(values, offsets[k], part)
         offsets[k + 1] = offsets[k] + len(part)
     return fields, values[: offsets[-1]], offsets
+
+
+def held_corners(
+    contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, corner_angle: float,
+    hold: BoolArray,
+) -> BoolArray:  # fmt: skip
+    """(n,) ragged: which vertices lie at corners of contours of which these are held."""
+    joints, counts = places.astype(np.int64), np.diff(offsets)
+    turns = contours.turns[np.repeat(contours.offsets[which], counts) + joints]
+    return np.asarray(np.repeat(hold[which], counts) & (joints == places) & (turns >= corner_angle))
 
 
 @compiled

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...compiled import compiled, inlined
 from ...intrinsics import select
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 
 LANES = 128
 HALO = 2
@@ -81,6 +81,8 @@ class Given(NamedTuple):
         peak_shares: (K,) of ``fallback="peak"``, 0 for "knot".
         tolerances: (K,) residual tolerances; NaN is replaced by the one of ``RELATIVE_TOLERANCE``.
         settled: share of the mean chord below which the error need not fall; 0 for none.
+        held: (N,) whether a vertex of a closed polygon is held: its control point stays at it, and the curve need not
+            pass through it; () where none is.
     """
 
     points: FloatArray
@@ -95,6 +97,7 @@ class Given(NamedTuple):
     tolerances: FloatArray
     max_iterations: int
     settled: float
+    held: BoolArray
 
 
 class Found(NamedTuple):

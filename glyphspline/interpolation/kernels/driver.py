@@ -15,7 +15,7 @@ import numpy as np
 from ...arrays import grown
 from ...compiled import compiled, inlined
 from ...intrinsics import select
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX
@@ -46,18 +46,18 @@ STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHES, GIVEN_UP_ON = range(6)
 def run(
     k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
     variant: int, margin: float, exponent: float, peak_shares: FloatArray, tolerances: FloatArray, max_iterations: int,
-    settled: float, knots: FloatArray, controls: FloatArray, parameters: FloatArray, bounds: FloatArray,
+    settled: float, held: BoolArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray, bounds: FloatArray,
     kept: IntArray, whole: IntArray, rates: FloatArray, memory: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
 
     Args:
-        points, …, settled: as :class:`Given` has them. knots, …, rates: as :class:`Found` has them.
+        points, …, held: as :class:`Given` has them. knots, …, rates: as :class:`Found` has them.
         memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
     """
     given = Given(
         points, offsets, own_knots, tangents, closed, variant, margin, exponent, peak_shares, tolerances,
-        max_iterations, settled,
+        max_iterations, settled, held,
     )  # fmt: skip
     found = Found(knots, controls, parameters, bounds, kept, whole, rates)
     d = points.shape[1]
@@ -111,11 +111,11 @@ def _iterate(
         History, residuals, and how many of these are used now.
     """
     place(given, found, group, at, slots)
-    fill_intervals(given, group, slots)
+    fill_intervals(given, found, group, slots)
     table, numbers, every, left = group.table, group.numbers, slots, slots
     while left > 0:
         at = Coordinates(at.N, at.Q, at.P)
-        _one_pass(given, group, at, slots)
+        _one_pass(given, found, group, at, slots)
         lanes = 0
         for q in range(slots):
             if table[q, FINISHED]:
@@ -142,7 +142,7 @@ def _iterate(
 
 
 @compiled
-def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
+def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
     """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite, and its searches."""
     S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
     count, size, open_end = count_of_blocks(group), pairs_size(d), 0 if given.closed else 1
@@ -159,6 +159,8 @@ def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
         if wild > 0:
             _pass_over(group, block, S, slots, b)
         searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
+        if given.held.shape[0] > 0:
+            _hold(given, found, group, block, Q, N, slots, b)
         for q in range(slots):
             first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
             for i in range(n if searched > 0 else 0):
@@ -171,6 +173,21 @@ def _one_pass(given: Given, group: Group, at: Coordinates, slots: int) -> None:
             numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
+
+
+@compiled
+def _hold(
+    given: Given, found: Found, group: Group, block: FloatArray, Q: FloatArray, N: FloatArray, slots: int, b: int
+) -> None:  # fmt: skip
+    """Keep the control points of held vertices of block b at them, without an error."""
+    for q in range(slots):
+        first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
+        start = given.offsets[group.table[q, POLYGON]]
+        for i in range(n):
+            if given.held[start + found.kept[start + b * LANES + i]]:
+                for axis in range(given.points.shape[1]):
+                    N[first + i + axis * STRIDE] = Q[first + i + axis * STRIDE]
+                block[DD + np.uint64(first + i)] = 0.0
 
 
 @compiled

@@ -19,7 +19,7 @@ from ...types import FloatArray
 from ..intervals import END_MARGIN
 from .blocks import (
     BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, NATURAL, ONE, PAD, POLYGON, STRIDE, THREE,
-    TWO, WIDTH, Given, Group, X, lanes_used, whole_vectors,
+    TWO, WIDTH, Found, Given, Group, X, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
 
@@ -175,7 +175,7 @@ def _end_interval(
 
 
 @compiled
-def fill_intervals(given: Given, group: Group, slots: int) -> None:
+def fill_intervals(given: Given, found: Found, group: Group, slots: int) -> None:
     """Write search intervals, relative to their knots, to the blocks; fallbacks and least values of B_i to the group.
 
     The lanes between polygons, and beyond the last one, have no crossing.
@@ -202,6 +202,9 @@ def fill_intervals(given: Given, group: Group, slots: int) -> None:
             h, inside = group.h[group.table[q, INTERVALS] + at + PAD - 2 :], min(LANES, n - at)
             for i in range(inside):
                 lane, low, high = np.uint64(group.table[q, LANE] + HALO + i), 0.0, 0.0
+                if given.held.shape[0] > 0 and given.held[given.offsets[k] + found.kept[given.offsets[k] + at + i]]:
+                    block[LOW + lane] = block[HIGH + lane] = block[X + lane] = 0.0
+                    continue
                 if given.closed or 0 < at + i < n - 1:
                     low, high, value, missing = _interval(
                         S, lane, h[i], h[i + 1], h[i + 2], h[i + 3], given.variant, given.peak_shares[k]
