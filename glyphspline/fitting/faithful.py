@@ -164,7 +164,7 @@ def faithful(
         "collapsed": search.kept.collapsed.tolist(),
         "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
     }
-    return with_geometry(replace(result, measures={**result.measures, **columns}), options.precision)
+    return with_geometry(replace(result, measures={**result.measures, **columns}), options)
 
 
 def _parts(found: ConvertedContours) -> list[Part]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiled import compiled
+from ..curves.cubics import turns
 from ..curves.fairness import curvature_extrema
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
@@ -19,10 +20,12 @@ from ..outlines.contour_arrays import ContourArrays
 from ..outlines.sampling import CORNER_ANGLE
 from ..outlines.segments import contour_cubics
 from ..types import FloatArray, IntArray
+from .options import Options
 from .results import ConvertedContours
 
-CORNER = float(np.cos(np.radians(CORNER_ANGLE)))
-"""Cosine of the turn from which a joint is a corner and has no curvature, whatever ``corner_angle`` the fit had."""
+CORNER_TURN = float(np.radians(CORNER_ANGLE))
+CORNER = float(np.cos(CORNER_TURN))
+"""The turn, and its cosine, from which a joint is a corner and has no curvature, whatever the angle of a fit."""
 
 Columns = dict[str, Sequence[Any]]
 """For each measure, its value for each contour."""
@@ -74,11 +77,13 @@ def distance_columns(gaps: Sequence[float | None], bounds: Sequence[float], tole
     return {"deviation": gaps, "deviation_bound": bounds, "within_tolerance": within}
 
 
-def with_geometry(result: ConvertedContours, precision: int) -> ConvertedContours:
-    """Results with length, area and curvature, as written with ``precision`` decimals, beside their sources'."""
+def with_geometry(result: ConvertedContours, options: Options) -> ConvertedContours:
+    """Results with length, area and curvature, as they are written, beside their sources'."""
     curves, polygons = result.curves, result.polygons
-    found = geometry(curves, curves.rounded(precision), result.source, polygons.points, polygons.offsets)
+    found = geometry(curves, curves.rounded(options.precision), result.source, polygons.points, polygons.offsets)
     columns = {name: values.tolist() for name, values in found._asdict().items()}
+    if options.corners == "sharp":  # no corner is rounded
+        del columns["curvature_extrema_floor"]
     return replace(result, measures={**result.measures, **columns})
 
 
@@ -92,6 +97,7 @@ class Geometry(NamedTuple):
     max_curvature: FloatArray
     curvature_extrema: IntArray
     source_curvature_extrema: IntArray
+    curvature_extrema_floor: IntArray
 
 
 @compiled
@@ -106,7 +112,7 @@ def geometry(
     """
     C = len(offsets) - 1
     length, change, energy, curvature, beyond = np.empty(C), np.empty(C), np.empty(C), np.empty(C), np.empty(C)
-    extrema, extrema_before = np.empty((2, C), dtype=np.int64)
+    extrema, extrema_before, floor = np.empty((3, C), dtype=np.int64)
     for c in range(C):
         cubics, given = contour_cubics(written, c), contour_cubics(source, c)
         length[c], energy[c], curvature[c] = _bends(
@@ -115,9 +121,14 @@ def geometry(
         length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
         extrema[c] = curvature_extrema(contour_cubics(curves, c), length[c], CORNER)
         extrema_before[c] = curvature_extrema(given, length_before, CORNER)
+        bends = turns(given, 0.0)
+        corners = bends[np.abs(bends) >= CORNER_TURN]
+        floor[c] = extrema_before[c] + len(corners)
+        for k in range(len(corners) if len(corners) > 1 else 0):
+            floor[c] += corners[k] * corners[k - 1] > 0
         change[c] = area(cubics) - area(given)
         beyond[c] = overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
-    return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before)
+    return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before, floor)
 
 
 @compiled

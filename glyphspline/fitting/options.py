@@ -35,8 +35,8 @@ class Options:
         step, count: sample by arc length or by number instead of by tolerance.
         corners: "sharp" splits at corners, "smooth" is one closed C2 curve a contour (the paper). None is "sharp", with
             ``step`` or ``count`` "smooth"; it is replaced by what it stands for.
-        hold_corners: in "smooth", hold the control point of each corner at the corner: the curve passes inside of it, at
-            most at the tolerance, and bends once. False interpolates every vertex, as the paper does.
+        hold_corners: in "smooth", hold the control point of each corner at the corner: the curve passes it on the
+            inside and bends once there. False interpolates every vertex, as the paper does.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
         continuity: of "sharp" between corners: "c2" is one spline of variant 2, "g1" cubics that only share tangents,

@@ -64,9 +64,12 @@ class Measures:
             where it has risen and then falls, or the reverse, each time by at least a tenth of the larger absolute
             value, as less is the rounding of coordinates, and by 1/length, which is one radian around the contour, as
             less is not seen. An 'o' has four, or eight if its shoulders are square. A corner that "smooth" rounds makes
-            four. See :func:`..curves.fairness.curvature_extrema`.
+            one or more. See :func:`..curves.fairness.curvature_extrema`.
         source_curvature_extrema: the same of the source contour. Sources of quadratics have many: each quadratic has a
             peak of curvature of its own.
+        curvature_extrema_floor: the fewest that a C2 curve within a small distance can be expected to have: those of
+            the source between corners, one for each corner that is rounded, and one between two neighbouring corners
+            that turn the same way. None in "sharp", where corners stay.
         new_crossings: crossings of the contour, with itself and with others of the glyph, beyond those of the source. A
             crossing of two contours counts for both.
         collapsed: whether the written contour has less than a quarter of the source's area, or runs the other way
@@ -96,6 +99,10 @@ class Measures:
     )
     curvature_extrema: int | None = _about("where curvature peaks between corners; an ellipse has 4")
     source_curvature_extrema: int | None = _about("the same of the source outline", label="curvature extrema, source")
+    curvature_extrema_floor: int | None = _about(
+        "the source's, one a rounded corner, and one between two corners that turn alike",
+        label="curvature extrema, floor",
+    )
     new_crossings: int | None = _about("crossings of contours, with themselves and others, beyond the source's")
     collapsed: bool | None = _about("whether a contour has lost its area, or runs the other way round")
     source_kept: bool | None = _about("whether a contour is the source's own, as every fit crosses or collapses")

@@ -27,6 +27,7 @@ MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
     "max_curvature": max,
     "curvature_extrema": sum,
     "source_curvature_extrema": sum,
+    "curvature_extrema_floor": sum,
     "overshoot": max,
     "length": sum,
     "area_change": lambda values: max(values, key=abs),

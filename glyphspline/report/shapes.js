@@ -25,7 +25,7 @@
 
   /** Measures that are listed at once; the others are switched on. */
   const FIRST = ["vertices", "segments", "iterations", "residual", "rate_bound", "deviation", "deviation_bound", "max_curvature",
-    "curvature_extrema", "source_curvature_extrema", "bending_energy", "converged", "within_tolerance"];
+    "curvature_extrema", "source_curvature_extrema", "curvature_extrema_floor", "bending_energy", "converged", "within_tolerance"];
 
   /** Rows of a table of contours' measures, each with its unit and meaning. `every`: also those not listed at once;
    *  `always`: names of those that keep their row where no contour has them. */

@@ -157,7 +157,7 @@ def through(contour: ContourResult, polygon: FloatArray, options: Options) -> Co
     """The closed curve through a polygon, computed as in a conversion by step or count."""
     source = Contours([contour.source]).arrays
     found = through_polygons(source, polygon, np.array([0, len(polygon)]), options, 0.0)
-    return with_geometry(found, options.precision).contour_results()[0]
+    return with_geometry(found, options).contour_results()[0]
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:

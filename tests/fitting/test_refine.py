@@ -110,7 +110,9 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
-    _, places, offsets = steps.first_places(canonical, np.radians(12), 4.0, growth_of(4.0, 2), 1.0, 2)
+    _, places, offsets = steps.first_places(
+        canonical, np.radians(12), 4.0, growth_of(4.0, 2), 1.0, 2, np.zeros(2, dtype=np.bool_)
+    )
     points = steps.polygons(canonical, np.arange(2), places, offsets)
     square = points[: offsets[1]]
     h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)
@@ -168,7 +170,7 @@ def test_a_round_letter_of_quadratics_has_even_chords_and_no_extrema_of_its_own(
 def test_what_is_laid_anew_keeps_its_corners() -> None:
     bowl = round_letter(250, 290, 0.5).cubics()[:4]  # the upper half, closed by a line
     half = gs.Contour.from_segments([*bowl, np.array([bowl[-1][3], bowl[0][0]])])
-    (result,) = smoothed([half], gs.Options(), 1.0)
+    (result,) = smoothed([half], gs.Options(corners="smooth", hold_corners=False), 1.0)
     assert result.measures.within_tolerance
     for corner in (bowl[0][0], bowl[-1][3]):
         assert (result.polygon == corner).all(axis=1).any()
@@ -180,7 +182,7 @@ def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon()
     for seed in range(6):
         contour = wobbly(100, seed)
         flips.add(bool(canonical_contours(Contours([contour]).arrays).flipped[0]))
-        result = smoothed([contour], gs.Options(), 1.0)[0]
+        result = smoothed([contour], gs.Options(corners="smooth", hold_corners=False), 1.0)[0]
         (arc,) = result.interpolations
         plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)
         np.testing.assert_allclose(arc.spline.control_points, plain.spline.control_points, atol=1e-6)
@@ -211,3 +213,40 @@ def test_best_takes_no_more_vertices_than_fast() -> None:
         for effort in ("fast", "best")
     )
     assert best <= fast
+
+
+E = [(0, 0), (480, 0), (480, 90), (110, 90), (110, 310), (440, 310), (440, 400), (110, 400), (110, 620), (470, 620),
+     (470, 710), (0, 710)]  # fmt: skip
+
+
+@pytest.mark.parametrize("points", [E, [(0, 0), (300, 0), (300, 300), (0, 300)], [(0, 0), (500, 40), (240, 420)]])
+def test_held_corners_have_no_rings(points: list[tuple[float, float]]) -> None:
+    outline = gs.Contour(np.array(points, dtype=np.float64), np.ones(len(points), dtype=np.int64))
+    held, passed = (
+        gs.convert(_outline(outline), gs.Options(corners="smooth", hold_corners=hold)).contours[0]
+        for hold in (True, False)
+    )
+    assert held.measures.within_tolerance
+    assert held.measures.rate_bound is not None
+    assert held.measures.rate_bound < 1
+    assert held.measures.curvature_extrema == held.measures.curvature_extrema_floor
+    assert (passed.measures.curvature_extrema or 0) > (held.measures.curvature_extrema or 0)
+    assert held.measures.vertices <= 1.4 * passed.measures.vertices
+    (arc,) = held.interpolations
+    for corner in points:  # its control point is there, and the curve passes inside
+        assert (arc.spline.control_points == corner).all(axis=1).any()
+        assert not (held.polygon == corner).all(axis=1).any()
+    np.testing.assert_allclose(arc.spline(arc.parameters), held.polygon, atol=0.01)
+
+
+def test_no_held_corner_where_it_does_not_serve() -> None:
+    # a hair: between its sides a corner's control point has no room
+    points = np.array([(0.0, 0.0), (400.0, 0.0), (400.0, 0.2), (0.0, 0.2)])
+    outline = _outline(gs.Contour(points, np.ones(4, dtype=np.int64)))
+    measures = gs.convert(outline, gs.Options(corners="smooth", tolerance=0.05)).contours[0].measures
+    assert measures.within_tolerance
+    assert not measures.new_crossings
+
+
+def _outline(contour: gs.Contour) -> gs.Outline:
+    return gs.Outline("A", 1, (65,), 600.0, [contour], gs.FontMetrics(1000.0, 800.0, -200.0))

@@ -66,7 +66,8 @@ def first_field(
     Args:
         cubics: (m, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
         corner_angle: turn in radians from which a joint is a vertex. factor: by which chords grow at most.
-        near: distance allowed, in font units. hold: whether control points of corners are held at them. field: (m TABLE + 1,).
+        near: distance allowed, in font units. hold: whether control points of corners are held at them.
+        field: (m TABLE + 1,).
     """
     at_corner = AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor

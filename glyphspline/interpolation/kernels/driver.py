@@ -46,8 +46,8 @@ STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHES, GIVEN_UP_ON = range(6)
 def run(
     k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
     variant: int, margin: float, exponent: float, peak_shares: FloatArray, tolerances: FloatArray, max_iterations: int,
-    settled: float, held: BoolArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray, bounds: FloatArray,
-    kept: IntArray, whole: IntArray, rates: FloatArray, memory: FloatArray,
+    settled: float, held: BoolArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray,
+    bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray, memory: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
 
