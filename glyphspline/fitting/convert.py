@@ -194,6 +194,10 @@ def _convert_contours(
         from .smooth.smooth_fit import smooth_fits
 
         fits = smooth_fits(options, tolerance)
+        if options.hold_corners:
+            from .sharp.sharp_fit import sharp_fits
+
+            fits = fits._replace(instead=sharp_fits(options, tolerance, em))
     return faithful(contours, glyphs, fits, options, tolerance)
 
 
@@ -228,6 +232,9 @@ def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -
     for contour, collapsed in column("collapsed"):
         if collapsed:
             yield f"{contour} has lost its area, or runs the other way round than its source"
+    for contour, kept in column("corners_kept"):
+        if kept:
+            yield f"{contour} keeps its corners: a smooth curve there crosses itself or others"
     for contour, kept in column("source_kept"):
         if kept:
             yield f"{contour} is the source's own: its fits cross or lose their area"

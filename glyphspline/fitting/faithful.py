@@ -31,6 +31,7 @@ class Fits(NamedTuple):
             Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
             the source.
+        instead: fits of another mode, for contours that cross in every fit of this one.
     """
 
     tries: int
@@ -38,6 +39,7 @@ class Fits(NamedTuple):
     apart: int = 0
     keeps_collapsed: bool = True
     keeps_crossing: bool = False
+    instead: Fits | None = None
 
 
 Result = TypeVar("Result")
@@ -106,8 +108,8 @@ def faithful(
 ) -> ConvertedContours:
     """Fit contours; those that cross or collapse where their source does not are fitted again.
 
-    They are fitted more closely, then drawn apart, and in the end kept as they are in the source, as far as the mode
-    has it: see :class:`Search`. What still crosses in the best result is flagged.
+    They are fitted more closely, then drawn apart, then fitted in another mode, and in the end kept as they are in the
+    source, as far as the mode has it: see :class:`Search`. What still crosses in the best result is flagged.
 
     Args:
         contours: of all glyphs. glyphs: (G + 1,) where the contours of each glyph begin.
@@ -123,16 +125,16 @@ def faithful(
     def is_outside(result: Part) -> bool:
         return result[0].measures["within_tolerance"][result[1]] is False
 
-    def fitted(given: ContourArrays, which: list[int], turn: int) -> ConvertedContours:
+    def fitted(given: ContourArrays, which: list[int], turn: int, of: Fits = fits) -> ConvertedContours:
         """A fit of contours that are those numbered ``which``, or stand for them."""
         try:
-            return fits.fit(given, turn)
+            return of.fit(given, turn)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else which[error.contour]
             raise
 
-    def closer(turn: int, which: list[int]) -> list[Part]:
-        return _parts(fitted(contours.chosen(which), which, turn))
+    def closer(turn: int, which: list[int], of: Fits = fits) -> list[Part]:
+        return _parts(fitted(contours.chosen(which), which, turn, of))
 
     def apart(near: Sequence[Part], share: float, which: list[int]) -> list[Part]:
         """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
@@ -154,14 +156,22 @@ def faithful(
             near = list(search.tried)
             for share in APART if turn == fits.apart else ():
                 search.attempt(search.found.crosses, partial(apart, near, share))
+    smooth_best = list(search.best)
+    for turn in range(fits.instead.tries if fits.instead else 0):
+        assert fits.instead is not None
+        search.go_back()
+        search.attempt(search.kept.crosses, partial(closer, turn, of=fits.instead))
     fits_best = list(search.best)
     wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
+    if fits.instead is not None and fits.instead.keeps_crossing:
+        wrong |= search.kept.crosses
     search.go_back()
     search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
     result = assembled(search.best)
     columns = {
         "new_crossings": [None if count < 0 else count for count in search.kept.new_crossings.tolist()],
         "collapsed": search.kept.collapsed.tolist(),
+        "corners_kept": [new is not old for new, old in zip(fits_best, smooth_best, strict=True)],
         "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
     }
     return with_geometry(replace(result, measures={**result.measures, **columns}), options)

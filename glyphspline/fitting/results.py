@@ -74,6 +74,7 @@ class Measures:
             crossing of two contours counts for both.
         collapsed: whether the written contour has less than a quarter of the source's area, or runs the other way
             round; never of contours that cross themselves.
+        corners_kept: whether the result of "smooth" has the corners of its source, as every smooth fit crosses.
         source_kept: whether the result is the source's own contour, because every fit crosses or collapses.
     """
 
@@ -105,6 +106,7 @@ class Measures:
     )
     new_crossings: int | None = _about("crossings of contours, with themselves and others, beyond the source's")
     collapsed: bool | None = _about("whether a contour has lost its area, or runs the other way round")
+    corners_kept: bool | None = _about("whether a contour has sharp corners, as every smooth curve there crosses")
     source_kept: bool | None = _about("whether a contour is the source's own, as every fit crosses or collapses")
 
     def __repr__(self) -> str:

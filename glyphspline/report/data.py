@@ -35,6 +35,7 @@ MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
     "converged": all,
     "within_tolerance": all,
     "collapsed": any,
+    "corners_kept": any,
     "source_kept": any,
 }
 """How the values of contours combine to the glyph's, for each measure: the worst, or the sum."""
