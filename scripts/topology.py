@@ -57,8 +57,11 @@ FACES = (
     Face("Kouzan gyosho", "kouzan-mouhitsu-gyosho.ttf", "龍槌矜隧授"),
 )
 
-WAYS = [gs.Options(corners=c, effort=e) for c, e in product(get_args(Corners), get_args(Effort))]
-HARD_WAYS = [gs.Options(corners=c, tolerance=t) for c, t in product(get_args(Corners), (0.5, 1.0, 5.0))]
+MODES: tuple[tuple[Corners, bool], ...] = (("smooth", True), ("smooth", False), ("sharp", True))
+"""Corners, and whether their control points are held."""
+
+WAYS = [gs.Options(corners=c, hold_corners=h, effort=e) for (c, h), e in product(MODES, get_args(Effort))]
+HARD_WAYS = [gs.Options(corners=c, hold_corners=h, tolerance=t) for (c, h), t in product(MODES, (0.5, 1.0, 5.0))]
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,7 @@ def survey(task: tuple[Face, Path, str]) -> list[Glyph]:
     name = names[ord(character)]
     source, outline = font_contours(glyphs, name), font.outline(name)
     return [
-        converted(face.name, character, f"{options.corners} {options.effort}", outline, source, options)
+        converted(face.name, character, f"{mode(options)} {options.effort}", outline, source, options)
         for options in WAYS
     ]
 
@@ -113,9 +116,14 @@ def hard(number: int) -> list[Glyph]:
     kind, source = hard_contour(random.Random(number))
     outline = outline_of(kind, source)
     return [
-        converted(kind, str(number), f"{options.corners} {options.tolerance:g}", outline, source, options)
+        converted(kind, str(number), f"{mode(options)} {options.tolerance:g}", outline, source, options)
         for options in HARD_WAYS
     ]
+
+
+def mode(options: gs.Options) -> str:
+    """The mode in a word or two."""
+    return f"{options.corners}{'' if options.hold_corners else ', corners passed'}"
 
 
 def converted(face: str, character: str, way: str, outline: gs.Outline, source: Drawing, options: gs.Options) -> Glyph:

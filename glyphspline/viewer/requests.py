@@ -60,7 +60,8 @@ def read_state(given: Any, units_per_em: float) -> State:
     chosen: dict[str, Any] = {name: given[name] for name in names if name in given}
     chosen[sampling] = int(amount) if sampling == "count" else amount
     margin = min(max(_number(given, "margin", Options.margin), 0.0), 0.25)
-    options = Options(**chosen, margin=margin, measure=given.get("measure") is True)
+    # The page shows variant 2 pass by pass, and moves vertices: the curve has to pass through each of them.
+    options = Options(**chosen, margin=margin, hold_corners=False, measure=given.get("measure") is True)
     location = given.get("location") or {}
     if not isinstance(location, Mapping):
         raise GlyphsplineError("location is an object of axis tags and values")
