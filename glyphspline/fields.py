@@ -128,7 +128,9 @@ def arguments(value: Any, default: Any) -> dict[str, list[str]]:
         if is_dataclass(own) and usual is not None:
             found[name] = list(chain(*arguments(own, usual).values()))
         elif name in known and own != usual:
-            found[name] = [known[name].flags[0], *([] if own is True else [_text(own, known[name].about)])]
+            flag, _, off = known[name].flags[0].partition("/")
+            switch = {True: [flag], False: [off]} if isinstance(own, bool) else {}
+            found[name] = switch.get(own) or [flag, _text(own, known[name].about)]
     return found
 
 
