@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -80,7 +81,7 @@ class Round:
     held: BoolArray
     most: FloatArray
 
-    def part(self, values: FloatArray, i: int) -> FloatArray:
+    def part(self, values: Any, i: int) -> Any:
         """Part i of a ragged array."""
         return values[self.trial.offsets[i] : self.trial.offsets[i + 1]]
 
