@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from glyphspline.cli import app
 from glyphspline.errors import FontError
-from glyphspline.readers import open_source
+from glyphspline.readers import Font, open_source
 from glyphspline.readers.facts import file_facts
 from glyphspline.runs.jobs.deep_facts import add_glyph_facts
 from glyphspline.runs.schedule import workers
@@ -120,3 +120,23 @@ def test_info_reads_no_glyphs_and_imports_no_compiler() -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numba", "scipy", "matplotlib", "glyphspline.runs.pool"} & set(run.stdout.split())
+
+
+def test_a_font_that_cannot_be_opened_is_not_opened_for_each_of_its_glyphs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data = bytearray((FONTS / "kouzan-gyosho.otf").read_bytes())
+    tables = TTFont(FONTS / "kouzan-gyosho.otf").reader.tables
+    data[tables["CFF "].offset] = 9  # its version
+    data[tables["maxp"].offset + 4 : tables["maxp"].offset + 6] = b"\xff\xff"  # its glyphs
+    (tmp_path / "many.otf").write_bytes(data)
+    opened, begin = [], Font.__init__
+
+    def counted(self: Font, *given: Any, **named: Any) -> None:
+        opened.append(given)
+        begin(self, *given, **named)
+
+    monkeypatch.setattr(Font, "__init__", counted)
+    (font,) = deep_facts(tmp_path / "many.otf")["fonts"]
+    assert font["broken_glyphs"] == 65_535
+    assert 0 < len(opened) < 1_000

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...errors import GlyphsplineError
 from ...extras import has
 from ...outlines.outline import Outline
 from ...readers import Source
@@ -35,8 +36,14 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
     """A few megabytes of outlines."""
 
     def read(self, tasks: Sequence[Glyph]) -> list[Item | Exception]:
-        """Glyphs of one face are looked at together."""
-        return [Item(gid, kind=face) for face, gid in tasks]
+        """Glyphs of one face are looked at together. One that cannot be opened is not opened for each of them."""
+        unread: dict[int, GlyphsplineError] = {}
+        for face in {face for face, _ in tasks}:
+            try:
+                sources(self.places[face])
+            except GlyphsplineError as error:
+                unread[face] = error
+        return [unread.get(face) or Item(gid, kind=face) for face, gid in tasks]
 
     def together(self, tasks: Sequence[Glyph], contents: Sequence[Any]) -> dict[str, Any]:
         """The facts of glyphs that follow one another."""
