@@ -1,6 +1,6 @@
 """DXF files opened and extruded in CAD kernels: FreeCAD's importer (freecadcmd), and OCCT (the module OCP), if found.
 
-    python scripts/check_cad.py [FONT …] [--text 龍g好] [--looks smooth,sharp,g1] [--kinds spline,…] [--brief]
+    python scripts/check_cad.py [FONT …] [--text 龍g好] [--looks smooth,sharp,g2] [--kinds spline,…] [--brief]
 
 For each character, and for smooth contours, corners, and cubics that share tangents, as splines, arcs and polylines:
 the file is imported, its edges are joined to wires, the wires to a face with holes, and the face is extruded. Exit
@@ -48,7 +48,7 @@ KINDS: tuple[DxfKind, ...] = get_args(DxfKind)
 LOOKS = {
     "smooth": gs.Options(corners="smooth"),
     "sharp": gs.Options(corners="sharp"),
-    "g1": gs.Options(corners="sharp", continuity="g1"),
+    "g2": gs.Options(corners="sharp", continuity="g2"),
 }
 
 IN_FREECAD = """

@@ -20,9 +20,9 @@ PACKAGE = ROOT / "glyphspline"
 
 BASE = {"arrays", "compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
 CURVES = BASE | {"curves"}
-FITTING = CURVES | {"interpolation", "outlines", "fitting"}
+FITTING = CURVES | {"interpolation", "outlines", "checks", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"checks", "readers", "typesetting", "writers"}
+WRITERS = FITTING | {"readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
     "compiled": set(),

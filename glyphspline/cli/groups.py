@@ -12,11 +12,18 @@ import typer
 
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of
-from ..fitting.options import PRESETS, Options, Preset
+from ..fitting.options import FONTS, FOR_FONTS, PRESETS, Options, Preset
 from .messages import errors, listen
 from .status import UNDONE
 
 Value = TypeVar("Value")
+
+
+MASTERS = {"masters", "others", "axis"}
+"""Options of runs over masters, whose curves are C2."""
+
+OTHER_CURVES = {"step", "count", "variant", "margin", "fallback"}
+"""Options of the interpolation, which fonts' own curves do without."""
 
 
 class Shown(NamedTuple):
@@ -100,6 +107,7 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     kind: Any = type(base)
     if kind is Options:
         given = {**PRESETS.get(given.get("preset", ""), {}), **given}
+        given = {**for_fonts(given), **given}
     known = {one.name: one for one in options_of(kind)}
     usual = kind()
     found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
@@ -116,6 +124,17 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
             if len(words) > 2 and words[k] in known and words[1] in between:
                 words[k] = known[words[k]].flags[0]
         raise OptionError(" ".join(words)) from None
+
+
+def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Defaults of a run that writes only fonts, unless what is given asks for other curves."""
+    formats = {name.strip() for name in str(given.get("formats", "")).split(",")}
+    if not formats & FONTS or not MASTERS.isdisjoint(given):
+        return {}
+    asks = formats - FONTS or not OTHER_CURVES.isdisjoint(given) or given.get("corners", "sharp") != "sharp"
+    if given.get("continuity", "c2" if asks else "g2") != "g2":
+        return {}
+    return FOR_FONTS
 
 
 def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:

@@ -29,11 +29,11 @@ In 8,233 contours the first share saves 6 segments, the second one 6 crossings; 
 8.
 """
 
-RETRIES = {"c2": (0.9, 0.75), "g1": (0.8,), "masters": (0.9, 0.75, 0.5)}
-"""Shares of the samples' tolerance for pieces that fail the certificate, by continuity, and of masters. In the end the
-source's own segments take their place.
+RETRIES = {"plain": (0.9, 0.75), "masters": (0.9, 0.75, 0.5)}
+"""Shares of the samples' tolerance for pieces that fail the certificate, of a plain outline and of masters. In the end
+the source's own segments take their place.
 
-With "best", 0.9 saves 13 segments, 0.75 six, and 0.8 of "g1" three. Of two masters (169 contours, smooth and sharp) the
+With "best", 0.9 saves 13 segments, 0.75 six. Of two masters (169 contours, smooth and sharp) the
 retries save 481 segments from staying as the source has them, 0.9 alone 109 and 0.75 seven. The last one saves none of
 these, but those of a smooth contour of two masters that has a kink between them.
 """

@@ -12,16 +12,22 @@ from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 
 Corners = Literal["smooth", "sharp"]
 Effort = Literal["fast", "best"]
-Continuity = Literal["c2", "g1"]
+Continuity = Literal["c2", "g2"]
 Preset = Literal["paper", "type", "brush"]
 
 PRESETS: dict[str, dict[str, Any]] = {
     "paper": {"corners": "smooth", "margin": 0.0, "hold_corners": False},
-    "type": {"corners": "sharp", "continuity": "c2", "effort": "best"},
+    "type": {"corners": "sharp", "effort": "best"},
     "brush": {"corners": "smooth", "thousandths": 3.0},
 }
-"""Options set together: one smooth curve a contour as the paper has it; corners and C2 arcs for type; and one smooth
+"""Options set together: one smooth curve a contour as the paper has it; corners for type; and one smooth
 curve a contour, further from the noise of traced outlines, for brush."""
+
+FONTS = {"otf", "ttf", "ufo"}
+"""Formats of fonts, and of their sources."""
+
+FOR_FONTS: dict[str, Any] = {"corners": "sharp", "continuity": "g2", "precision": 0}
+"""Options of a run that writes only fonts, where nothing else is asked for: what fonts store."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +45,9 @@ class Options:
             inside and bends once there. False interpolates every vertex, as the paper does.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
-        continuity: of "sharp" between corners: "c2" is one spline of variant 2, "g1" cubics that only share tangents,
-            in which variant 2 does not run.
+        continuity: of "sharp" between corners: "c2" is one spline of variant 2; "g2" cubics as fonts store them, no
+            more than the source has, with points where it has them, whose tangents and curvatures meet on the grid of
+            ``precision``: variant 2 does not run.
         effort: "fast" takes few fits, "best" seeks the fewest vertices.
         margin: c of Lemma 2. fallback: what to do where Lemma 2 has no interval, "knot" or "peak".
         max_ratio: bound on the ratio of adjacent chords.
@@ -94,8 +101,8 @@ class Options:
     )  # fmt: skip
     continuity: Continuity = option(
         "c2",
-        "Fit between corners one spline whose curvature has no jumps (c2), or cubics that only meet without a "
-        "kink (g1).",
+        "Fit between corners one C2 spline (c2), or the fewest cubics whose tangents and curvatures meet, as fonts "
+        "store them (g2): the default where only fonts are written.",
         CORNERS,
     )  # fmt: skip
     effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
@@ -141,7 +148,7 @@ class Options:
     def words(self) -> str:
         """What a caption says of a conversion, in the words of the command line; only what made a difference."""
         sharp = self.corners == "sharp"
-        interpolated = not (sharp and self.continuity == "g1")
+        interpolated = not (sharp and self.continuity == "g2")
         said = [f"variant {self.variant}", f"margin {self.margin:g}"] if interpolated else []
         said += [f"corners {self.corners}", *([f"continuity {self.continuity}"] if sharp else [])]
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]

@@ -177,8 +177,12 @@ class RunSpec:
         return tuple(name for name in self.formats if name in WHOLE)
 
     def fitting(self, units_per_em: float) -> Options:
-        """The options of the conversion. If a font is written, its rounding is subtracted from the tolerance."""
-        flavours: list[Flavour] = [name for name in ("otf", "ttf") if name in self.formats]
+        """The options of the conversion. If a font is written, its rounding is subtracted from the tolerance.
+
+        With continuity "g2" results are on the font's grid, and quadratics are not made of them.
+        """
+        written: tuple[Flavour, ...] = ("otf",) if self.options.continuity == "g2" else ("otf", "ttf")
+        flavours = [name for name in written if name in self.formats]
         if not flavours or self.options.is_fixed:
             return self.options
         from ..writers.font.font_glyphs import fitting_tolerance

@@ -43,6 +43,34 @@ KNOT = Contour(
 )  # fmt: skip
 """Crosses itself, and is fitted again more than once."""
 
+ROUND = Outline(
+    "round",
+    contours=[
+        Contour(
+            np.array(
+                [
+                    [300.0, 0],
+                    [300, 120],
+                    [210, 210],
+                    [120, 300],
+                    [0, 300],
+                    [-120, 300],
+                    [-210, 210],
+                    [-300, 120],
+                    [-300, 0],
+                    [-300, -300],
+                    [0, -300],
+                    [200, -300],
+                    [280, -100],
+                    [300, -50],
+                ]
+            ),
+            np.array([2, 2, 2, 2, 2, 2, 1, 1]),
+        )
+    ],
+)
+"""Quadratics, as TrueType has them."""
+
 SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
 
 AXES = (DesignAxis("wght", "Weight", 0, 0, 1),)
@@ -146,6 +174,15 @@ def drawings() -> None:
     to_polygon_svg(glyph)
 
 
+def fonts() -> None:
+    """What fonts store: cubics, and quadratics."""
+    from ..fitting.sharp.font_fit import quadratic_points
+
+    options = Options(corners="sharp", continuity="g2", tolerance=0.3)
+    converted(options)
+    quadratic_points(ROUND.arrays, options, 1.0, 1000.0)
+
+
 def masters() -> None:
     """Masters as one curve, with arcs that fail the certificate at first and one that ends on a slanted line."""
     from ..fitting.convert_masters import convert_masters
@@ -232,7 +269,7 @@ WORK: dict[str, Callable[[], Any]] = {
     "smooth": lambda: converted(Options(corners="smooth")),
     "masters": masters,
     "smooth_best": lambda: converted(Options(corners="smooth", effort="best")),
-    "g1": lambda: converted(Options(continuity="g1")),
+    "g2": fonts,
     "sharp_best": lambda: converted(Options(effort="best")),
     "fixed": lambda: converted(Options(step=20.0)),
     "unfitted": unfitted,

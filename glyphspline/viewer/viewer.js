@@ -252,13 +252,13 @@
     state.variant = +state.variant;
     state.margin = +at("margin").value;
     at("margin-out").textContent = state.margin.toFixed(3);
-    const sharp = state.corners === "sharp", fitted = sharp && state.continuity === "g1"; // G1 cubics: nothing is iterated
+    const sharp = state.corners === "sharp", fitted = sharp && state.continuity === "g2"; // G2 cubics: nothing is iterated
     at("continuities").disabled = !sharp;
     at("efforts").disabled = state.sampling !== "tolerance";
     if (fitted && at("compare").checked) at("compare").click(); // before it is disabled
     for (const id of ["variants", "margin", "compare"]) at(id).disabled = fitted;
     at("compare").disabled ||= at("along").checked;
-    at("variant-words").textContent = fitted ? "no variant runs: G1 cubics are fitted, nothing is iterated" : WORDS[state.variant];
+    at("variant-words").textContent = fitted ? "no variant runs: G2 cubics are fitted, nothing is iterated" : WORDS[state.variant];
     amount();
     for (const input of document.querySelectorAll("[name=preset]")) {
       const { amount: exact, ...rest } = font.presets[input.value];

@@ -1,6 +1,7 @@
 """Outlines as UFO 3 folders, for font editors; they contain converted glyphs only.
 
-A result: cubics are those of the splines, split exactly at extrema, with points marked smooth where the curve is. The
+A result: cubics are those of the splines, split exactly at extrema (those of continuity "g2" have points where the
+source has them), with points marked smooth where the curve is. The
 layer ``public.background`` contains the polygon of each contour; each glyph's ``lib`` contains, under
 ``org.glyphspline.contours``, the splines' knots, footpoint parameters and measures.
 
@@ -134,7 +135,9 @@ def _close(writer: UFOWriter, layers: Mapping[str, Any], order: Sequence[str]) -
 def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
-    curves = [with_extrema(contour.curve, outline.metrics.units_per_em) for contour in result.contours]
+    curves = [contour.curve for contour in result.contours]
+    if (result.options.corners, result.options.continuity) != ("sharp", "g2"):
+        curves = [with_extrema(curve, outline.metrics.units_per_em) for curve in curves]
     lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(result.options.facts())}
     width, note = as_number(outline.advance), "\n".join(result.notes) or None

@@ -158,7 +158,7 @@ WAYS = {
     "smooth best": gs.Options(tolerance=1.0, corners="smooth", effort="best"),
     "sharp fast": gs.Options(tolerance=1.0, corners="sharp"),
     "sharp best": gs.Options(tolerance=1.0, corners="sharp", effort="best"),
-    "sharp best g1": gs.Options(tolerance=1.0, corners="sharp", effort="best", continuity="g1"),
+    "sharp best g2": gs.Options(tolerance=1.0, corners="sharp", effort="best", continuity="g2"),
 }
 """Whose fairness is measured."""
 
@@ -169,8 +169,8 @@ def fairness_rows(face: Face) -> list[Row]:
     if not glyphs:
         return []
     found = {way: np.array([fairness(gs.convert(g, options)) for g in glyphs]) for way, options in WAYS.items()}
-    source, (c2, g1) = found["sharp best"][:, 0], (found[way][:, 3] for way in ("sharp best", "sharp best g1"))
-    ratio = np.median(c2[g1 > 0] / g1[g1 > 0])
+    source, (c2, g2) = found["sharp best"][:, 0], (found[way][:, 3] for way in ("sharp best", "sharp best g2"))
+    ratio = np.median(c2[g2 > 0] / g2[g2 > 0])
     return [
         Row(f"{face.name}: extrema of curvature, source", source.mean(), "", None, None, False),
         *(
@@ -180,7 +180,7 @@ def fairness_rows(face: Face) -> list[Row]:
             )
             for way, each in found.items()
         ),
-        Row(f"{face.name}: ∫(dκ/ds)² ds, sharp best / g1", ratio, "x", None, None, False, "median of the glyphs"),
+        Row(f"{face.name}: ∫(dκ/ds)² ds, sharp best / g2", ratio, "x", None, None, False, "median of the glyphs"),
     ]  # fmt: skip
 
 

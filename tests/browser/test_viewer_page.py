@@ -77,8 +77,8 @@ def test_presets_and_continuity(shown: Any) -> None:
     assert "--effort best" in shown.locator("#command").inner_text()
     shown.locator("#compare").check()
     shown.locator("#compared figure").nth(2).wait_for()
-    changes(shown, lambda: shown.locator(choice("continuity", "g1")).check(force=True))
-    assert "--continuity g1" in shown.locator("#command").inner_text()
+    changes(shown, lambda: shown.locator(choice("continuity", "g2")).check(force=True))
+    assert "--continuity g2" in shown.locator("#command").inner_text()
     assert shown.locator("[name=preset]:checked").count() == 0
     assert shown.locator(choice("variant", "'2'")).is_disabled()
     assert shown.locator("#compared").is_hidden()
@@ -91,7 +91,7 @@ def test_presets_and_continuity(shown: Any) -> None:
     changes(shown, lambda: shown.locator(choice("preset", "paper")).check(force=True))
     assert shown.locator("#margin-out").inner_text() == "0.000"
     assert shown.locator("[name=preset]:checked").get_attribute("value") == "paper"
-    assert shown.locator(choice("continuity", "g1")).is_disabled(), "smooth curves are C2"
+    assert shown.locator(choice("continuity", "g2")).is_disabled(), "smooth curves are C2"
     assert shown.locator(choice("variant", "'2'")).is_enabled()
 
 

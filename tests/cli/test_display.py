@@ -166,7 +166,7 @@ def test_the_atlas_has_a_page_for_twelve_glyphs_and_one_for_each_profile(tmp_pat
     ("given", "words"),
     [
         (["--preset", "type"], "corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
-        (["--corners", "sharp", "--continuity", "g1", "--tolerance", "3"], "corners sharp, continuity g1, tolerance 3"),
+        (["--corners", "sharp", "--continuity", "g2", "--tolerance", "3"], "corners sharp, continuity g2, tolerance 3"),
     ],
 )
 def test_the_atlas_is_made_and_captioned_by_the_options(

@@ -48,10 +48,10 @@ def test_options_that_contradict_each_other_are_refused(wrong: dict[str, Any]) -
         ({"step": 20, "variant": 3}, "variant 3, margin 0.02, corners smooth, step 20"),
         (PRESETS["type"], "variant 2, margin 0.02, corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
         (
-            {"corners": "sharp", "continuity": "g1", "tolerance": 0.5},
-            "corners sharp, continuity g1, tolerance 0.5, effort fast",
+            {"corners": "sharp", "continuity": "g2", "tolerance": 0.5},
+            "corners sharp, continuity g2, tolerance 0.5, effort fast",
         ),
-        ({"continuity": "g1", "count": 9}, "variant 2, margin 0.02, corners smooth, count 9"),
+        ({"continuity": "g2", "count": 9}, "variant 2, margin 0.02, corners smooth, count 9"),
     ],
     ids=str,
 )

@@ -245,7 +245,7 @@ def test_workers_compile_the_spline_fit_before_their_time_limits_begin() -> None
 
 
 def test_cubics_are_no_interpolation_that_was_iterated() -> None:
-    for contour in gs.convert(glyph("龍"), options(continuity="g1")).contours:
+    for contour in gs.convert(glyph("龍"), options(continuity="g2")).contours:
         m = contour.measures
         assert m.within_tolerance
         assert (m.iterations, m.residual, m.converged, m.rate_bound, m.fallbacks) == (None,) * 5
@@ -310,7 +310,7 @@ def test_a_segment_that_ends_where_it_begins_may_stay_as_it_is(handle: float) ->
     segments = [np.stack(pair) for pair in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     segments.insert(1, np.array([[200.0, 0.0], [202.0, handle], [198.0, handle], [200.0, 0.0]]))
     outline = gs.Outline("loop", contours=(gs.Contour.from_segments(segments),))
-    (contour,) = gs.convert(outline, gs.Options(corners="sharp", continuity="g1", tolerance=0.5)).contours
+    (contour,) = gs.convert(outline, gs.Options(corners="sharp", continuity="g2", tolerance=0.5)).contours
     assert np.isfinite(contour.curve.points).all()
     assert contour.measures.deviation_bound is not None
     assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01

@@ -13,7 +13,7 @@ from tests.places import FONTS
 FITS = {
     "smooth": gs.Options(corners="smooth"),
     "sharp": gs.Options(corners="sharp"),
-    "g1": gs.Options(corners="sharp", continuity="g1"),
+    "g2": gs.Options(corners="sharp", continuity="g2"),
     "source": None,
 }
 

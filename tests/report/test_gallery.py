@@ -123,7 +123,7 @@ def test_only_the_pages_own_script_may_run(tmp_path: Path) -> None:
 
 
 def test_the_run_says_how_it_was_made(tmp_path: Path) -> None:
-    options = asdict(gs.Options(corners="sharp", continuity="g1"))
+    options = asdict(gs.Options(corners="sharp", continuity="g2"))
     for given, words in (
         ({"options": options}, gs.Options(**options).words),
         ({}, ""),

@@ -61,7 +61,7 @@ def test_a_glyph_is_what_convert_gives(client: TestClient) -> None:
     "changes",
     [
         {"variant": 3, "margin": 0.1},
-        {"sampling": "tolerance", "amount": 3, "corners": "sharp", "continuity": "g1"},
+        {"sampling": "tolerance", "amount": 3, "corners": "sharp", "continuity": "g2"},
         {"sampling": "tolerance", "amount": 3, "corners": "sharp", "effort": "best"},
     ],
 )
@@ -87,14 +87,14 @@ def test_by_tolerance_the_result_is_within_it(client: TestClient, corners: str) 
 
 def test_continuity_and_effort_reach_the_fit_and_the_command(client: TestClient) -> None:
     outline = gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O")
-    chosen: list[tuple[Continuity, Effort]] = [("c2", "best"), ("g1", "fast")]
+    chosen: list[tuple[Continuity, Effort]] = [("c2", "best"), ("g2", "fast")]
     for continuity, effort in chosen:
         found = ask(client, sampling="tolerance", amount=4, corners="sharp", continuity=continuity, effort=effort)
         options = gs.Options(tolerance=4, corners="sharp", continuity=continuity, effort=effort)
         assert f'd="{found["result"]}"' in gs.to_svg(gs.convert(outline, options))
-        assert (f"--continuity {continuity}" in found["command"]) == (continuity == "g1")
+        assert (f"--continuity {continuity}" in found["command"]) == (continuity == "g2")
         assert (f"--effort {effort}" in found["command"]) == (effort == "best")
-        for measures in found["measures"] if continuity == "g1" else ():
+        for measures in found["measures"] if continuity == "g2" else ():
             assert [measures[name] for name in ("iterations", "residual", "converged", "rate_bound")] == [None] * 4
 
 

@@ -32,7 +32,7 @@ FONT = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
 LOOKS = {
     "smooth": gs.Options(corners="smooth"),
     "sharp": gs.Options(),
-    "g1": gs.Options(corners="sharp", continuity="g1"),
+    "g2": gs.Options(corners="sharp", continuity="g2"),
 }
 
 
@@ -121,7 +121,7 @@ def _derivatives(curve: Any, at: np.ndarray, order: int) -> list[Any]:
     return [curve.derivative(t, n=2)[order] for t in inside.tolist()]
 
 
-@pytest.mark.parametrize("look", ["sharp", "g1"])
+@pytest.mark.parametrize("look", ["sharp", "g2"])
 def test_arcs_and_lines_follow_each_other(results: dict[str, gs.GlyphResult], look: str) -> None:
     result = results[look]
     contours = entities(opened(gs.to_dxf(result, dxf="arcs")))

@@ -1,7 +1,4 @@
-"""Single cubics, and the fewest cubics and lines for a stretch of outline, joined without a kink.
-
-The latter is ``continuity="g1"``: each cubic is a fit of its own, and variant 2 does not run.
-"""
+"""Single cubics fitted to samples of an outline, and straight stretches of it."""
 
 from __future__ import annotations
 
@@ -11,8 +8,6 @@ from ...compiled import compiled
 from ...curves.cubics import length, newton_step
 from ...types import FloatArray, IntArray
 from .corners import Joints
-from .pieces import Pieces, add_piece
-from .settings import Settings
 from .spline_curve import chord
 
 SLIDE = 0.001
@@ -26,12 +21,6 @@ STEPS = 4
 
 LONGEST, SHORTEST = 4 / 3, 1 / 30
 """Lengths between which handles are kept, in chords."""
-
-SEGMENT_PRICE = 1.5
-"""Numbers that saving one segment is worth."""
-
-PRICE_OF_LINE, PRICE_OF_CUBIC = 2.0 + SEGMENT_PRICE, 6.0 + SEGMENT_PRICE
-"""Prices of a line, which stores 2 numbers, and of a cubic, which stores 6."""
 
 
 @compiled
@@ -73,7 +62,7 @@ def fit_cubic(
             p1, p3 = handles[0, axis] * chord, Q[n - 1, axis] - Q[0, axis]
             p2 = p3 - handles[1, axis] * chord
             c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
-        error = _project(Q, c, x, e)
+        error = project(Q, Q[0, 0], Q[0, 1], c, x, e)
         if error < best:
             best = error
             for end in range(2):
@@ -116,13 +105,17 @@ def limited(
 
 
 @compiled
-def _project(Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
-    """Pair the inner samples with points of the cubic, in order, from the feet x on; the largest distance."""
+def project(Q: FloatArray, x0: float, y0: float, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """Pair the inner samples with points of a cubic, in order, from the feet x on; the largest distance.
+
+    Args:
+        x0, y0: where it begins. c: (3, 2) its coefficients about there; row k goes with the power k + 1.
+    """
     ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
     ay, by, cy = c[0, 1], c[1, 1], c[2, 1]
     worst, low = 0.0, 0.0
     for j in range(1, len(Q) - 1):
-        qx, qy = Q[j, 0] - Q[0, 0], Q[j, 1] - Q[0, 1]
+        qx, qy = Q[j, 0] - x0, Q[j, 1] - y0
         t = max(x[j], low)
         for _ in range(STEPS):
             px, py = ((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy
@@ -257,64 +250,3 @@ def fit_between(joints: Joints, i: int, j: int, tolerance: float, rounds: int, t
                 for axis in range(2):
                     tangents[v, end, axis] *= own / whole
     return worst
-
-
-@compiled
-def add_chain(joints: Joints, i: int, j: int, settings: Settings, pieces: Pieces, count: int) -> int:
-    """Add the cheapest way from hard joint i to hard joint j by lines and cubics, which end at corners and at every so
-    many joints.
-
-    Dynamic programming runs from the last of these joints backwards. From each one the ends are tried in the order of
-    the price they promise, so that the first that can be kept is the best.
-
-    Returns:
-        The number of pieces then.
-    """
-    nodes, J = np.empty(j - i + 1, dtype=np.int64), 0
-    nodes[0] = i
-    for n in range(i + 1, j + 1):
-        if n == j or joints.corner[n] or n - nodes[J] >= settings.stride:
-            J += 1
-            nodes[J] = n
-    first, near = joints.first, settings.near
-    rest, errors, tangents = np.zeros(J + 1), np.zeros(J + 1), np.empty((J + 1, len(joints.samples), 2, 2))
-    following, spans = np.empty(J + 1, dtype=np.int64), np.ones(J + 1, dtype=np.int64)
-    out, carried = np.zeros(J + 1, dtype=np.bool_), np.zeros(J + 1, dtype=np.bool_)
-    for a in range(J - 1, -1, -1):
-        # The node from which the rest is cheapest among those that a straight line may end at; a if there is none.
-        line = a
-        for b in range(a + 1, (J if joints.corner[nodes[a]] else a) + 1):
-            if not is_straight(joints.samples, first[nodes[a]], first[nodes[b]], near):
-                if b > a + 3:
-                    break
-            elif joints.corner[nodes[b]] and (line == a or rest[b] < rest[line]):
-                line = b
-        while True:
-            best, at = np.inf, a + 1
-            for b in range(a + 1, J + 1):
-                if not out[b] and PRICE_OF_CUBIC + rest[b] <= best:
-                    best, at = PRICE_OF_CUBIC + rest[b], b
-            if line > a and PRICE_OF_LINE + rest[line] <= best:
-                best, at, spans[a], errors[a] = PRICE_OF_LINE + rest[line], line, 0, 0.0
-                break
-            errors[a] = fit_between(joints, nodes[a], nodes[at], near, settings.chain_rounds, tangents[a])
-            if errors[a] <= near:
-                break
-            if at == a + 1:
-                # What cannot be fitted stays as the source has it, a cubic a segment.
-                best = (nodes[at] - nodes[a]) * PRICE_OF_CUBIC + rest[at]
-                break
-            out[at:] = True
-            # Cubics that miss the tolerance by less than this factor do not rule out longer ones.
-            if not errors[a] < 2.0 * near:
-                # A near miss may be due to the tangent here: it says little of what begins before.
-                carried[at:] = True
-        rest[a], following[a] = best, at
-        out[:] = carried
-    a = 0
-    while a < J:
-        b = following[a]
-        pieces.tangents[count] = tangents[a]
-        count = add_piece(pieces, count, joints, nodes[a], nodes[b], spans[a], errors[a])
-        a = b
-    return count

@@ -1,9 +1,8 @@
 """Cutting contours at their hard joints, and fitting what lies between them: lines, cubics and splines.
 
-Between two hard joints there is one C2 spline (``continuity="c2"``), or a chain of cubics that meet without a kink
-(``continuity="g1"``). A contour without hard joints is one closed C2 spline. Most stretches of a typeface need a single
-cubic; :mod:`.spline_search` fits the others. Where a stretch has corners that do not show, one spline and splines
-between all of these corners are both fitted, and the cheaper is kept.
+Between two hard joints there is one C2 spline. A contour without hard joints is one closed C2 spline. Most stretches of
+a typeface need a single cubic; :mod:`.spline_search` fits the others. Where a stretch has corners that do not show, one
+spline and splines between all of these corners are both fitted, and the cheaper is kept.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
-from .cubics import add_chain, fit_between, is_straight
+from .cubics import fit_between, is_straight
 from .pieces import Pieces, add_piece, add_source, copy_piece, empty_pieces, enlarged, used
 from .settings import Settings
 from .spline_search import fit_spline
@@ -144,8 +143,6 @@ def fit_contour(joints: Joints, c: int, settings: Settings) -> Pieces:
             j += 1
         if joints.line[i]:
             count = add_piece(pieces, count, joints, i, j, 0, 0.0)
-        elif not settings.c2:
-            count = add_chain(joints, i, j, settings, pieces, count)
         else:
             first, cut = count, joints.hard[0] and joints.corner[i + 1 : j].any()
             for whole in range(0 if cut else 1, 2):

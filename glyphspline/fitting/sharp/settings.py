@@ -12,12 +12,11 @@ class Settings(NamedTuple):
     Attributes:
         near: how near samples have to be. angle: turn in radians from which a joint is a corner.
         line: length from which lines stay lines.
-        c2: whether one spline runs between hard joints; or else cubics.
+        c2: whether splines are fitted, which need more samples beside tight turns; or else single cubics.
         round_corners: whether closed curves go round corners: vertices that do not get near enough by moving are then
             fixed on the outline.
         margin, residual: of the interpolation.
-        chain_rounds: most Gauss-Newton steps of a cubic among others. stride: these end at corners and at every so many
-            joints. cubic_rounds: most steps of a cubic by itself.
+        chain_rounds: most Gauss-Newton steps of a cubic among others. cubic_rounds: most steps of a cubic by itself.
         rounds: most steps of a spline's first guess. few_rounds: of one with up to three spans.
         guess: spans of the first guess, as a share of what the density asks for.
         growth: power of a span's error with which vertices are added.
@@ -34,7 +33,6 @@ class Settings(NamedTuple):
     margin: float
     residual: float
     chain_rounds: int
-    stride: int
     cubic_rounds: int
     rounds: int
     few_rounds: int
@@ -49,11 +47,11 @@ class Settings(NamedTuple):
 
 EFFORTS = {
     "fast": partial(
-        Settings, chain_rounds=4, stride=2, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
+        Settings, chain_rounds=4, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
         removals=0.3, passes=1, dear=0.5, removal_rounds=2, reach=3,
     ),
     "best": partial(
-        Settings, chain_rounds=6, stride=1, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
+        Settings, chain_rounds=6, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
         removals=0.7, passes=2, dear=1.5, removal_rounds=8, reach=4,
     ),
 }  # fmt: skip

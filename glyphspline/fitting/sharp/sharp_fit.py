@@ -1,4 +1,4 @@
-"""The sharp mode: contours cut at corners and straight lines, with one spline of variant 2 in between, or cubics.
+"""The sharp mode: contours cut at corners and straight lines, with one spline of variant 2 in between.
 
 :mod:`.cutting` cuts the contours and fits the pieces, :mod:`.assembly` puts them together; this file makes sure that
 the result is within the tolerance, and measures it.
@@ -154,12 +154,12 @@ def fit_sharp(
     settings = EFFORTS[options.effort](
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
         angle=float(np.radians(options.corner_angle)) if sharp else np.inf, line=LONG_LINE * em if sharp else np.inf,
-        c2=options.continuity == "c2", round_corners=not sharp, margin=float(options.margin),
+        c2=True, round_corners=not sharp, margin=float(options.margin),
         residual=options.solver_tolerance,
     )  # fmt: skip
     chains, pieces = fit_contours(cubics, source, settings)
     fit = _certified(chains, pieces, mixes, options, tolerance, None, np.full(len(pieces.spans), -1))
-    shares = RETRIES[options.continuity if mixes is None else "masters"]
+    shares = RETRIES["plain" if mixes is None else "masters"]
     for attempt in range(len(shares) + 1):
         poor = fit.bounds > tolerance
         if not poor.any():

@@ -91,7 +91,7 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
     # segments with "fast"; without a limit 289 more, for 1.4 times the time.
     guess = 2 if not closed and missed < 30.0 * near else max(least, wanted)
     # Spans of one spline at most: what needs more stays as the source has it.
-    if max(guess, begun) > min(1000 if settings.c2 else 1, most):
+    if max(guess, begun) > min(1000, most):
         return
     may_fix = settings.round_corners and closed > 0
     owned = empty_fit(samples, near, settings, min((8 if may_fix else 2) * max(wanted, 4, begun) + 16, most), closed)

@@ -17,7 +17,7 @@ from ...errors import OutputError
 from ...extras import need
 from ...files import make_folder, remove_partials, replacing, write_whole, writing
 from ...fitting.results import GlyphResult
-from ...readers import Source
+from ...readers import Source, open_font
 from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
 from ...report.data import row_of
@@ -395,14 +395,25 @@ def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult
 
 def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> str:
     from ...writers.font.font_file import to_font
+    from ...writers.font.stored import compared, stored_facts
+
+    gids: list[int] = []
+
+    def each() -> Iterator[GlyphResult]:
+        for result in glyphs:
+            gids.append(result.outline.gid)
+            yield result
 
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
-    data, summary = to_font(source, glyphs, "otf" if path.suffix == ".otf" else "ttf", tolerance=tolerance)
+    data, summary = to_font(source, each(), "otf" if path.suffix == ".otf" else "ttf", tolerance=tolerance)
     write_whole(str(path), data, durable=True)
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:
         remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
-    remark += f", {summary.extrema} points added at extrema"
+    if spec.options.continuity != "g2":
+        remark += f", as C2 splines (--continuity g2: fewer points), {summary.extrema} points added at extrema"
     if summary.beyond:
         remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
+    if len((new := open_font(path)).glyph_names) == len(source.glyph_names):
+        remark += f"; {compared(stored_facts(source, gids), stored_facts(new, gids))}"
     return remark

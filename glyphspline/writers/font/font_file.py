@@ -4,7 +4,8 @@ Converted glyphs get points at extrema. Advances, characters, kerning and featur
 static at the source's location. Hints, bitmaps and SVG pictures, which belong to the old outlines, are removed; colour
 layers (COLR) are kept.
 Glyphs that were not converted keep their outlines: unchanged if the format is the source's, else converted to the
-other format, within 1 unit. A composite with a replaced component is decomposed first, so it looks as before.
+other format, within 1 unit. A composite with a replaced component is decomposed first, so it looks as before; with
+continuity "g2" it keeps its components.
 """
 
 from __future__ import annotations
@@ -27,7 +28,19 @@ from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from ...readers import Font, Source
 from ...readers.source import reason, reusing
-from .font_glyphs import Drawn, Flavour, decomposed, drawn_outline, drawn_result, drop_endless, users
+from .font_glyphs import (
+    Drawn,
+    Flavour,
+    decomposed,
+    drawn_outline,
+    drawn_result,
+    drop_endless,
+    is_g2,
+    parts_of,
+    stays,
+    users,
+)
+from .variable_glyf import placed_by_points
 
 log = logging.getLogger(__name__)
 
@@ -116,6 +129,7 @@ class _InPlace:
     def __init__(self, font: TTFont, flavour: Flavour) -> None:
         self.font, self.flavour = font, flavour
         self.names: list[str] = font.getGlyphOrder()
+        self.is_g2 = False
         self.new: dict[str, Any] = {}  # for "glyf", which is read until all glyphs are known
         if flavour == "otf":
             self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
@@ -127,6 +141,9 @@ class _InPlace:
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
+        self.is_g2 = self.is_g2 or is_g2(result)
+        if self.flavour == "ttf" and stays(result):
+            return Drawn(None, None, 0.0)
         drawn = drawn_result(result, tolerance, self.flavour, self._width(name), extrema)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
@@ -150,17 +167,23 @@ class _InPlace:
 
     def finish(self) -> None:
         if self.flavour != "ttf":
+            self.font["CFF "].cff.remove_unused_subroutines()
             return
         glyf = self.font["glyf"]
-        touched = set(users(self.font, self.new))
+        touched = [name for name in users(self.font, self.new) if name not in self.new]
+        counted = placed_by_points(self.font) if self.is_g2 else {}
+        whole = [name for name in touched if not self.is_g2 or not counted.keys().isdisjoint(parts_of(self.font, name))]
+        self.new |= {name: decomposed(glyf, name) for name in whole}
+        lefts = {name: glyf[name].xMin for name in touched if name not in self.new}
         for name in self.names:
             if name not in self.new:
-                if name in touched:
-                    self.new[name] = decomposed(glyf, name)
-                else:
-                    glyf[name].removeHinting()
+                glyf[name].removeHinting()
         for name, glyph in self.new.items():
             glyf[name] = glyph
+        metrics = self.font["hmtx"].metrics
+        for name, left in lefts.items():  # rasterisers place an outline by its left side bearing
+            glyf[name].recalcBounds(glyf)
+            metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
 
 
 def _empty_broken(strings: Any) -> None:

@@ -15,7 +15,8 @@ from fontTools.pens.cu2quPen import Cu2QuPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen, TTGlyphPointPen
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.tables._g_l_y_f import Glyph
+from fontTools.ttLib.tables import ttProgram
+from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates, flagOnCurve, flagOverlapSimple
 
 from ...curves.bezier import as_cubic
 from ...curves.integrals import area
@@ -23,7 +24,7 @@ from ...errors import GlyphsplineError
 from ...fitting.results import GlyphResult
 from ...outlines.extrema import extremal_pieces
 from ...outlines.outline import Contour, Outline
-from ...types import FloatArray
+from ...types import BoolArray, FloatArray, IntArray
 
 Flavour = Literal["otf", "ttf"]
 
@@ -36,6 +37,9 @@ numbers are exact in the format's 16.16 fixed point."""
 
 QUADRATIC_SHARE = 0.1
 """Least share of the tolerance for the approximation of cubics by quadratics."""
+
+GRID = 1e-6
+"""Distance from whole units, in font units, up to which coordinates are whole but for rounding errors."""
 
 LIMIT = 32767
 """Largest coordinate of a font."""
@@ -74,19 +78,23 @@ def drawn_result(
     leaves room for and than rounding it whole does.
     """
     name, em = result.outline.name, result.outline.metrics.units_per_em
+    g2 = is_g2(result)
+    if g2 and flavour == "ttf" and (drawn := quadratic_result(result, tolerance)):
+        return drawn
     exact = oriented([contour.curve for contour in result.contours], flavour)
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
     deviation = max((value for value in measured if value is not None), default=0.0)
     room = max(tolerance - deviation, 0.0) if known else math.inf
-    split = [extremal_pieces(c, em) if extrema else [[part] for part in c.segments()] for c in exact]
+    split = [extremal_pieces(c, em) if extrema and not g2 else [[part] for part in c.segments()] for c in exact]
 
     def rounded(parts: int) -> tuple[list[Contour], float]:
         contours = [chosen(*each, parts, room) for each in zip(exact, split, strict=True)]
         return contours, displacement(chain.from_iterable(map(as_stored, contours)), parts)
 
     contours, error = rounded(1)
-    parts = 1 if error <= room else FINE
+    # On the grid already, but for stretches that stay as a source has them that is not.
+    parts = 1 if error <= (GRID if g2 else room) else FINE
     if flavour == "otf":
         if parts == FINE:
             contours, error = rounded(FINE)
@@ -97,6 +105,34 @@ def drawn_result(
         error = ROUNDING + (step if any((c.degrees == 3).any() for c in contours) else 0.0)
     added = sum(map(len, contours)) - sum(map(len, exact))
     return Drawn(data, bounds_of(data, contours), deviation + error if known else None, added)
+
+
+def is_g2(result: GlyphResult) -> bool:
+    """Whether a result has the curves that fonts store."""
+    return (result.options.corners, result.options.continuity) == ("sharp", "g2")
+
+
+def stays(result: GlyphResult) -> bool:
+    """Whether a glyph of quadratics keeps its record: it has points off the grid, as a scaled component has."""
+    arrays = result.outline.arrays
+    whole = np.abs(2 * arrays.points - np.rint(2 * arrays.points)).max(initial=0.0) <= GRID
+    return is_g2(result) and bool((arrays.degrees < 3).all()) and not whole
+
+
+def quadratic_result(result: GlyphResult, tolerance: float) -> Drawn | None:
+    """A glyph of lines and quadratics with as few points as follow it; None if the source is none, or off the grid."""
+    from ...fitting.sharp.font_fit import quadratic_points  # imports the compiler
+
+    outline = result.outline
+    found = quadratic_points(outline.arrays, result.options, tolerance, outline.metrics.units_per_em)
+    if found is None:
+        return None
+    contours, distance = found
+    check_size(outline.arrays.points, outline.name)
+    points = np.concatenate([np.empty((0, 2)), *(points for points, _ in contours)]).astype(np.int64)
+    on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in contours)])
+    data = simple_glyph(points, on, (np.cumsum([len(on) for _, on in contours]) - 1).tolist(), False)
+    return Drawn(data, bounds_of(data, []), distance + outline.snapped)
 
 
 def chosen(contour: Contour, split: Sequence[list[FloatArray]], parts: int, room: float) -> Contour:
@@ -180,6 +216,22 @@ def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
     collected.points = [(round(x, 6), round(y, 6)) for x, y in collected.points]
     check_size(collected.points, name)
     return collected.glyph()
+
+
+def simple_glyph(points: IntArray, on: BoolArray, ends: list[int], overlap: bool) -> Glyph:
+    """A glyph without instructions."""
+    glyph = Glyph()
+    glyph.numberOfContours = len(ends)
+    if not ends:
+        return glyph
+    glyph.coordinates = GlyphCoordinates(points.tolist())
+    glyph.flags = bytearray((on * flagOnCurve).astype(np.uint8).tobytes())
+    if overlap:
+        glyph.flags[0] |= flagOverlapSimple
+    glyph.endPtsOfContours = ends
+    glyph.program = ttProgram.Program()
+    glyph.program.fromBytecode(b"")
+    return glyph
 
 
 def check_size(points: Sequence[Any], name: str) -> None:

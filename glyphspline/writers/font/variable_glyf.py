@@ -10,11 +10,8 @@ from typing import Any
 
 import numpy as np
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.tables import ttProgram
 from fontTools.ttLib.tables._g_l_y_f import (
     Glyph,
-    GlyphCoordinates,
-    flagOnCurve,
     flagOverlapSimple,
 )
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
@@ -25,7 +22,7 @@ from ...curves.cubics import turns
 from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters, quadratics
 from ...types import BoolArray, FloatArray, IntArray
-from .font_glyphs import parts_of, users
+from .font_glyphs import parts_of, simple_glyph, users
 from .implied_quadratics import Arc, fit
 from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
 
@@ -165,22 +162,6 @@ def placed_by_points(font: TTFont) -> dict[str, str]:
         if glyph.isComposite() and any(hasattr(part, "firstPt") for part in glyph.components):
             found |= dict.fromkeys(parts_of(font, name), name)
     return found
-
-
-def simple_glyph(points: IntArray, on: BoolArray, ends: list[int], overlap: bool) -> Glyph:
-    """A glyph without instructions."""
-    glyph = Glyph()
-    glyph.numberOfContours = len(ends)
-    if not ends:
-        return glyph
-    glyph.coordinates = GlyphCoordinates(points.tolist())
-    glyph.flags = bytearray((on * flagOnCurve).astype(np.uint8).tobytes())
-    if overlap:
-        glyph.flags[0] |= flagOverlapSimple
-    glyph.endPtsOfContours = ends
-    glyph.program = ttProgram.Program()
-    glyph.program.fromBytecode(b"")
-    return glyph
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,405 @@
+"""Chains of cubics as fonts store them: the fewest nodes, on the grid, with one tangent and one curvature at each.
+
+``continuity="g2"``. A contour is cut at corners and long lines. The *run* between two cuts is a chain of segments;
+nodes are chosen among its joints, one cubic fitted between each node and the next (:func:`chosen_nodes`). Then all
+cubics of the run are moved together until curvatures meet (:mod:`.harmony`), rounded together (:mod:`.lattice`), and
+certified as rounded. Where a cubic fails, its stretch is fitted again more closely, and in the end stays as the source
+has it, to the byte. So does a run in which nothing is gained.
+
+Lengths here are in steps of the grid, on which points have whole coordinates.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import directions, length
+from ...curves.nearest import near_place
+from ...curves.pairing import pair_span, room_for
+from ...types import BoolArray, FloatArray, IntArray
+from .corners import NO_HANDLE, Joints
+from .cubics import fit_between, is_straight
+from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump, harmonise
+from .lattice import round_run
+
+UPRIGHT = np.sin(np.radians(1.5))
+"""Sine of the angle to an axis up to which the tangent at an extremum is the axis."""
+
+SHARES = (0.95, 0.8, 0.5, 0.2, 0.2, 0.0)
+"""Of the tolerance: how near a cubic is to be before it is moved and rounded, on each try of its stretch."""
+
+EASE = (1.0, 0.2, 0.1, 0.03, 0.0, 0.0)
+"""Weight of the curvatures at its ends, likewise."""
+
+KEPT = len(SHARES) - 1
+"""Tries after which a stretch stays as the source has it."""
+
+ATTEMPTS = 10
+"""Tries of a run before it stays as it is."""
+
+CORNER = np.radians(12.5)
+"""Turn that a corner keeps."""
+
+KINK = np.radians(0.48)
+"""Turn of a joint that a result may have where the source's is smaller."""
+
+BEYOND = 0.9e-3
+"""Of the em: how far a cubic may pass the ends of its span, where the source's segments do not."""
+
+STRAIGHT = 0.6e-3
+"""Of the em: how far from its chord a stretch with a line is at least if a curve takes its place."""
+
+PRICE_OF_LINE = 0.1
+"""Of a line that stays, in cubics."""
+
+
+class Limits(NamedTuple):
+    """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit."""
+
+    tolerance: float
+    em: float
+    rounds: int
+
+
+@compiled
+def cut_at(joints: Joints) -> BoolArray:
+    """(m + 1,) the joints at which runs end: corners, and the ends of long lines."""
+    m = len(joints.line)
+    found = joints.corner.copy()
+    for j in range(m):
+        found[j] = found[j] or joints.line[j] or joints.line[j - 1]
+    found[m] = found[0]
+    return found
+
+
+@compiled
+def set_upright(cubics: FloatArray, joints: Joints) -> BoolArray:
+    """(m + 1,) at which smooth joints the outline is horizontal or vertical; their tangents become the axis."""
+    m = len(cubics)
+    found = np.zeros(m + 1, dtype=np.bool_)
+    for j in range(m):
+        if joints.corner[j] or joints.line[j] or joints.line[j - 1]:
+            continue
+        x, y = joints.leaving[0, j]
+        _, _, bx, by = directions(cubics, j - 1, NO_HANDLE)
+        ax, ay, _, _ = directions(cubics, j, NO_HANDLE)
+        flat = ay == 0.0 or by == 0.0
+        upright = ax == 0.0 or bx == 0.0
+        if (flat or upright) and min(abs(x), abs(y)) < UPRIGHT:
+            x, y = (np.sign(x), 0.0) if abs(x) > abs(y) else (0.0, np.sign(y))
+            joints.leaving[0, j, 0], joints.leaving[0, j, 1] = x, y
+            joints.arriving[0, j, 0], joints.arriving[0, j, 1] = x, y
+            found[j] = True
+    joints.leaving[:, m], joints.arriving[:, m], found[m] = joints.leaving[:, 0], joints.arriving[:, 0], found[0]
+    return found
+
+
+@compiled
+def passes(cubic: FloatArray) -> float:
+    """How far a cubic passes the box of its ends, at most in a coordinate."""
+    most = 0.0
+    for axis in range(2):
+        p0, p1, p2, p3 = cubic[0, axis], cubic[1, axis], cubic[2, axis], cubic[3, axis]
+        a, b, c = p1 - p0, p2 - p1, p3 - p2
+        if a * b >= 0 and b * c >= 0:
+            continue
+        low, high = min(p0, p3), max(p0, p3)
+        for k in range(1, 16):
+            t = k / 16
+            s = 1 - t
+            at = s * s * (s * p0 + 3 * t * p1) + t * t * (3 * s * p2 + t * p3)
+            most = max(most, max(at - high, low - at))
+    return most
+
+
+@compiled
+def crosses_handles(cubic: FloatArray) -> bool:
+    """Whether both handles of a cubic reach beyond where they meet, by more than a step of the grid may make."""
+    ax, ay, bx, by = (
+        cubic[1, 0] - cubic[0, 0],
+        cubic[1, 1] - cubic[0, 1],
+        cubic[2, 0] - cubic[3, 0],
+        cubic[2, 1] - cubic[3, 1],
+    )
+    x, y = cubic[3, 0] - cubic[0, 0], cubic[3, 1] - cubic[0, 1]
+    cross = ax * by - ay * bx
+    one, two = length(ax, ay), length(bx, by)
+    if abs(cross) <= 0.01 * one * two:
+        return False
+    s, r = (x * by - y * bx) / cross, (x * ay - y * ax) / cross
+    room = 1.4 * one * two / abs(cross)
+    return s > 0.0 and r > 0.0 and one * (1 - s) > room and two * (1 - r) > room
+
+
+@compiled
+def between(joints: Joints, a: int, b: int, near: float, rounds: int, cubic: FloatArray) -> float:
+    """Fit one cubic (4, 2) from joint a to joint b; the largest distance of a sample."""
+    tangents = np.empty((1, 2, 2))
+    error = fit_between(joints, a, b, near, rounds, tangents)
+    if error < np.inf:
+        p, q = joints.samples[0, joints.first[a]], joints.samples[0, joints.first[b]]
+        third = length(q[0] - p[0], q[1] - p[1]) / 3
+        for axis in range(2):
+            cubic[0, axis], cubic[3, axis] = p[axis], q[axis]
+            cubic[1, axis] = p[axis] + third * tangents[0, 0, axis]
+            cubic[2, axis] = q[axis] - third * tangents[0, 1, axis]
+    return error
+
+
+@compiled
+def chosen_nodes(
+    cubics: FloatArray, degrees: IntArray, joints: Joints, i: int, j: int, share: FloatArray, limits: Limits,
+    places: IntArray, P: FloatArray,
+) -> int:  # fmt: skip
+    """Cover the segments from joint i to joint j by the fewest cubics.
+
+    Args:
+        share: (n,) of each segment: of the tolerance that its cubic may use; 0 keeps it.
+        places: (n + 1,) receives the nodes, as numbers of segments from i. P: (n, 4, 2) receives the cubics.
+
+    Returns:
+        Their number.
+    """
+    n, beyond, flat = j - i, BEYOND * limits.em, STRAIGHT * limits.em
+    price, following = np.zeros(n + 1), np.empty(n, dtype=np.int64)
+    found, cubic = np.empty((n, 4, 2)), np.empty((4, 2))
+    for a in range(n - 1, -1, -1):
+        price[a] = (PRICE_OF_LINE if degrees[i + a] == 1 else 1.0) + price[a + 1]
+        following[a], found[a] = a + 1, cubics[i + a]
+        least, misses, past, lines = share[a], 0, passes(cubics[i + a]), degrees[i + a] == 1
+        for b in range(a + 2, n + 1):
+            least, past = min(least, share[b - 1]), max(past, passes(cubics[i + b - 1]))
+            if least == 0.0 or misses > 1:
+                break
+            lines = lines or degrees[i + b - 1] == 1
+            straight = lines and is_straight(joints.samples, joints.first[i + a], joints.first[i + b], flat)
+            if 1.0 + price[b] >= price[a] or straight:
+                continue
+            near = least * limits.tolerance
+            error = between(joints, i + a, i + b, near, limits.rounds, cubic)
+            if error > near or passes(cubic) > max(beyond, past) or crosses_handles(cubic):
+                misses += 1 if error < 2.0 * near else 2
+                continue
+            misses = 0
+            cost = 1.0 + 0.05 * error / near + price[b]
+            if cost < price[a]:
+                price[a], following[a], found[a] = cost, b, cubic
+    a = r = 0
+    while a < n:
+        places[r], P[r] = a, found[a]
+        a, r = following[a], r + 1
+    places[r] = n
+    return r
+
+
+@compiled
+def turn_between(ax: float, ay: float, bx: float, by: float) -> float:
+    """The angle between two vectors, without sign."""
+    return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+
+
+@compiled
+def joint_turn(before: FloatArray, behind: FloatArray) -> float:
+    """The turn of the joint of two cubics (1, 4, 2)."""
+    _, _, ax, ay = directions(before, 0, NO_HANDLE)
+    bx, by, _, _ = directions(behind, 0, NO_HANDLE)
+    return turn_between(ax, ay, bx, by)
+
+
+@compiled
+def as_run(
+    cubics: FloatArray, degrees: IntArray, joints: Joints, upright: BoolArray, i: int, closed: bool, r: int,
+    places: IntArray, P: FloatArray, share: FloatArray, ease: FloatArray,
+) -> Run:  # fmt: skip
+    """The r cubics of a run with what their nodes may do; cubics without a share are the source's, and held."""
+    held, kind, T = np.zeros(r, dtype=np.bool_), np.full(r + 1, FREE), np.empty((r + 1, 2))
+    for s in range(r):
+        one = places[s + 1] - places[s] == 1
+        held[s] = one and (share[places[s]] == 0.0 or degrees[i + places[s]] == 1)
+    for s in range(r + 1):
+        k = i + places[s]
+        T[s] = joints.leaving[0, k]
+        if not closed and s in (0, r):
+            kind[s] = FIXED if joints.corner[k] else HELD
+            T[s] = joints.leaving[0, k] if s == 0 else joints.arriving[0, k]
+            continue
+        before, behind = s - 1 if s > 0 else r - 1, s if s < r else 0
+        if held[before] or held[behind]:
+            kind[s] = HELD
+            q = P[before : before + 1] if held[before] else P[behind : behind + 1]
+            ax, ay, bx, by = directions(q, 0, NO_HANDLE)
+            x, y = (bx, by) if held[before] else (ax, ay)
+            size = max(length(x, y), 1e-12)
+            T[s, 0], T[s, 1] = x / size, y / size
+        elif upright[k]:
+            kind[s] = AXIS
+    return Run(P[:r].copy(), held, kind, T, places[: r + 1].copy(), ease[places[: r + 1]], closed)
+
+
+@compiled
+def misses(run: Run, source: FloatArray, i: int, tolerance: float) -> BoolArray:
+    """(r,) which cubics of a run are not certified within the tolerance of the source (m, 4, 2).
+
+    The run begins at joint i of the source. Every cubic is paired by itself with a stretch of the source.
+    """
+    r, m = len(run.P), len(source)
+    work, marks, found = room_for(1)
+    places, bad = np.empty(r + 1), np.zeros(r, dtype=np.bool_)
+    for s in range(r + 1):
+        here = places[s] = float(i + run.places[s])
+        if run.kind[s] >= AXIS and s < r:
+            low = float(i + run.places[s - 1]) if s > 0 else here - 1.0
+            places[s] = near_place(1, source, here, (low + here) / 2, (here + i + run.places[s + 1]) / 2, run.P, s)
+    if run.closed:
+        places[r] = places[0] + m
+    if places[0] < 0.0:
+        places += m
+    for s in range(r):
+        if run.held[s]:
+            continue
+        found[:] = 0.0
+        pair_span(
+            1, run.P, s, 0.0, 1.0, source, places[s], places[s + 1], np.empty(0), True, tolerance, 0.02 * tolerance,
+            work, marks, found,
+        )  # fmt: skip
+        bad[s] = not (found[0] <= 0.999 * tolerance and np.isfinite(run.P[s]).all())
+    return bad
+
+
+@compiled
+def fit_run(
+    cubics: FloatArray, degrees: IntArray, joints: Joints, upright: BoolArray, i: int, j: int, closed: bool,
+    start: IntArray, limits: Limits,
+) -> tuple[FloatArray, IntArray]:  # fmt: skip
+    """The segments from joint i to joint j as fewer cubics, or with curvatures that meet; or as they are.
+
+    Args:
+        start: (m,) tries of each segment that were in vain.
+
+    Returns:
+        (r, 4, 2) the cubics, and (r + 1,) the nodes: numbers of joints.
+    """
+    n = j - i
+    share, tries = np.empty(n), start[i:j].copy()
+    places, P, ease = np.empty(n + 1, np.int64), np.empty((n, 4, 2)), np.ones(n + 1)
+    for k in range(n):
+        share[k] = SHARES[tries[k]]
+        ease[k] = min(ease[k], EASE[tries[k]])
+        ease[k + 1] = EASE[tries[k]]
+    before, whole = jumps_of(cubics, degrees, i, j, closed, limits.em), on_grid(cubics[i:j], degrees[i:j])
+    for _ in range(ATTEMPTS):
+        r = chosen_nodes(cubics, degrees, joints, i, j, share, limits, places, P)
+        if r == n and before == 0 and whole:
+            break
+        run = as_run(cubics, degrees, joints, upright, i, closed, r, places, P, share, ease)
+        harmonise(run, joints, i, limits.tolerance, limits.em)
+        round_run(run, joints, i, limits.tolerance, limits.em)
+        bad = misses(run, cubics, i, limits.tolerance)
+        mark_joints(run, cubics, joints, i, limits.em, bad)
+        good = True
+        for s in range(r):
+            if bad[s] and not run.held[s]:
+                good = False
+                for k in range(places[s], places[s + 1]):
+                    tries[k] = min(tries[k] + 1, KEPT)
+                    share[k] = SHARES[tries[k]]
+                for k in (places[s], places[s + 1]):
+                    ease[k] = EASE[tries[places[s]]]
+        if closed:
+            ease[0] = ease[n] = min(ease[0], ease[n])
+        if good:
+            if r == n and whole and jumps_in(run, limits.em) >= before:
+                break
+            return run.P, i + run.places
+    return cubics[i:j].copy(), np.arange(i, j + 1)
+
+
+@compiled
+def on_grid(cubics: FloatArray, degrees: IntArray) -> bool:
+    """Whether all points of some segments are on the grid."""
+    for s in range(len(cubics)):
+        for k in range(4):
+            for axis in range(2):
+                x = cubics[s, k, axis]
+                if abs(x - np.rint(x)) > 1e-6 and (degrees[s] > 1 or k % 3 == 0):
+                    return False
+    return True
+
+
+@compiled
+def mark_joints(run: Run, cubics: FloatArray, joints: Joints, i: int, em: float, bad: BoolArray) -> None:
+    """Mark the cubics at whose joints a rounded run turns, or its curvature jumps, more than it may."""
+    r, m, P = len(run.P), len(cubics), run.P
+    for s in range(r):
+        alone = run.places[s + 1] - run.places[s] == 1
+        if crosses_handles(P[s]):
+            bad[s] = bad[s] or not alone or not crosses_handles(cubics[(i + run.places[s]) % m])
+    for s in range(0, r if run.closed else r + 1):
+        k = (i + run.places[s]) % m
+        old = joint_turn(cubics[k - 1 :], cubics[k:])
+        if not run.closed and s in (0, r):
+            q = 0 if s == 0 else r - 1
+            new = joint_turn(cubics[k - 1 :], P) if s == 0 else joint_turn(P[q:], cubics[k:])
+            if joints.corner[k]:
+                bad[q] = bad[q] or new < min(old, CORNER)
+            else:
+                bad[q] = bad[q] or new > max(old, KINK)
+        else:
+            a = s - 1 if s > 0 else r - 1
+            jump = end_jump(P[a], P[s], em)
+            wrong = joint_turn(P[a:], P[s:]) > max(old, KINK)
+            wrong = wrong or jump > max(end_jump(cubics[k - 1], cubics[k], em) + 0.02, 0.1)
+            bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
+
+
+@compiled
+def jumps_in(run: Run, em: float) -> int:
+    """The number of nodes inside a run at which the curvature jumps by a tenth or more."""
+    count = 0
+    for s in range(0 if run.closed else 1, len(run.P)):
+        count += end_jump(run.P[s - 1], run.P[s], em) > 0.1
+    return count
+
+
+@compiled
+def jumps_of(cubics: FloatArray, degrees: IntArray, i: int, j: int, closed: bool, em: float) -> int:
+    """The number of smooth joints inside a run at which the curvature jumps by a tenth or more."""
+    count = 0
+    for k in range(i if closed else i + 1, j):
+        if degrees[k - 1] > 1 and degrees[k] > 1 and end_jump(cubics[k - 1], cubics[k], em) > 0.1:
+            count += 1
+    return count
+
+
+@compiled
+def fit_contour(
+    cubics: FloatArray, degrees: IntArray, joints: Joints, start: IntArray, limits: Limits
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """A contour that begins at a cut, if it has any.
+
+    Returns:
+        (r, 4, 2) its lines and cubics; (r,) their degrees; (r + 1,) the joints at which they begin and end.
+    """
+    m, cuts, upright = len(cubics), cut_at(joints), set_upright(cubics, joints)
+    found, nodes, kinds, count = np.empty((m, 4, 2)), np.empty(m + 1, np.int64), np.empty(m, np.int64), 0
+    i = 0
+    while i < m:
+        j = i + 1
+        while j < m and not cuts[j]:
+            j += 1
+        closed = i == 0 and j == m and not cuts[0]
+        if j == i + 1 and not closed and (degrees[i] == 1 or on_grid(cubics[i:j], degrees[i:j])):
+            run, own = cubics[i:j], np.array([i, j])
+        else:
+            run, own = fit_run(cubics, degrees, joints, upright, i, j, closed, start, limits)
+        for s in range(len(run)):
+            found[count], nodes[count], kinds[count] = run[s], own[s], 3
+            if own[s + 1] == own[s] + 1 and degrees[own[s]] == 1:
+                kinds[count] = 1
+            count += 1
+        i = j
+    nodes[count] = m
+    return found[:count], kinds[:count], nodes[: count + 1]

@@ -1,0 +1,269 @@
+"""``continuity="g2"``: contours as fonts store them, of :mod:`.font_curves`, measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ...checks.kinds import JUMP, KINK, THRESHOLDS
+from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, segment_findings
+from ...compiled import compiled
+from ...curves.cubics import turns
+from ...curves.nearest import near_places
+from ...curves.pairing import SHARPNESS, pair_stretches
+from ...outlines.contour_arrays import ContourArrays, offsets_of
+from ...outlines.segments import all_cubics, farthest_joint
+from ...types import BoolArray, FloatArray, IntArray
+from ..faithful import Fits
+from ..ladders import SHARP_TRIES
+from ..measures import distance_columns
+from ..options import Options
+from ..results import ConvertedContours, assembled, not_fitted
+from .corners import NO_HANDLE, find_joints
+from .font_curves import KEPT, Limits, cut_at, fit_contour
+from .font_curves import KINK as KINKED
+from .font_quadratics import fit_contour as fit_contour_quadratics
+from .settings import EFFORTS, Settings
+
+LONG_LINE = 0.02
+"""Share of the em from which straight lines stay lines."""
+
+GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
+"""As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""
+
+
+@compiled
+def fit_contours(
+    cubics: FloatArray, degrees: IntArray, offsets: IntArray, tries: IntArray, settings: Settings, limits: Limits
+) -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
+    """All contours fitted, each from its own first joint on, if that is still a node.
+
+    Returns:
+        (r, 4, 2) cubics, (r,) degrees, (C + 1,) offsets; (r + C, 2) anchors as in
+        :func:`...curves.pairing.pair_stretches`.
+    """
+    most, count = len(degrees), 0
+    found, kinds, ends = np.empty((most, 4, 2)), np.empty(most, np.int64), np.zeros(len(offsets), np.int64)
+    anchors = np.empty((most + len(offsets), 2))
+    for c in range(len(offsets) - 1):
+        a, b = offsets[c], offsets[c + 1]
+        m, chain, own, held = b - a, cubics[a:b], degrees[a:b], tries[a:b]
+        if m > 1 and (held < KEPT).any():
+            joints = find_joints(chain.reshape(1, m, 4, 2), own, settings)
+            cuts, k = cut_at(joints), 0
+            while k < m and not cuts[k]:
+                k += 1
+            if k == m:
+                k = farthest_joint(chain[:, 0])
+            if k > 0:
+                chain, own, held = np.concatenate((chain[k:], chain[:k])), np.roll(own, -k), np.roll(held, -k)
+                joints = find_joints(chain.reshape(1, m, 4, 2), own, settings)
+            run, types, nodes = fit_contour(chain, own, joints, held, limits)
+        else:
+            run, types, nodes, k = chain, own, np.arange(m + 1), 0
+        # Back to the first joint of the source, or the next node after it.
+        r, first = len(run), 0
+        while first < r and nodes[first] + k < m:
+            first += 1
+        for s in range(r):
+            q = (first + s) % r
+            found[count + s], kinds[count + s] = run[q], types[q]
+            anchors[count + c + s, 0], anchors[count + c + s, 1] = s, (nodes[q] + k) % m
+        places = anchors[count + c : count + c + r, 1]
+        near_places(1, cubics[a:b], places.copy(), found[count : count + r], True, 0.0, 0.0, places)
+        if places[0] < 0.0:
+            places += m
+        anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m
+        count += r
+        ends[c + 1] = count
+    return found[:count], kinds[:count], ends, anchors[: count + len(offsets) - 1]
+
+
+def font_fits(options: Options, tolerance: float, em: float) -> Fits:
+    """Fits within ``tolerance``, and then closer; it and ``em`` are in font units."""
+
+    def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
+        return _converted(contours, options, tolerance, SHARP_TRIES[attempt], em)
+
+    return Fits(len(SHARP_TRIES), fit, keeps_crossing=True)
+
+
+def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
+    """Contours fitted to within a share of the tolerance; where a check finds what it does not find in the source,
+    segments stay as they are."""
+    tries = np.zeros(len(source.degrees), dtype=np.int64)
+    found, anchors = _fitted(source, tries, options, tolerance, share, em)
+    parts = [(found, c) for c in range(source.num_contours)]
+    places = [anchors[a:b] for a, b in pairwise((found.curves.offsets + np.arange(len(parts) + 1)).tolist())]
+    expected = np.concatenate([_findings(source, em), _turning(source)])
+    for level in GATES:
+        wrong = _new_findings(source, expected, assembled(parts).curves, places, em)
+        outside = [c for c, (each, k) in enumerate(parts) if not each.measures["within_tolerance"][k]]
+        for c in outside:
+            wrong[source.offsets[c] : source.offsets[c + 1]] = True
+        which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1)
+        before = tries.copy()
+        tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT)
+        for c in which.tolist() if level > KEPT else outside:
+            tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
+        if (tries == before).all():
+            break
+        mine = np.concatenate([tries[source.offsets[c] : source.offsets[c + 1]] for c in which])
+        found, anchors = _fitted(source.chosen(which), mine, options, tolerance, share, em)
+        ends = found.curves.offsets + np.arange(len(which) + 1)
+        for k, c in enumerate(which.tolist()):
+            parts[c], places[c] = (found, k), anchors[ends[k] : ends[k + 1]]
+    return assembled(parts)
+
+
+def _fitted(
+    source: ContourArrays, tries: IntArray, options: Options, tolerance: float, share: float, em: float
+) -> tuple[ConvertedContours, FloatArray]:
+    """Contours fitted and certified, and which places belong together.
+
+    Args:
+        tries: (m,) of each segment that were in vain; ``KEPT`` keeps it.
+    """
+    scale = 10.0**options.precision
+    near = scale * share * tolerance
+    settings = EFFORTS[options.effort](
+        near=near, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale, c2=False,
+        round_corners=False, margin=0.0, residual=0.0,
+    )  # fmt: skip
+    cubics, limits = all_cubics(source), Limits(near, em * scale, settings.chain_rounds)
+    found, degrees, offsets, anchors = fit_contours(
+        cubics * scale, source.degrees, source.offsets, tries, settings, limits
+    )
+    curves = chains(found / scale, degrees, offsets)
+    written, ends = all_cubics(curves.rounded(options.precision)), offsets + np.arange(len(offsets))
+    bounds, gaps = pair_stretches(
+        written, offsets, cubics, source.offsets, anchors, ends, SHARPNESS * tolerance, tolerance
+    )
+    result, first = not_fitted(source, curves), offsets[:-1]
+    distances = np.maximum.reduceat(gaps, first).tolist(), np.maximum.reduceat(bounds, first).tolist()
+    return replace(result, measures={**result.measures, **distance_columns(*distances, tolerance)}), anchors
+
+
+def _findings(contours: ContourArrays, em: float) -> FloatArray:
+    """(n, 6) what a check finds at joints and in segments; see :data:`...checks.segments.WHAT`."""
+    segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
+    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits)])
+    return found[found[:, WHAT] != JUMP]
+
+
+def _turning(contours: ContourArrays) -> FloatArray:
+    """(n, 6) joints that turn, also where that may be rounding's: a cubic's handles are none of a quadratic's."""
+    rows = []
+    for c in range(contours.num_contours):
+        joints = np.flatnonzero(np.abs(turns(all_cubics(contours.part(c, c + 1)), NO_HANDLE)) > KINKED)
+        rows.append(np.column_stack([np.full((len(joints), 2), (KINK, c)), joints, np.zeros((len(joints), 3))]))
+    return np.concatenate(rows)
+
+
+def _new_findings(
+    source: ContourArrays, expected: FloatArray, curves: ContourArrays, places: Sequence[FloatArray], em: float
+) -> BoolArray:
+    """(m,) the source's segments where curves have a finding of a kind that these segments have not."""
+    wrong = np.zeros(len(source.degrees), dtype=np.bool_)
+    for row in _findings(curves, em):
+        c, s = int(row[CONTOUR]), int(row[PLACE])
+        own, m = places[c][:, 1], int(np.diff(source.offsets)[c])
+        low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * (row[WHAT] == KINK), own[s + 1]
+        alike = expected[(expected[:, CONTOUR] == c) & (expected[:, WHAT] == row[WHAT]), PLACE]
+        if ((alike - low + 0.5) % m <= high - low + 1.0).any():
+            continue
+        wrong[source.offsets[c] + np.arange(int(np.floor(low + 1e-6)), int(np.ceil(high - 1e-6))) % m] = True
+    return wrong
+
+
+def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourArrays:
+    """Closed chains of lines and cubics (r, 4, 2) as contours, with offsets (C + 1,)."""
+    needed = np.ones((len(cubics), 3), dtype=np.bool_)
+    needed[degrees == 1, 1:] = False
+    return ContourArrays(cubics[:, :3][needed], degrees, offsets, offsets_of(degrees)[offsets])
+
+
+def quadratic_points(
+    source: ContourArrays, options: Options, tolerance: float, em: float
+) -> tuple[list[tuple[FloatArray, BoolArray]], float] | None:
+    """Points of contours of lines and quadratics, as TrueType stores them, and whether each is on the curve.
+
+    Returns:
+        These, and a bound of their distance from the source. None if a contour has cubics, or is off the grid.
+    """
+    if (source.degrees > 2).any() or np.abs(2 * source.points - np.rint(2 * source.points)).max(initial=0.0) > 1e-6:
+        return None
+    settings = EFFORTS[options.effort](
+        near=tolerance, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=False,
+        round_corners=False, margin=0.0, residual=0.0,
+    )  # fmt: skip
+    found, reached = [], 0.0
+    for c in range(source.num_contours):
+        own = source.part(c, c + 1)
+        stored = stored_points(own)
+        if stored is None:
+            return None
+        points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance)
+        if 0 < len(points) < len(stored[0]):
+            made = of_points(points, on)
+            if not _more_findings(own, made, em):
+                stored, reached = begun_as(points, on, stored), max(reached, far)
+        found.append(stored)
+    return found, reached
+
+
+def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None:
+    """The points of one contour as TrueType stores them, without those midway between control points.
+
+    None if one is off the grid.
+    """
+    points, first = contour.points, offsets_of(contour.degrees)
+    on = np.zeros(len(points), dtype=np.bool_)
+    on[first[:-1]] = True
+    curved = (contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)
+    middle = (np.roll(points, 1, axis=0) + np.roll(points, -1, axis=0)) / 2
+    implied = np.zeros(len(points), dtype=np.bool_)
+    implied[first[:-1][curved]] = True
+    implied &= (np.abs(middle - points) < 1e-6).all(axis=1)
+    points, on = points[~implied], on[~implied]
+    if np.abs(points - np.rint(points)).max() > 1e-6:
+        return None
+    return np.rint(points), on
+
+
+def of_points(points: FloatArray, on: BoolArray) -> ContourArrays:
+    """A contour from points as TrueType stores them, the first on the curve."""
+    found, degrees = [], []
+    for k in range(len(points)):
+        if on[k]:
+            found.append(points[k])
+            continue
+        if not on[k - 1]:
+            found.append((points[k - 1] + points[k]) / 2)
+        found.append(points[k])
+    whole = np.array(found)
+    k = 0
+    for s in range(len(points)):
+        degrees += [2] if not on[s] else [1] if on[(s + 1) % len(points)] else []
+    counts = np.array(degrees)
+    return ContourArrays(whole, counts, np.array([0, len(counts)]), np.array([0, len(whole)]))
+
+
+def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolArray]) -> tuple[FloatArray, BoolArray]:
+    """Points from the first one on the curve that others, which are stored, have too."""
+    here = {tuple(point): k for k, point in reversed(list(enumerate(points.tolist()))) if on[k]}
+    first = next(
+        (here[tuple(p)] for p, own in zip(stored[0].tolist(), stored[1], strict=True) if own and tuple(p) in here), 0
+    )
+    return np.roll(points, -first, axis=0), np.roll(on, -first)
+
+
+def _more_findings(source: ContourArrays, made: ContourArrays, em: float) -> bool:
+    """Whether a check finds more of a kind in what was made of a contour."""
+    before, after = (
+        np.bincount(_findings(each, em)[:, WHAT].astype(np.int64), minlength=20) for each in (source, made)
+    )
+    return bool((after > before).any()) or len(_turning(made)) > len(_turning(source))

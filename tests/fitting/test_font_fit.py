@@ -1,0 +1,181 @@
+"""What fonts store: no more curves and points than the source, on the grid, no new kink, curvatures that meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fontTools.ttLib import TTFont
+from scipy.spatial import cKDTree
+
+import glyphspline as gs
+from glyphspline.cli.groups import for_fonts
+from glyphspline.curves.cubics import turns
+from glyphspline.fitting.options import FOR_FONTS
+from glyphspline.fitting.sharp.font_fit import of_points, quadratic_points, stored_points
+from glyphspline.fitting.sharp.harmony import end_jump
+from glyphspline.outlines.contour_arrays import ContourArrays
+from glyphspline.types import FloatArray
+from glyphspline.writers.font.font_file import write_font
+from tests.places import FONTS, GYOSHO
+
+TEXT = "永龍好書山河風月草花鳥"
+OPTIONS = gs.Options(**FOR_FONTS)
+
+
+def outlines(file: Path, text: str = TEXT) -> list[gs.Outline]:
+    font = gs.open_font(file)
+    return font.outlines(font.select(text=text))
+
+
+def curves_in(contour: gs.Contour) -> int:
+    return int(np.count_nonzero(contour.degrees > 1))
+
+
+def kinks(contour: gs.Contour) -> list[tuple[float, float, float]]:
+    """Where joints turn by 0.5 to 12 degrees, but for those of two lines, and by how much."""
+    angles, line = np.degrees(np.abs(turns(contour.cubics(), 1e-6))), contour.degrees == 1
+    joints = np.flatnonzero((angles >= 0.5) & (angles < 12.0) & ~(line & np.roll(line, 1)))
+    starts = contour.points[contour.offsets]
+    return [(*starts[j].tolist(), float(angles[j])) for j in joints]
+
+
+def jumps(cubics: FloatArray, em: float) -> int:
+    """The number of smooth joints at which the curvature jumps by more than a tenth."""
+    smooth = np.degrees(np.abs(turns(cubics, 1e-6))) < 3.0
+    return sum(end_jump(cubics[j - 1], cubics[j], em) > 0.1 for j in np.flatnonzero(smooth))
+
+
+def test_a_brush_face_gets_fewer_curves_within_the_tolerance_and_no_new_kink() -> None:
+    given = outlines(FONTS / "kouzan-gyosho.otf")
+    before = after = 0
+    for outline, result in zip(given, gs.convert_many(given, OPTIONS), strict=True):
+        for contour in result.contours:
+            assert contour.measures.within_tolerance
+            assert curves_in(contour.curve) <= curves_in(contour.source)
+            before, after = before + curves_in(contour.source), after + curves_in(contour.curve)
+            old = kinks(contour.source)
+            for x, y, turn in kinks(contour.curve):
+                assert any(np.hypot(a - x, b - y) < 3.0 and turn <= was + 0.3 for a, b, was in old), outline.name
+    assert after < 0.95 * before
+
+
+def oval(out: float, back: float) -> gs.Contour:
+    """Four quarters whose handles are longer on one side of each extremum than on the other."""
+    points: list[list[float]] = [
+        [400, 0], [400, out], [300 * 0.55, 500], [0, 500], [-300 * 0.5, 500], [-400, back], [-400, 0],
+        [-400, -out], [-300 * 0.55, -500], [0, -500], [300 * 0.5, -500], [400, -back],
+    ]  # fmt: skip
+    return gs.Contour(np.rint(points), np.full(4, 3))
+
+
+def test_curvatures_are_made_to_meet_at_points_that_stay_where_letters_have_them() -> None:
+    source = oval(290.0, 262.0)
+    assert jumps(source.cubics(), 1000.0) == 4
+    (found,) = gs.convert(gs.Outline("o", contours=(source,)), gs.Options(**FOR_FONTS, tolerance=3.0)).contours
+    curve = found.curve
+    assert jumps(curve.cubics(), 1000.0) == 0
+    assert len(curve) == 4
+    assert kinks(curve) == []
+    np.testing.assert_array_equal(curve.points, np.rint(curve.points))
+    joints = curve.points[curve.offsets]
+    assert sorted(np.abs(joints).max(axis=1).tolist()) == [400, 400, 500, 500]
+    assert found.measures.within_tolerance
+
+
+def test_what_is_good_stays_to_the_byte_with_its_first_point() -> None:
+    good = gs.convert(gs.Outline("o", contours=(oval(290.0, 262.0),)), gs.Options(**FOR_FONTS, tolerance=3.0)).contours
+    square = gs.Contour(np.array([[0.0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
+    again = gs.convert(gs.Outline("o", contours=(good[0].curve, square)), OPTIONS)
+    for source, result in zip((good[0].curve, square), again.contours, strict=True):
+        np.testing.assert_array_equal(result.curve.points, source.points)
+        np.testing.assert_array_equal(result.curve.degrees, source.degrees)
+
+
+def test_a_node_that_says_nothing_goes() -> None:
+    whole = oval(276.0, 276.0).cubics()
+    a, b, c, d = whole[0]
+    ab, bc, cd = (a + b) / 2, (b + c) / 2, (c + d) / 2
+    abc, bcd = (ab + bc) / 2, (bc + cd) / 2
+    points = np.concatenate([[a, ab, abc, (abc + bcd) / 2, bcd, cd], *(each[:3] for each in whole[1:])])
+    split = gs.Contour(np.rint(points), np.full(5, 3))
+    (found,) = gs.convert(gs.Outline("o", contours=(split,)), OPTIONS).contours
+    assert len(found.curve) == 4
+    assert found.measures.within_tolerance
+
+
+@pytest.mark.parametrize("precision", [0, 1])
+def test_points_are_on_the_grid_asked_for(precision: int) -> None:
+    options = gs.Options(corners="sharp", continuity="g2", precision=precision)
+    source = oval(290.3, 262.1)
+    (found,) = gs.convert(gs.Outline("o", contours=(source,)), options).contours
+    scaled = found.curve.points * 10**precision
+    np.testing.assert_allclose(scaled, np.rint(scaled), atol=1e-9)
+
+
+def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:
+    """Contours of a glyph and what is stored for them, with the numbers of their points."""
+    em = outline.metrics.units_per_em
+    found = quadratic_points(outline.arrays, OPTIONS, em / 1000, em)
+    assert found is not None
+    rows = []
+    for c, (points, on) in enumerate(found[0]):
+        own = outline.arrays.part(c, c + 1)
+        stored = stored_points(own)
+        assert stored is not None
+        rows.append((own, of_points(points, on), len(stored[0]), len(points)))
+    return rows
+
+
+def test_quadratics_have_fewer_points_and_no_new_kink() -> None:
+    before = after = 0
+    for outline in outlines(GYOSHO):
+        for source, made, had, has in quadratics(outline):
+            before, after = before + had, after + has
+            assert has <= had
+            old, new = (gs.Contour(each.points, each.degrees) for each in (source, made))
+            assert len(kinks(new)) <= len(kinks(old)), outline.name
+            a, b = (gs.sample(each, step=0.5) for each in (old, new))
+            assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+    assert after < before
+
+
+def test_fonts_are_written_as_they_are_fitted(tmp_path: Path) -> None:
+    for file, flavour in ((FONTS / "kouzan-gyosho.otf", "otf"), (GYOSHO, "ttf")):
+        font = gs.open_font(file)
+        names = font.select(text=TEXT)
+        results = gs.convert_many(font.outlines(names), OPTIONS)
+        summary = write_font(font, results, tmp_path / f"new.{flavour}", tolerance=1.024)
+        assert summary.extrema == 0
+        assert summary.beyond == ()
+        assert summary.largest_error is not None
+        assert summary.largest_error <= 1.024
+        new = gs.open_font(tmp_path / f"new.{flavour}")
+        written, source = TTFont(tmp_path / f"new.{flavour}"), TTFont(file)
+        for name, outline in zip(names, font.outlines(names), strict=True):
+            again = new.outline(name)
+            np.testing.assert_array_equal(2 * again.arrays.points, np.rint(2 * again.arrays.points))
+            assert sum(map(curves_in, again.contours)) <= sum(map(curves_in, outline.contours)) or flavour == "ttf"
+            if flavour == "ttf":
+                assert len(written["glyf"][name].coordinates) <= len(source["glyf"][name].coordinates)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({"formats": "otf"}, True),
+        ({"formats": "ufo, ttf", "preset": "type", "corners": "sharp"}, True),
+        ({"formats": "svg,otf"}, False),
+        ({"formats": "svg,otf", "continuity": "g2"}, True),
+        ({"formats": "otf", "continuity": "c2"}, False),
+        ({"formats": "otf", "corners": "smooth"}, False),
+        ({"formats": "ttf", "step": "20"}, False),
+        ({"formats": "ttf", "masters": True}, False),
+        ({"formats": "svg"}, False),
+        ({}, False),
+    ],
+)
+def test_fonts_alone_have_their_own_defaults(given: dict[str, object], expected: bool) -> None:
+    assert for_fonts(given) == (FOR_FONTS if expected else {})
