@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...checks.kinds import JUMP, KINK, THRESHOLDS
-from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, segment_findings
+from ...checks.segments import CONTOUR, PLACE, SEEN, WHAT, Segments, joint_findings, segment_findings
 from ...compiled import compiled
 from ...curves.cubics import turns
 from ...curves.nearest import near_places
@@ -148,18 +148,20 @@ def _fitted(
 
 
 def _findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 6) what a check finds at joints and in segments; see :data:`...checks.segments.WHAT`."""
+    """(n, 7) what a check finds at joints and in segments; see :data:`...checks.segments.WHAT`."""
     segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
     found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits)])
     return found[found[:, WHAT] != JUMP]
 
 
 def _turning(contours: ContourArrays) -> FloatArray:
-    """(n, 6) joints that turn, also where that may be rounding's: a cubic's handles are none of a quadratic's."""
+    """(n, 7) joints that turn, also where that may be rounding's: a cubic's handles are none of a quadratic's."""
     rows = []
     for c in range(contours.num_contours):
         joints = np.flatnonzero(np.abs(turns(all_cubics(contours.part(c, c + 1)), NO_HANDLE)) > KINKED)
-        rows.append(np.column_stack([np.full((len(joints), 2), (KINK, c)), joints, np.zeros((len(joints), 3))]))
+        own = np.zeros((len(joints), SEEN + 1))
+        own[:, WHAT], own[:, CONTOUR], own[:, PLACE] = KINK, c, joints
+        rows.append(own)
     return np.concatenate(rows)
 
 

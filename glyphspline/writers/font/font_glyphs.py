@@ -128,8 +128,8 @@ def quadratic_result(result: GlyphResult, tolerance: float) -> Drawn | None:
     if found is None:
         return None
     contours, distance = found
-    check_size(outline.arrays.points, outline.name)
     points = np.concatenate([np.empty((0, 2)), *(points for points, _ in contours)]).astype(np.int64)
+    check_size(points.tolist(), outline.name)
     on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in contours)])
     data = simple_glyph(points, on, (np.cumsum([len(on) for _, on in contours]) - 1).tolist(), False)
     return Drawn(data, bounds_of(data, []), distance + outline.snapped)
