@@ -102,7 +102,7 @@ def places_along(along: AlongAxis, count: int) -> list[float]:
         values = sorted({*values, worst.location[worst.axis]})
     if len(values) > count:
         return [values[round(k)] for k in np.linspace(0, len(values) - 1, count)]
-    while len(values) < count:
+    while 1 < len(values) < count:
         gaps = np.diff(values)
         k = int(gaps.argmax())
         if not gaps[k] > 0:

@@ -369,7 +369,9 @@ def _joints_along(
 ) -> AxisKinks:
     """The smooth joints of glyphs along an axis, unsorted; ``base``: their normalised location, but for the axis."""
     axes, user = glyphs[0].axes, glyphs[0].axes[axis].user
-    ticks = [glyph.ticks(axis) for glyph in glyphs]
+    ticks = [
+        np.resize(values, max(len(values), 2)) for values in (glyph.ticks(axis) for glyph in glyphs)
+    ]  # or no range
     ends = []  # (T, J, 2, 4, 2) the joints of each glyph at its ticks
     for glyph, (controls, _), values in zip(glyphs, smooth, ticks, strict=True):
         ends.append(np.tensordot(glyph.weights_at(_at(base, axis, values)), controls, axes=1))
@@ -394,7 +396,8 @@ def _joints_along(
         at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
         between[owners == g] = _around(values[on], at[row][owners == g])
         k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
-        way = ((grid - values[k]) / (values[k + 1] - values[k]))[:, None, None, None, None]
+        whole = values[k + 1] - values[k]
+        way = ((grid - values[k]) / np.where(whole > 0, whole, 1.0))[:, None, None, None, None]
         there = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
         on_grid = np.maximum(on_grid, np.nan_to_num(there).max(axis=1, initial=0.0))
     made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
@@ -22,6 +24,7 @@ from glyphspline.writers.figures.axis_pages import (
     worst_inside,
 )
 from scripts.paper.measures import shape
+from tests.places import FONTS
 from tests.variable_fonts import quadratic, variable_font
 
 POINTS = [(0, 0), (150, 0), (500, 300), (-300, 300), (-60, 0)]
@@ -127,3 +130,25 @@ def test_what_cannot_be_drawn_along_an_axis(given: list[str], words: str, path: 
     assert run.exit_code == 2
     assert words in " ".join(run.output.split())
     assert not list(tmp_path.iterdir())
+
+
+def test_an_axis_of_no_range_is_drawn_at_its_default(tmp_path: Path) -> None:
+    font = TTFont(FONTS / "variable-cff2.otf")
+    font["fvar"].axes[0].maxValue = 400
+    font.save(tmp_path / "v.otf")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        call = [
+            "atlas",
+            str(tmp_path / "v.otf"),
+            "--axis",
+            "wght",
+            "--all",
+            "--jobs",
+            "0",
+            "-o",
+            str(tmp_path / "a.pdf"),
+        ]
+        done = runner.invoke(app, call)
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")

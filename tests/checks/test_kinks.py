@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
@@ -258,3 +259,15 @@ def test_calls_of_check_that_cannot_be_followed(arguments: list[str], words: str
     result = runner.invoke(app, ["check", str(kinked(tmp_path / "v.ttf")), *arguments])
     assert result.exit_code == 2
     assert words in result.stderr
+
+
+@pytest.mark.parametrize("largest", [400, 132])
+def test_an_axis_of_no_range_has_its_default_alone(largest: int, tmp_path: Path) -> None:
+    """Also where its values are not in order."""
+    font = TTFont(FONTS / "variable-cff2.otf")
+    font["fvar"].axes[0].maxValue = largest
+    font.save(tmp_path / "v.otf")
+    assert [(axis.minimum, axis.maximum) for axis in gs.open_font(tmp_path / "v.otf").axes] == [(400, 400), (75, 100)]
+    checked = runner.invoke(app, ["check", str(tmp_path / "v.otf"), "--jobs", "0", "--json"])
+    assert checked.exit_code == 0
+    assert [face["failed"] for face in json.loads(checked.stdout)["fonts"]] == [[]]

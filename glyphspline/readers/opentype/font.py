@@ -83,9 +83,12 @@ class Font(Source):
                 return names.getDebugName(name_id) if names else None
 
             self.axes = tuple(
-                DesignAxis(a.axisTag, name_of(a.axisNameID) or a.axisTag, a.minValue, a.defaultValue, a.maxValue)
+                DesignAxis(
+                    a.axisTag, name_of(a.axisNameID) or a.axisTag, min(a.minValue, a.defaultValue), a.defaultValue,
+                    max(a.maxValue, a.defaultValue),  # as HarfBuzz has it where they are not in order
+                )
                 for a in variations.axes
-            )
+            )  # fmt: skip
             instances = [(name_of(instance.subfamilyNameID), instance) for instance in variations.instances]
             self.instances = {name: dict(instance.coordinates) for name, instance in instances if name}
         self.location = self.clamped(location)
@@ -111,8 +114,8 @@ class Font(Source):
         Raises:
             FontError: the table of characters is cut short.
         """
-        cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
         with opening(self.path):
+            cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
             tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
         return self._hb.face.glyph_count, len(self._hb.face.unicodes) if tables & UNICODE_CMAPS else 0
 

@@ -239,7 +239,7 @@ def _against_axis(
     """What all diagrams against an axis have in common: dashed lines at the masters, limits, and a label."""
     for position in masters:
         axes.axvline(position, color="0.6", linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
-    margin = 0.01 * (limits[1] - limits[0])
+    margin = 0.01 * (limits[1] - limits[0]) or 1.0  # of an axis without range
     axes.set_xlim(limits[0] - margin, limits[1] + margin)
     axes.set_xlabel(f"{ascii_text(axis.name)} ({axis.tag}), masters dashed", fontsize=size, labelpad=gap)
     axes.spines[["top", "right"]].set_visible(False)
