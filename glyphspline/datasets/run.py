@@ -23,16 +23,16 @@ from ..runs.font_search import find_fonts
 from ..runs.jobs.convert import ConvertJob
 from ..runs.schedule import Place, kinds_for, sources, workers
 from ..runs.spec import Limits, differences
+from ..runs.unfinished import UNFINISHED, Made, Unfinished, streamed
 from .card import Summary, card, fonts_file
 from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
-from .shards import Made, OfFont, Shapes, add_shapes, finished, write_shard
+from .shards import OfFont, Shapes, add_shapes, finished, write_shard
 from .spec import DatasetSpec
-from .unfinished import Unfinished
 
-RECORD, FONTS, CARD, UNFINISHED = "dataset.json", "fonts.parquet", "README.md", ".unfinished"
-"""Files beside the folder of shards; the last one only while a shard is made."""
+RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
+"""Files beside the folder of shards."""
 
 SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
 
@@ -65,7 +65,6 @@ class RowsJob(Job[Task, Made]):
         """The rows of outlines."""
         from .rows import fits_of, table_of, with_font
 
-        pa = need("parquet")
         results: list[Any] = [None] * len(contents)
         if self.spec.options is not None:
             results = list(fits_of(contents, self.spec))
@@ -74,10 +73,7 @@ class RowsJob(Job[Task, Made]):
         failed = [(outline.name, reason(one)) for outline, one in pairs if isinstance(one, GlyphsplineError)]
         own = [outline for outline, _ in good]
         table = with_font(table_of(own, [one for _, one in good], self.spec), own, tasks[0].font, self.spec)
-        sink = pa.BufferOutputStream()
-        with pa.ipc.new_stream(sink, table.schema) as writer:
-            writer.write_table(table.combine_chunks())
-        return Made(sink.getvalue().to_pybytes(), len(good), failed)
+        return Made(streamed(table), len(good), failed)
 
     def failed(self, task: Task, error: Exception) -> Made:
         """No rows. The name of the glyph is that of the font, if it can be opened here."""

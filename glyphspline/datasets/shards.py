@@ -11,7 +11,9 @@ import numpy as np
 
 from ..extras import need
 from ..runs import remote
+from ..runs.unfinished import Made, table_in
 from ..types import BoolArray, IntArray
+from ..writers.parquet import writing_of
 
 ROW_GROUP, GROUP_BYTES = 2000, 1 << 26
 """Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger. A group of so
@@ -25,19 +27,6 @@ FACTS, MARK = b"glyphspline.shard", b"glyphspline.run"
 
 Held: TypeAlias = "dict[int, OfFont]"
 """What a finished shard holds of each font, by the font's number in the plan."""
-
-
-class Made(NamedTuple):
-    """The rows of some glyphs.
-
-    Attributes:
-        rows: an Arrow table as an IPC stream. glyphs: number of glyphs in it.
-        failed: name of each glyph that has no rows, and why.
-    """
-
-    rows: bytes
-    glyphs: int
-    failed: list[tuple[str, str]]
 
 
 class OfFont(NamedTuple):
@@ -115,26 +104,21 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
     Raises:
         OutputError: it cannot be written.
     """
-    pa = need("parquet")
     from pyarrow import parquet
 
     held: Held = {}
 
     def tables() -> Iterator[Any]:
         for font, chunk in made:
-            table = pa.ipc.open_stream(chunk.rows).read_all() if chunk.rows else schema.empty_table()
+            table = table_in(chunk.rows) if chunk.rows else schema.empty_table()
             table, duplicates = marked(table, shapes)
             new = OfFont(chunk.glyphs, table.num_rows, duplicates, len(chunk.failed), tuple(chunk.failed[:NAMED]))
             held[font] = held.get(font, OfFont()).plus(new)
             yield table
 
-    # Coordinates hardly repeat, and the least of them says nothing.
-    plain = [field.name for field in schema if not pa.types.is_nested(field.type)]
-    how = {"compression": "zstd", "use_dictionary": plain, "write_statistics": plain}
-
     def write(file: BinaryIO) -> None:
         # A thread writes one row group while this one gives work to the workers and collects the rows of the next.
-        with parquet.ParquetWriter(file, schema, **how) as writer, ThreadPoolExecutor(1) as thread:
+        with parquet.ParquetWriter(file, schema, **writing_of(schema)) as writer, ThreadPoolExecutor(1) as thread:
             written: Future[None] | None = None
             for group in _groups(tables(), schema):
                 if written is not None:

@@ -16,7 +16,7 @@ import logging
 import os
 import re
 import socket
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -94,12 +94,16 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True)
 class Output:
-    """What a worker needs to convert glyphs and write their files: the source, the folder, and how."""
+    """What a worker needs to convert glyphs and write their files: the source, the folder, and how.
+
+    ``font``: family and style, for rows.
+    """
 
     side: Side
     out: Path
     spec: RunSpec
     curvature_scale: float | None = None
+    font: tuple[str, str] = ("", "")
 
 
 class Done(NamedTuple):
@@ -107,6 +111,7 @@ class Done(NamedTuple):
 
     Attributes:
         line: of the journal. facts: for the summary. row: of the gallery's table; "" if not made yet.
+        rows: of the table of contours, an IPC stream; the first glyph of a batch has those of all.
     """
 
     gid: int
@@ -115,6 +120,7 @@ class Done(NamedTuple):
     line: bytes
     facts: Facts = NO_FACTS
     row: str = ""
+    rows: bytes = b""
 
 
 def done(
@@ -156,8 +162,12 @@ class Record:
         return self.where.keys() - self.failed
 
 
-def read_record(out: Path) -> Record:
-    """Read the record of an earlier run from the manifest and journal of a folder."""
+def read_record(out: Path, rows: Container[int] | None = None) -> Record:
+    """Read the record of an earlier run from the manifest and journal of a folder.
+
+    Args:
+        rows: the glyphs whose rows of a table are there, if there is to be one; one without does not count.
+    """
     record = Record()
     with suppress(FileNotFoundError):
         line = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
@@ -168,6 +178,8 @@ def read_record(out: Path) -> Record:
         for offset, lengths, entry in _lines(out / name):
             gid = entry["gid"]
             if not _written(out, entry["files"], record.sizes.get(gid) if lengths is None else lengths, present):
+                continue
+            if rows is not None and entry.get("status") == "ok" and gid not in rows:
                 continue
             record.where[gid] = (name, offset)
             record.counts.add(entry)
@@ -246,7 +258,7 @@ def journal(out: Path, record: Record) -> Iterator[Callable[[list[Done]], None]]
         at = os.fstat(file.fileno()).st_size
         for glyph in done:
             record.where[glyph.gid] = (JOURNAL, at)
-            record.new[glyph.gid] = glyph._replace(line=b"")
+            record.new[glyph.gid] = glyph._replace(line=b"", rows=b"")
             at += len(glyph.line)
         write(b"".join([glyph.line for glyph in done]))
 

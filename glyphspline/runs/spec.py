@@ -35,13 +35,14 @@ POLYGON = "polygon"
 
 OF_RUNS = {GALLERY: SUFFIX, POLYGON: ".svg", RESULTS: ".json"}
 """Suffixes of the formats with one file a glyph that only a run has, besides those of :mod:`..writers.formats`.
-"polygon", the source with the polygon over it, comes with the gallery; formats with one file a font are made from
-"results"."""
+"polygon", the source with the polygon over it, comes with the gallery; fonts and UFOs are made from "results"."""
 
 MAPS = {"curvature", "curvature-png", "curvature-pdf"}
 """Formats of curvature maps, which share a scale."""
 
-WHOLE = ("ufo", "otf", "ttf", "parquet")
+PARQUET = "parquet"
+
+WHOLE = ("ufo", "otf", "ttf", PARQUET)
 """Formats with one file a font."""
 
 
@@ -169,7 +170,12 @@ class RunSpec:
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.whole or self.is_back else []))
+        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.has_results else []))
+
+    @property
+    def has_results(self) -> bool:
+        """Whether results are stored: fonts are made of them. The rows of a table are kept elsewhere."""
+        return self.is_back or not {*self.whole} <= {PARQUET}
 
     @property
     def whole(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ from ..writers.svg.path_data import PathData, curves_data
 from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
-from .spec import MAPS, POLYGON, RESULTS, Limits, suffix_of
+from .spec import MAPS, PARQUET, POLYGON, RESULTS, Limits, suffix_of
 from .summary import NO_FACTS, Facts, facts_of
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
@@ -74,11 +74,26 @@ def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Out
         results = convert_many(outlines, options, errors="return")
     else:
         results = unfitted(outlines, job.spec.options)
-    glyphs = iter(drawn(job, [result for result in results if isinstance(result, GlyphResult)]))
-    return [
-        write_files(job, task, next(glyphs)) if isinstance(result, GlyphResult) else result
-        for task, result in zip(tasks, results, strict=True)
-    ]
+    good = [result for result in results if isinstance(result, GlyphResult)]
+    glyphs, waiting = iter(drawn(job, good)), rows_of(job, good)
+    finished: list[Done | GlyphsplineError] = []
+    for task, result in zip(tasks, results, strict=True):
+        if isinstance(result, GlyphResult):
+            finished.append(write_files(job, task, next(glyphs))._replace(rows=waiting))
+            waiting = b""
+        else:
+            finished.append(result)
+    return finished
+
+
+def rows_of(job: Output, results: list[GlyphResult]) -> bytes:
+    """The rows of a batch as an IPC stream; none if there is no table, or no contour."""
+    if PARQUET not in job.spec.whole or not any(result.contours for result in results):
+        return b""
+    from ..writers.parquet import rows  # imports pyarrow
+    from .unfinished import streamed
+
+    return streamed(rows(job.font, results))
 
 
 class Glyph(NamedTuple):

@@ -31,7 +31,7 @@ source_kept
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -79,32 +79,66 @@ def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any, group:
     Raises:
         GlyphsplineError: pyarrow, of the extra ``parquet``, is not installed.
     """
-    arrow()
-    from pyarrow.parquet import ParquetWriter
 
-    count, waiting, held = 0, list[GlyphResult](), 0
-    with ParquetWriter(str(file) if isinstance(file, Path) else file, schema(), compression="zstd") as writer:
+    def tables() -> Iterator[Any]:
+        waiting, held = list[GlyphResult](), 0
         for glyph in glyphs:
             waiting.append(glyph)
             held += len(glyph.contours)
             if held >= group:
-                writer.write_table(rows(source, waiting), row_group_size=group)
-                count, waiting, held = count + held, [], 0
-        if held:
-            writer.write_table(rows(source, waiting), row_group_size=group)
-    return count + held
+                yield rows(names, waiting)
+                waiting, held = [], 0
+        yield rows(names, waiting)
+
+    names = source.family, source.style
+    return write_rows(tables(), file, group)
 
 
-def rows(source: Source, glyphs: list[GlyphResult]) -> Any:
-    """An Arrow table with a row for each contour."""
+def write_rows(tables: Iterable[Any], file: Any, group: int = 512) -> int:
+    """Write the rows of tables, those of a glyph in one of them; returns their number.
+
+    A row group ends with the glyph that fills it, wherever tables end.
+    """
+    from pyarrow.parquet import ParquetWriter
+
+    count, layout = 0, schema()
+    with ParquetWriter(str(file) if isinstance(file, Path) else file, layout, **writing_of(layout)) as writer:
+        for table in _groups(tables, layout.empty_table(), group):
+            writer.write_table(table, row_group_size=table.num_rows)
+            count += table.num_rows
+    return count
+
+
+def writing_of(layout: Any) -> dict[str, Any]:
+    """Settings of a Parquet writer. Coordinates hardly repeat, and the least of them says nothing."""
+    plain = [field.name for field in layout if not arrow().types.is_nested(field.type)]
+    return {"compression": "zstd", "use_dictionary": plain, "write_statistics": plain}
+
+
+def _groups(tables: Iterable[Any], waiting: Any, group: int) -> Iterator[Any]:
+    concat = arrow().concat_tables
+    for table in tables:
+        waiting = concat([waiting, table])
+        while waiting.num_rows >= group:
+            gids = waiting["gid"].to_numpy()
+            ends = np.append(np.nonzero(np.diff(gids))[0] + 1, len(gids))
+            end = int(ends[np.searchsorted(ends, group)])
+            yield waiting.slice(0, end).combine_chunks()
+            waiting = waiting.slice(end)
+    if waiting.num_rows:
+        yield waiting.combine_chunks()
+
+
+def rows(font: tuple[str, str], glyphs: list[GlyphResult]) -> Any:
+    """An Arrow table with a row for each contour of glyphs of a font with this family and style."""
     pa, layout = arrow(), schema()
     found, offsets = end_to_end(glyphs)
     units = np.ones(len(found))
     columns = fit_columns(found, units) | source_columns(found, units) | measure_columns(found, units)
     outlines = [glyph.outline for glyph in glyphs]
     of_glyph = {
-        "font": [source.family] * len(glyphs),
-        "style": [source.style] * len(glyphs),
+        "font": [font[0]] * len(glyphs),
+        "style": [font[1]] * len(glyphs),
         "glyph": [outline.name for outline in outlines],
         "gid": [outline.gid for outline in outlines],
         "codepoints": [outline.unicodes for outline in outlines],

@@ -33,12 +33,13 @@ from glyphspline.datasets.card import command
 from glyphspline.datasets.plan import Plan, Task, plan_of
 from glyphspline.datasets.run import RowsJob
 from glyphspline.datasets.scan import SPLITS, FontFacts, licence_of, split_of
-from glyphspline.datasets.shards import Made, Shapes
+from glyphspline.datasets.shards import Shapes
 from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
 from glyphspline.runs.spec import Limits
+from glyphspline.runs.unfinished import Made
 from tests.places import FONTS
 
 PLAIN = DatasetSpec(options=None, points=8)

@@ -16,7 +16,7 @@ from glyphspline.runs.spec import RunSpec
 from tests.runs.test_batch import content
 from tests.runs.test_hostile import built, square
 
-SPEC = RunSpec(Options(step=300.0), ("svg", "gallery"))
+SPEC = RunSpec(Options(step=300.0), ("svg", "gallery", "parquet"))
 CHUNK = 40
 MANY = 16 * CHUNK + 5
 """Glyphs of which each of two workers gets whole chunks."""
@@ -107,3 +107,19 @@ def test_a_file_that_cannot_be_written_ends_a_run_that_can_go_on(finished: Path,
     blocked.rmdir()
     assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=2).done >= CHUNK
     assert content(tmp_path) == content(finished)
+
+
+def test_rows_are_made_once_and_a_table_that_is_lost_or_broken_is_made_again(
+    finished: Path, font: Font, tmp_path: Path
+) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(3 * CHUNK))
+    kept = tmp_path / ".unfinished"
+    kept.write_bytes(kept.read_bytes()[:-1])
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == MANY - 2 * CHUNK
+    (table,) = tmp_path.glob("*.parquet")
+    table.write_bytes(table.read_bytes()[:-9])
+    assert convert_font(font, font.glyph_names[:CHUNK], tmp_path, SPEC, jobs=0).done == CHUNK - 1
+    assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == MANY - CHUNK - 1
+    assert content(tmp_path) == content(finished)
+    assert not (tmp_path / "results").exists()

@@ -112,13 +112,13 @@ def test_nothing_else_is_made_of_a_stored_result(text: str) -> None:
 
 def test_a_stored_result_that_was_changed_is_an_error(out: Path, tmp_path: Path) -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
-    convert_font(source, source.select(text="O"), tmp_path / "o", RunSpec(Options(step=90), ("parquet",)), jobs=0)
+    convert_font(source, source.select(text="O"), tmp_path / "o", RunSpec(Options(step=90), ("otf",)), jobs=0)
     (file,) = (tmp_path / "o" / "results").iterdir()
     file.write_text(re.sub(r"^.", "x", file.read_text()))
-    (tmp_path / "o" / "KouzanGyoshoSubset-spline.parquet").unlink()
+    (tmp_path / "o" / "KouzanGyoshoSubset-spline.otf").unlink()
     with pytest.raises(OutputError, match=r"O\.json"):
-        convert_font(source, source.select(text="O"), tmp_path / "o", RunSpec(Options(step=90), ("parquet",)), jobs=0)
-    assert json.loads((tmp_path / "o" / "run.json").read_text())["formats"] == ["parquet"]
+        convert_font(source, source.select(text="O"), tmp_path / "o", RunSpec(Options(step=90), ("otf",)), jobs=0)
+    assert json.loads((tmp_path / "o" / "run.json").read_text())["formats"] == ["otf"]
 
 
 def test_a_font_that_is_written_leaves_room_for_its_rounding() -> None:

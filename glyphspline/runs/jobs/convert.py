@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from ...curves.curvature import shared_scale
 from ...errors import OutputError
 from ...extras import need
-from ...files import make_folder, remove_partials, replacing, write_whole, writing
+from ...files import make_folder, remove_partials, write_whole, writing
 from ...fitting.results import GlyphResult
 from ...readers import Source, open_font
 from ...readers.svg import SvgDrawings
@@ -44,14 +44,28 @@ from ..folder import (
 )
 from ..result_text import stored
 from ..schedule import Side, kinds_for, readers, side_of, workers
-from ..spec import MAPS, OF_RUNS, REQUEST, RESULTS, RUN_FILE, RunSpec, describe, differences, read_run, write_run
+from ..spec import (
+    MAPS,
+    OF_RUNS,
+    PARQUET,
+    REQUEST,
+    RESULTS,
+    RUN_FILE,
+    RunSpec,
+    describe,
+    differences,
+    read_run,
+    write_run,
+)
 from ..summary import NAMED, Summary
+from ..unfinished import UNFINISHED
 
 if TYPE_CHECKING:
     from ...curves.curvature import Comb
     from ...readers.designspace import Designspace
     from ...readers.ufo import Ufo
     from ...writers.back.back import New
+    from ..rows import Rows
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -151,6 +165,12 @@ def convert_font(
     check_back(source, spec)
     with locked(out):
         record = prepare(source, glyphs, out, spec, restart)
+        rows = None
+        if table := table_of(source, out, spec):
+            from ..rows import Rows  # imports pyarrow
+
+            rows = Rows(table, source.sha256)
+            record = read_record(out, rows)
         finished = record.finished()
         summary = Summary()
         # Workers start while the tasks are listed; none do if all glyphs are finished.
@@ -159,8 +179,9 @@ def convert_font(
         with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
             tasks = tasks_of(source, glyphs, spec.names)
             left = [task for task in tasks if task.gid not in finished]
-            job = with_scale(ConvertJob(side_of(source), out.absolute(), spec), source, glyphs, tasks, pool)
-            for part in recorded(job, left, pool, record, out, observer):
+            job = ConvertJob(side_of(source), out.absolute(), spec, font=(source.family, source.style))
+            job = with_scale(job, source, glyphs, tasks, pool)
+            for part in recorded(job, left, pool, record, out, observer, rows):
                 for glyph in part.result:
                     summary.time(part.seconds / len(part.tasks), glyph.name)
             for name in spec.folders if left else ():
@@ -171,8 +192,8 @@ def convert_font(
             conclude(out, record, summary, gallery)
         else:
             summary = record.counts
-        if left or not all(path.exists() for path in font_files(source, out, spec)):
-            summary.remarks += write_fonts(source, out, spec)
+        if left or (rows and rows.added) or not all(path.exists() for path in font_files(source, out, spec)):
+            summary.remarks += write_fonts(source, out, spec, rows)
         if spec.is_back:
             summary.remarks += results_to_source(source, results_of(source, out, spec), spec)
     summary.missing = getattr(glyphs, "missing", ())
@@ -204,6 +225,9 @@ def prepare(
     """Make the folders, and read the record of an earlier run; see :func:`.spec.describe`."""
     old = None if restart else read_run(out)
     if old is None:
+        if table := table_of(source, out, spec):
+            for path in (table, table.with_name(UNFINISHED)):
+                path.unlink(missing_ok=True)
         remove_written(out)
         remove_gallery(out)
         for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
@@ -256,12 +280,19 @@ def recorded(
     record: Record,
     out: Path,
     observer: Observer | None,
+    rows: Rows | None = None,
 ) -> Iterator[Part[Task, list[Done]]]:
-    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on."""
+    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on.
+
+    Its rows are kept before that.
+    """
     if not tasks:
         return
     with journal(out, record) as add:
         for part in run(job, tasks, pool, observer=observer, before=len(record.finished())):
+            for stream in [glyph.rows for glyph in part.result if glyph.rows]:
+                assert rows is not None
+                rows.add(stream)
             add(part.result)
             yield part
 
@@ -316,7 +347,12 @@ def font_files(source: Source, out: Path, spec: RunSpec) -> list[Path]:
     return [out / f"{stem}.{name}" for name in spec.whole]
 
 
-def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
+def table_of(source: Source, out: Path, spec: RunSpec) -> Path | None:
+    """The run's table of contours, if it has one."""
+    return next((path for path in font_files(source, out, spec) if path.suffix == f".{PARQUET}"), None)
+
+
+def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> list[str]:
     """Write the formats with one file a font, of all glyphs of the folder's manifest; returns remarks for the summary.
 
     Raises:
@@ -334,10 +370,8 @@ def write_fonts(source: Source, out: Path, spec: RunSpec) -> list[str]:
 
                 remarks.append(f"{path.name}: {write_ufo(source, glyphs, path)} glyphs")
             elif path.suffix == ".parquet":
-                from ...writers.parquet import write_table
-
-                with replacing(path) as file:
-                    remarks.append(f"{path.name}: {write_table(source, glyphs, file)} contours")
+                assert rows is not None
+                remarks.append(f"{path.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
             else:
                 remarks.append(_write_font(source, glyphs, path, spec))
     return remarks
