@@ -120,14 +120,17 @@ def main() -> int:
             made = [
                 threads.submit(start, k, arguments.seed, kills, expected, usual) for k in range(number, number + count)
             ]
-            found = [each.result() for each in made]
+            found = []
+            for each in made:
+                found.append(each.result())
+                print("." if found[-1].whole else "x", end="", file=sys.stderr, flush=True)
         number += count
-        for each in found:
-            if not each.whole:
+        for one in found:
+            if not one.whole:
                 bad += 1
-                print(f"{words}, {each.seconds:.0f} s, ended: {each.ended}: {each.words[-3000:]}", flush=True)
-        longest = max((each.seconds for each in found), default=0.0)
-        counts = [sum(each.killed for each in found), sum(e.ended for e in found), sum(e.whole for e in found)]
+                print(f"{words}, {one.seconds:.0f} s, ended: {one.ended}: {one.words[-3000:]}", flush=True)
+        longest = max((one.seconds for one in found), default=0.0)
+        counts = [sum(one.killed for one in found), sum(one.ended for one in found), sum(one.whole for one in found)]
         print(table(headings, [[words, count, *counts, f"{longest:.0f} s"]]).splitlines()[-1], flush=True)
     return int(bad > 0)
 
