@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from glyphspline.readers.source import Head
 from glyphspline.types import rounded_up
 from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT
+from tests.topology import path_contours, svg_contours
 
 
 @given(st.floats(1e-12, 1e12), st.integers(1, 9))
@@ -120,3 +122,20 @@ def test_measures_are_of_the_written_curve() -> None:
         assert contour.measures.length == pytest.approx(shape(cubics).length)
         lost = precision == 0  # both sides are written on each other
         assert contour.measures.collapsed is False or lost
+
+
+@pytest.mark.parametrize("width", [0.05, 0.1, 1.0])
+def test_a_lens_that_stays_is_the_sources_to_the_last_digit(width: float) -> None:
+    """Chords of both differ by 1e-6, which looks like a bound that is too small."""
+    lens = path_contours(f"M0 0C300 {width} 600 {width} 900 0C600 {-width} 300 {-width} 0 0Z")
+    segments = [np.array(piece, dtype=np.float64) / lens.unit for piece in lens.contours[0]]
+    outline = gs.Outline("lens", contours=(gs.Contour.from_segments(segments),))
+    result = gs.convert(outline, gs.Options(corners="sharp", tolerance=5.0))
+    written, bound = svg_contours(gs.to_svg(result)), result.contours[0].measures.deviation_bound
+    assert bound is not None
+    assert bound < 1e-9
+    exact = [
+        {tuple((Fraction(x, of.unit), Fraction(y, of.unit)) for x, y in piece) for piece in of.contours[0]}
+        for of in (lens, written)
+    ]
+    assert exact[0] == exact[1]

@@ -82,47 +82,47 @@ def to_variable_font(
         GlyphsplineError: the font has no such glyph.
     """
     check_flavour(source, flavour)
-    font = source.tables()
-    font.recalcBBoxes = False
-    if "DSIG" in font and getattr(font["DSIG"], "signatureRecords", None):
-        del font["DSIG"]  # a signature of the bytes as they were
-    if "glyf" in font:
-        drop_endless(font)
-    names = font.getGlyphOrder()
-    gids = {name: gid for gid, name in enumerate(source.glyph_names)}
+    file = BytesIO()
     glyphs: dict[str, StoredGlyph] = {}
     composites, left = [], {}
-    strings = CharStrings2(font) if flavour == "otf" else None
-    quadratics = Quadratics(font) if flavour == "ttf" else None
-    made = set(font["VARC"].table.Coverage.glyphs) if "VARC" in font else set()
-    for name, new in redrawn.items():
-        if name not in gids:
-            raise GlyphsplineError("the font has no such glyph", font=str(source.path), glyph=name)
-        stored = names[gids[name]]
-        if stored in made:
-            left[name] = "made of variable components (VARC)"
-            continue
-        if quadratics and font["glyf"][stored].isComposite():
-            parts = [source.glyph_names[font.getGlyphID(part)] for part in parts_of(font, stored)]
-            old = [part for part in parts if part not in redrawn]
-            if old:
-                left[name] = f"its component {old[0]} keeps its outline"
-            else:
-                composites.append(name)
-            continue
-        try:
-            if strings:
-                found = strings.replace(stored, new)
-            else:
-                assert quadratics
-                found = quadratics.replace(stored, new, tolerance)
-            glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
-        except GlyphsplineError as error:
-            left[name] = error.message
-        except np.linalg.LinAlgError:
-            left[name] = "no quadratics could be fitted to its curves"
-    file = BytesIO()
     with reusing(source.path, source.kind):
+        font = source.tables()
+        font.recalcBBoxes = False
+        if "DSIG" in font and getattr(font["DSIG"], "signatureRecords", None):
+            del font["DSIG"]  # a signature of the bytes as they were
+        if "glyf" in font:
+            drop_endless(font)
+        names = font.getGlyphOrder()
+        gids = {name: gid for gid, name in enumerate(source.glyph_names)}
+        strings = CharStrings2(font) if flavour == "otf" else None
+        quadratics = Quadratics(font) if flavour == "ttf" else None
+        made = set(font["VARC"].table.Coverage.glyphs) if "VARC" in font else set()
+        for name, new in redrawn.items():
+            if name not in gids:
+                raise GlyphsplineError("the font has no such glyph", font=str(source.path), glyph=name)
+            stored = names[gids[name]]
+            if stored in made:
+                left[name] = "made of variable components (VARC)"
+                continue
+            if quadratics and font["glyf"][stored].isComposite():
+                parts = [source.glyph_names[font.getGlyphID(part)] for part in parts_of(font, stored)]
+                old = [part for part in parts if part not in redrawn]
+                if old:
+                    left[name] = f"its component {old[0]} keeps its outline"
+                else:
+                    composites.append(name)
+                continue
+            try:
+                if strings:
+                    found = strings.replace(stored, new)
+                else:
+                    assert quadratics
+                    found = quadratics.replace(stored, new, tolerance)
+                glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
+            except GlyphsplineError as error:
+                left[name] = error.message
+            except np.linalg.LinAlgError:
+                left[name] = "no quadratics could be fitted to its curves"
         if quadratics:
             quadratics.finish()
         font.save(file, reorderTables=False)
