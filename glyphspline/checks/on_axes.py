@@ -6,7 +6,7 @@ corner in one master is meant as one: elsewhere it has no kinks, nor jumps of cu
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -55,8 +55,8 @@ def on_axes(
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
     along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle)
-    smooth = {tuple(joint) for along in along_axes for joint in along.joints.tolist()}
-    kinks = _kinks(glyphs, location, chosen, along_axes, smooth, thresholds)
+    smooth = smooth_joints(along_axes)
+    kinks = kinks_of(glyphs, location, chosen, along_axes, thresholds)
     known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & (~np.isin(rows.kinds, OF_SMOOTH) | known)))
     worst = _worst(Measured.joined([kinks, rows]))
@@ -99,12 +99,17 @@ def joints_of(rows: Measured) -> list[tuple[int, int, int]]:
     return [*zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)]
 
 
-def _kinks(
+def smooth_joints(along_axes: Sequence[AxisKinks]) -> set[tuple[int, int, int]]:
+    """Glyph, contour and segment of the joints that are a corner in no master."""
+    return {(g, contour, joint) for along in along_axes for g, contour, joint in along.joints.tolist()}
+
+
+def kinks_of(
     glyphs: Sequence[Masters], location: Mapping[str, float], axes: Sequence[int], along_axes: Sequence[AxisKinks],
-    smooth: Container[tuple[int, int, int]], thresholds: Thresholds,
+    thresholds: Thresholds,
 ) -> Measured:  # fmt: skip
     """Kinks along axes and in masters off them, at normalised locations; none that rounding or a chamfer explains."""
-    parts = []
+    parts, smooth = [], smooth_joints(along_axes)
     for along in along_axes:
         rows = along.rows.chosen(np.flatnonzero(along.turns >= thresholds.kink))
         users = [dict(zip([axis.tag for axis in along.axes], at, strict=True)) for at in rows.locations.tolist()]

@@ -15,6 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...errors import GlyphsplineError, OutputError
 from ...files import make_folder, remove_partials, write_whole, writing
 from ...fitting.convert_masters import MastersResult, check_options
@@ -295,8 +297,13 @@ def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redraw
 
 def redrawn_glyph(result: MastersResult) -> Redrawn:
     """A result as the writers of variable fonts take it."""
-    contours = result.contours
-    return Redrawn(result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours))
+    contours, every = result.contours, iter(enumerate(result.masters.contours))
+    # Contours that enclose nothing have no result.
+    numbers = [next(k for k, each in every if np.array_equal(each.points, c.source.points)) for c in contours]
+    return Redrawn(
+        result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours),
+        tuple(c.deviation_bound for c in contours), tuple(numbers), result.options.corners == "sharp",
+    )  # fmt: skip
 
 
 def _write_fonts(
@@ -309,7 +316,7 @@ def _write_fonts(
 ) -> dict[str, str]:
     """Write the run's fonts; returns why glyphs of them have their old outlines."""
     source, stays = sources[0], dict[str, str]()
-    tolerance = (1 - SHARE) * spec.options.tolerance_for(source.metrics.units_per_em)
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     paths = {path.suffix[1:]: path for path in font_files(source, out, spec)}
     for flavour in _flavours(spec):
         path = paths[flavour]

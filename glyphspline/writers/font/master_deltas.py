@@ -22,6 +22,10 @@ class Redrawn:
         contours: the new ones.
         inner: for each contour (m,) whether segment j begins inside an arc, where the curve is to stay smooth; False
             at the ends of arcs and lines.
+        bounds: for each contour its certified distance from its source. If they are given, arcs are compared with the
+            source, and stay as the font has them where the new ones would turn a joint that the source does not turn.
+        numbers: with ``bounds``, for each contour that of its source in ``masters``.
+        fewest: with ``bounds``, arcs also stay as they are where new ones would need more points.
 
     Raises:
         ValueError: the numbers of masters, contours or segments do not agree.
@@ -30,14 +34,34 @@ class Redrawn:
     masters: Masters
     contours: tuple[MasterContour, ...]
     inner: tuple[BoolArray, ...]
+    bounds: tuple[float, ...] = ()
+    numbers: tuple[int, ...] = ()
+    fewest: bool = False
 
     def __post_init__(self) -> None:
         if len(self.contours) != len(self.inner):
             raise ValueError(f"{counted(len(self.contours), 'contour')}, but joints of {len(self.inner)}")
+        if self.bounds and not len(self.bounds) == len(self.numbers) == len(self.contours):
+            raise ValueError(f"{counted(len(self.contours), 'contour')}, but bounds of {len(self.bounds)}")
         for contour, inner in zip(self.contours, self.inner, strict=True):
             points, degrees = contour.points, contour.degrees
             if points.shape != (len(self.masters), int(degrees.sum()), 2) or inner.shape != degrees.shape:
                 raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
+
+
+@dataclass(frozen=True)
+class Tally:
+    """A glyph's points and kinks, before and after.
+
+    Attributes:
+        points: of the glyph as it is stored: in glyf its points, in CFF2 its lines and curves.
+        kinks: joints that ``check`` reports along the axes and in masters. between: those of them that turn more
+            between masters than in them.
+    """
+
+    points: tuple[int, int]
+    kinks: tuple[int, int]
+    between: tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +77,17 @@ class StoredGlyph:
         shortest_leg: in glyf, the least distance of an implied point from its control points, in font units and at the
             same places. Where it is 0 the curve has a corner there; where it is below a unit, renderers' single
             precision turns it by some thousandths of a degree. None if there is no such point.
+        bound: of the distance from the source: certified up to the contours that were given, and from there the
+            distance of what is stored; None if no bounds were given.
+        tally: points and kinks before and after; None likewise.
     """
 
     contours: tuple[MasterContour, ...]
     inner: tuple[BoolArray, ...]
     distance: float
     shortest_leg: float | None = None
+    bound: float | None = None
+    tally: Tally | None = None
 
 
 def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:

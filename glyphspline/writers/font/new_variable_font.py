@@ -29,8 +29,8 @@ from ...types import MadeOnDemand
 from .font_file import postscript, to_font
 from .font_glyphs import decomposed, users
 from .master_deltas import Redrawn, check_steps, rounded_deltas
+from .quadratic_contours import PHANTOMS
 from .variable_font import VariableSummary, to_variable_font
-from .variable_glyf import PHANTOMS
 
 ELIDABLE = "Regular"
 """The style that is left out of the names of others."""
@@ -153,7 +153,8 @@ def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
 
 
 def _clockwise(new: Redrawn) -> Redrawn:
-    """The glyph with ink to the right of its contours in the default, as TrueType has it."""
+    """The glyph with ink to the right of its contours in the default, as TrueType has it. No font has it otherwise."""
+    new = Redrawn(new.masters, new.contours, new.inner)
     if sum(area(contour.cubics()[0]) for contour in new.contours) <= 0:
         return new
     inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)

@@ -7,7 +7,7 @@ quadratics in whole units, which meet inside an arc midway between their control
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from io import BytesIO
 from typing import Any
@@ -25,6 +25,7 @@ from ...readers.source import reusing
 from ...types import FloatArray, IntArray
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of
 from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
+from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
 
 PARTS = 1 << 16
@@ -73,8 +74,9 @@ def to_variable_font(
         redrawn: glyph name to its new contours, read one by one. Composites stay so: redraw their components, see
             :func:`components`.
         flavour: "otf" for a font with CFF2 outlines, "ttf" for one with glyf.
-        tolerance: for "ttf", how far the quadratics, rounded, may be from the contours given, in font units. A glyph
-            that cannot be so close is written as close as it was found: see ``distance``.
+        tolerance: for "ttf", how far the quadratics, rounded, may be from the contours given, in font units; of
+            contours with bounds, how far from their source. A glyph that cannot be so close is written as close as it
+            was found, see ``distance``, or where it has bounds stays as it is.
         with_contours: whether the summary has what is drawn, which is much of a large font.
 
     Raises:
@@ -181,7 +183,18 @@ class CharStrings2:
         """
         masters = redrawn.masters
         old = self._strings[name]
-        contours = [cubic(contour) for contour in redrawn.contours]
+        contours, inner, tallied = redrawn.contours, redrawn.inner, None
+        if redrawn.bounds:
+            plans = [Segments(redrawn, c) for c in range(len(contours))]
+            if redrawn.fewest:
+                fewest(plans)
+            turning = settle(masters, plans)
+            if plans and all(plan.is_own for plan in plans):
+                raise GlyphsplineError(NOTHING_NEW, glyph=name)
+            counts = [sum(map(len, each)) for each in (masters.contours, [plan.stored() for plan in plans])]
+            tallied = tally((counts[0], counts[1]), turning, redrawn.fewest)
+            contours, inner = tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans)
+        contours = tuple(cubic(contour) for contour in contours)
         steps = [rounded_deltas(masters, contour.points, PARTS) for contour in contours]
         for each in steps:
             check_steps(each, PARTS, name)
@@ -209,7 +222,10 @@ class CharStrings2:
         corners = masters.weights_at(masters.grid())
         moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
         far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
-        return StoredGlyph(stored, redrawn.inner, max(far, default=0.0))
+        bounds = [bound + each for bound, each in zip(redrawn.bounds, far, strict=False)]
+        return StoredGlyph(
+            stored, inner, max(far, default=0.0), None, max(bounds, default=0.0) if redrawn.bounds else None, tallied
+        )
 
     def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just these regions, and their indices in its order."""
@@ -236,7 +252,7 @@ def cubic(contour: MasterContour) -> MasterContour:
     return MasterContour(np.concatenate(points, axis=1), degrees)
 
 
-def drawing(steps: list[IntArray], contours: list[MasterContour], name: str) -> list[tuple[str, list[Any]]]:
+def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str) -> list[tuple[str, list[Any]]]:
     """The commands that draw contours of default and deltas, (K, N, 2) in steps, each of whose arguments is blended.
 
     All masters are in one command, so that no master has another operator than the others.

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -16,24 +14,14 @@ from fontTools.ttLib.tables._g_l_y_f import (
 )
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
 from fontTools.ttLib.tables.TupleVariation import TupleVariation, compileTupleVariationStore
-from fontTools.varLib.iup import iup_delta_optimize
+from fontTools.varLib.iup import iup_contour_optimize
 
-from ...curves.cubics import turns
 from ...errors import GlyphsplineError
-from ...outlines.masters import MasterContour, Masters, quadratics
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import FloatArray
 from .font_glyphs import parts_of, simple_glyph, users
-from .implied_quadratics import Arc, fit
-from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
-
-LEVEL = np.radians(0.5)
-"""Turn between a line and an arc up to which, if no master turns more, the arc begins along the line."""
-
-BETWEEN = 16
-"""Locations inside the design space, besides the corners of its grid, where the distance of quadratics is measured."""
-
-PHANTOMS = 4
-"""Points after those of the contours, which encode the advance and the bearings."""
+from .master_deltas import Redrawn, StoredGlyph, check_steps, region_key
+from .quadratic_contours import PHANTOMS, Quadratic, own_contours
+from .stretches import NOTHING_NEW, settle, tally
 
 
 class Quadratics:
@@ -71,15 +59,23 @@ class Quadratics:
             if key in known and variation.coordinates[-PHANTOMS] is not None:
                 lefts[known[key]] += variation.coordinates[-PHANTOMS][0]
         shift = np.asarray(masters.scalars(masters.peaks) @ lefts)
-        drawn = [
-            drawn_contour(masters, contour, inner, shift, tolerance)
-            for contour, inner in zip(redrawn.contours, redrawn.inner, strict=True)
-        ]
+        tuples = [(known[key], variation) for key, variation in zip(keys, given, strict=True) if key in known]
+        owns = own_contours(masters, old, tuples, shift) if redrawn.bounds else {}
+        plans = [Quadratic(redrawn, c, owns, shift, tolerance) for c in range(len(redrawn.contours))]
+        tallied = None
+        if redrawn.bounds:
+            turning = settle(masters, plans)
+            if plans and all(plan.is_own for plan in plans):
+                raise GlyphsplineError(NOTHING_NEW, glyph=name)
+            before = len(getattr(old, "coordinates", ()))
+            after = sum(len(plan.points()[1]) for plan in plans)
+            tallied = tally((before, after), turning, redrawn.fewest)
+        drawn = [plan.points() for plan in plans]
         none = np.zeros((len(masters), 0, 2), dtype=np.int64)
-        steps = np.concatenate([none, *[each.steps for each in drawn]], axis=1)
+        steps = np.concatenate([none, *[points for points, _ in drawn]], axis=1)
         check_steps(steps, 1, name)
-        on = np.concatenate([np.zeros(0, dtype=bool), *[each.on for each in drawn]])
-        ends = (np.cumsum([len(each.on) for each in drawn]) - 1).tolist()
+        on = np.concatenate([np.zeros(0, dtype=bool), *[flags for _, flags in drawn]])
+        ends = (np.cumsum([len(flags) for _, flags in drawn]) - 1).tolist()
         flags = getattr(old, "flags", b"")
         self._new[name] = simple_glyph(steps[0], on, ends, bool(len(flags) and flags[0] & flagOverlapSimple))
         tags = [axis.tag for axis in masters.axes]
@@ -88,22 +84,31 @@ class Quadratics:
                 axes = {tag: tuple(three) for tag, three in zip(tags, region, strict=True) if three[1]}
                 given.append(TupleVariation(axes, [None] * PHANTOMS))
                 keys.append(key)
-        places, kept = [*map(tuple, steps[0].tolist()), *[(0, 0)] * PHANTOMS], []
+        kept = []
         for key, variation in zip(keys, given, strict=True):
-            # The phantom points stay. A second tuple of the same region moves no points.
-            deltas = steps[known.pop(key)] if key in known else np.zeros_like(steps[0])
+            # The phantom points stay. A second tuple of the same region moves no new points.
+            k = known.pop(key, None)
+            moved: list[tuple[int, int] | None] = []
+            for plan, (points, _) in zip(plans, drawn, strict=True):
+                if plan.is_own:  # points that the font leaves to be inferred stay so
+                    own = list(variation.coordinates[:-PHANTOMS][plan.own.place])
+                    moved += own or [None] * points.shape[1]
+                else:
+                    deltas = points[k] if k is not None else np.zeros_like(points[0])
+                    pairs = [[(x, y) for x, y in each.tolist()] for each in (deltas, points[0])]
+                    moved += iup_contour_optimize(*pairs, tolerance=0.0)
             phantoms = [delta or (0, 0) for delta in variation.coordinates[-PHANTOMS:]]
-            moved = iup_delta_optimize([*map(tuple, deltas.tolist()), *phantoms], places, ends, tolerance=0.0)
+            moved += [None if delta == (0, 0) else delta for delta in phantoms]
             if any(delta is not None for delta in moved):
                 kept.append(TupleVariation(variation.axes, moved))
         self._gvar.put(self._font.getGlyphID(name), kept)
-        shortest = min((each.shortest for each in drawn), default=np.inf)
+        shortest = min((plan.shortest for plan in plans), default=np.inf)
+        far = [0.0 if plan.is_own else plan.distance for plan in plans]
+        bounds = [plan.bound(given) for plan, given in zip(plans, redrawn.bounds, strict=False)]
         return StoredGlyph(
-            tuple(each.stored for each in drawn),
-            tuple(each.implied for each in drawn),
-            max((each.distance for each in drawn), default=0.0),
-            shortest if np.isfinite(shortest) else None,
-        )
+            tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans), max(far, default=0.0),
+            shortest if np.isfinite(shortest) else None, max(bounds, default=0.0) if redrawn.bounds else None, tallied,
+        )  # fmt: skip
 
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
@@ -162,88 +167,6 @@ def placed_by_points(font: TTFont) -> dict[str, str]:
         if glyph.isComposite() and any(hasattr(part, "firstPt") for part in glyph.components):
             found |= dict.fromkeys(parts_of(font, name), name)
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class Drawn:
-    """A contour as it is stored.
-
-    Attributes:
-        steps: (K, N, 2) the default and the deltas of its points. on: (N,) which of them are on the curve.
-        stored: what they draw in each master. implied: (m,) whether its segments begin at implied points.
-        distance: the largest from the contour that was given.
-        shortest: the shortest leg of a quadratic at an implied point; infinite if there is none.
-    """
-
-    steps: IntArray
-    on: BoolArray
-    stored: MasterContour
-    implied: BoolArray
-    distance: float
-    shortest: float
-
-
-def drawn_contour(
-    masters: Masters, contour: MasterContour, inner: BoolArray, shift: FloatArray, tolerance: float
-) -> Drawn:
-    """A contour in quadratics, within ``tolerance`` if that can be had in whole units.
-
-    Args:
-        inner: (m,) whether segment j begins inside an arc: there are only implied points on the curve.
-        shift: (K,) from where a master is drawn to where it is stored, along x.
-    """
-    offset = shift[:, None, None] * np.array([1.0, 0.0])
-
-    def rounded(points: FloatArray, metric: FloatArray | None = None) -> FloatArray:
-        return as_drawn(masters, rounded_deltas(masters, points + offset, 1, metric), 1) - offset
-
-    weights = masters.weights_at(locations(masters))
-    cubics, degrees = contour.cubics(), contour.degrees
-    arcs = [Arc(cubics, True, cubics[:, :2, 0])] if inner.all() else cut(cubics, degrees, inner, rounded)
-    parts, on, distances, legs = [], [], [0.0], [np.inf]
-    for arc in arcs:
-        if not arc.closed:
-            parts.append(arc.ends[:, :1])
-            on.append(True)
-            moved = weights @ (arc.ends[:, 0] - arc.cubics[:, 0, 0])
-            distances.append(float(np.hypot(*moved.T).max()))
-        if not arc.straight:
-            fitted = fit(arc, weights, tolerance, rounded)
-            parts.append(fitted.controls)
-            on += [False] * fitted.controls.shape[1]
-            distances.append(fitted.distance)
-            legs.append(fitted.shortest)
-    points = np.concatenate(parts, axis=1)
-    whole, kinds, implied = quadratics(points, np.array(on))
-    steps = rounded_deltas(masters, points + offset, 1)
-    return Drawn(steps, np.array(on), MasterContour(whole, kinds), implied, max(distances), min(legs))
-
-
-def cut(
-    cubics: FloatArray, degrees: IntArray, inner: BoolArray, rounded: Callable[[FloatArray], FloatArray]
-) -> list[Arc]:
-    """The lines and arcs of a contour with corners, from its first end on, and their ends rounded."""
-    starts = np.flatnonzero(~inner)
-    counts = np.diff([*starts, starts[0] + len(degrees)])
-    spans = [np.arange(start, start + count) % len(degrees) for start, count in zip(starts, counts, strict=True)]
-    ends = rounded(cubics[:, starts, 0])
-    straight = [len(span) == 1 and degrees[span[0]] == 1 for span in spans]
-    level = np.array([np.abs(turns(master, 1e-9)) for master in cubics]).max(axis=0)[starts] < LEVEL
-    arcs = []
-    for k, span in enumerate(spans):
-        here, there, beyond = ends[:, k], ends[:, (k + 1) % len(ends[0])], ends[:, (k + 2) % len(ends[0])]
-        following = (k + 1) % len(spans)
-        leaving = here - ends[:, k - 1] if straight[k - 1] and level[k] else None
-        arriving = there - beyond if straight[following] and level[following] else None
-        arcs.append(Arc(cubics[:, span], False, np.stack([here, there], axis=1), straight[k], leaving, arriving))
-    return arcs
-
-
-def locations(masters: Masters) -> FloatArray:
-    """(V, A) normalised locations: the corners of the grid, and some inside."""
-    corners = masters.grid()
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return np.vstack([corners, np.random.default_rng(0).uniform(low, high, (BETWEEN, len(low)))])
 
 
 class Gvar:

@@ -1,0 +1,266 @@
+"""The lines and arcs of a glyph's new contours, each of which may stay as the font has it.
+
+An arc from joint to joint of the source takes the place of some of the source's segments. Where it would turn a joint
+that the source does not turn, or needs more points, the next candidate for it is taken, and in the end these segments
+themselves: a glyph drawn anew has no kink that its source has not, at any location.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from ...checks.kinds import THRESHOLDS
+from ...checks.kinks import kinks_along
+from ...checks.on_axes import kinks_of
+from ...checks.turns import joint_controls, turns_of
+from ...errors import GlyphsplineError
+from ...outlines.masters import MasterContour, Masters
+from ...types import BoolArray, FloatArray, IntArray, counted
+from .master_deltas import Redrawn, Tally
+
+NEAR = 1e-3
+"""Distance in font units up to which points are one: curves come back from their fit as exact as numbers are."""
+
+MEETS = 1.0
+"""Distance in font units, in every master, up to which a joint is the source's: rounding moves it by half a unit."""
+
+WORSE = 0.05
+"""Degrees by which a joint may turn more than the source's before another candidate is taken."""
+
+BETWEEN = 16
+"""Locations inside the design space, besides the corners of its grid, where what cannot be certified is measured."""
+
+NOTHING_NEW = "none of its arcs can be drawn anew without a kink or more points"
+"""Why a glyph keeps its outline."""
+
+
+class Plan(Protocol):
+    """A contour that is drawn anew as far as that does no harm."""
+
+    def stored(self) -> MasterContour:
+        """What is drawn."""
+
+    def retreat(self, segment: int) -> bool:
+        """Take the next candidate for what meets where a segment of :meth:`stored` begins; False if there is none."""
+
+    def too_far(self) -> bool:
+        """Leave arcs as they are that are not certified within the tolerance; whether there were any."""
+
+
+class Turning:
+    """Where a glyph turns between its lines and arcs: at joints that are a corner in no master.
+
+    Attributes:
+        joints: (n, 2) contour and segment of those that turn, whatever the reason, along an axis or at
+            :func:`.locations`. places: (n, K, 2) where they are. turns: (n,) their largest turns, in degrees.
+        kinks, between: see :class:`.Tally`.
+    """
+
+    def __init__(self, masters: Masters) -> None:
+        moving = np.flatnonzero((masters.regions[:, :, 1] != 0).any(axis=0)).tolist() or [0]
+        along = kinks_along([masters], masters.axes, {}, moving, THRESHOLDS.corner_angle)
+        largest: dict[tuple[int, int], float] = {}
+        for each in along:
+            for (_, c, s), turn in zip(each.joints.tolist(), each.turns.tolist(), strict=True):
+                largest[c, s] = max(largest.get((c, s), 0.0), turn)
+        weights = masters.weights_at(locations(masters))
+        starts: dict[tuple[int, int], FloatArray] = {}
+        for c, contour in enumerate(masters.contours):
+            controls = joint_controls(contour)
+            turns = np.nan_to_num(np.abs(turns_of(np.tensordot(weights, controls, axes=1)))).max(axis=0)
+            for s, turn in enumerate(turns.tolist()):
+                starts[c, s] = controls[:, s, 0, 0]
+                if (c, s) in largest:
+                    largest[c, s] = max(largest[c, s], turn)
+        chosen = [joint for joint, turn in sorted(largest.items()) if turn >= THRESHOLDS.kink]
+        self.joints = chosen
+        self.turns = np.array([largest[joint] for joint in chosen])
+        self.places = np.array([starts[joint] for joint in chosen]).reshape(len(chosen), len(masters), 2)
+        seen = kinks_of([masters], {}, moving, along, THRESHOLDS)
+        made: dict[tuple[int, int], tuple[float, float]] = {}
+        rows = zip(seen.contours.tolist(), seen.segments.tolist(), *seen.numbers[:, 1:3].T.tolist(), strict=True)
+        for c, s, turn, more in rows:
+            made[c, s] = max(made.get((c, s), (0.0, 0.0)), (turn, more))
+        self.kinks, self.between = len(made), sum(more > 0 for _, more in made.values())
+
+    def not_in(self, source: Turning) -> list[tuple[int, int]]:
+        """Contour and segment of the joints that do not turn so in the source."""
+        found = []
+        for joint, place, turn in zip(self.joints, self.places, self.turns.tolist(), strict=True):
+            near = np.abs(source.places - place).max(axis=(1, 2), initial=0.0) <= MEETS
+            if not (near & (source.turns >= turn - WORSE)).any():
+                found.append(joint)
+        return found
+
+
+def settle(masters: Masters, plans: Sequence[Plan]) -> tuple[Turning, Turning]:
+    """Take other candidates until nothing turns that the source does not turn; where source and result turn."""
+    source = Turning(masters)
+    while True:
+        stored = [plan.stored() for plan in plans]
+        found = Turning(replace(masters, contours=stored, repeats=None))
+        bad = found.not_in(source) + [(c, s) for c, contour in enumerate(stored) for s in vanished(contour)]
+        moved = [plans[c].retreat(s) for c, s in bad]
+        if not any(moved) and not any([plan.too_far() for plan in plans]):  # noqa: C419 (all of them)
+            return source, found
+
+
+def locations(masters: Masters) -> FloatArray:
+    """(V, A) normalised locations: the corners of the grid, and some inside."""
+    corners = masters.grid()
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    return np.vstack([corners, np.random.default_rng(0).uniform(low, high, (BETWEEN, len(low)))])
+
+
+def vanished(contour: MasterContour) -> list[int]:
+    """Segments that have no length in any master: readers drop them, and other joints are there."""
+    whole = np.concatenate([contour.points, contour.points[:, :1]], axis=1)
+    starts = np.cumsum(contour.degrees) - contour.degrees
+    lengths = np.array([
+        np.abs(whole[:, a : a + degree + 1] - whole[:, a : a + 1]).max()
+        for a, degree in zip(starts.tolist(), contour.degrees.tolist(), strict=True)
+    ])  # fmt: skip
+    return np.flatnonzero(lengths <= NEAR).tolist()
+
+
+def spans_of(inner: BoolArray) -> list[IntArray]:
+    """The segments of each line and arc, from the first that does not begin inside one."""
+    starts = np.flatnonzero(~inner)
+    if not len(starts):
+        return [np.arange(len(inner))]
+    return [np.arange(a, b) % len(inner) for a, b in pairwise([*starts.tolist(), int(starts[0]) + len(inner)])]
+
+
+def ranges_of(contour: MasterContour, inner: BoolArray, source: MasterContour) -> list[range] | None:
+    """The segments of the source in whose place each line and arc is; numbers beyond the last count on from the first.
+
+    None where that is not known: an end is at no joint of the source, or at several.
+    """
+    firsts = [int(span[0]) for span in spans_of(inner)]
+    if inner.all():
+        return [range(len(source))]
+    starts = [(np.cumsum(each.degrees) - each.degrees) for each in (contour, source)]
+    here, there = contour.points[:, starts[0][firsts]], source.points[:, starts[1]]
+    close = np.abs(here[:, :, None] - there[:, None]).max(axis=(0, 3)) <= NEAR
+    if (close.sum(axis=1) != 1).any():
+        return None
+    at = close.argmax(axis=1)
+    steps = np.diff([*at, at[0]]) % len(source)
+    if len(at) == 1:
+        steps[:] = len(source)
+    if steps.sum() != len(source) or (steps == 0).any():
+        return None
+    return [range(a, a + step) for a, step in zip(at.tolist(), steps.tolist(), strict=True)]
+
+
+def is_own(contour: MasterContour, span: IntArray, source: MasterContour, own: range) -> bool:
+    """Whether a line or arc is the source's, unchanged."""
+    if len(span) != len(own):
+        return False
+    there = np.array(own) % len(source)
+    lines = (contour.degrees[span] == 1) == (source.degrees[there] == 1)
+    apart = np.abs(contour.cubics()[:, span] - source.cubics()[:, there]).max()
+    return bool(lines.all() and apart <= NEAR)
+
+
+class Segments:
+    """The plan of a contour of lines and cubics, any of whose stretches can be the source's own segments."""
+
+    def __init__(self, redrawn: Redrawn, c: int) -> None:
+        self.contour, self.inner = redrawn.contours[c], redrawn.inner[c]
+        self.source = redrawn.masters.contours[redrawn.numbers[c]]
+        self.spans = spans_of(self.inner)
+        self.ranges = ranges_of(self.contour, self.inner, self.source)
+        self.own = [False] * len(self.spans)
+        if self.ranges is not None:
+            pairs = zip(self.spans, self.ranges, strict=True)
+            self.own = [is_own(self.contour, span, self.source, own) for span, own in pairs]
+
+    @property
+    def is_own(self) -> bool:
+        """Whether all of it stays as the font has it."""
+        return all(self.own)
+
+    def excess(self) -> list[tuple[int, int]]:
+        """By how many segments each stretch that is drawn anew exceeds the source's, and its number."""
+        if self.ranges is None:
+            return [(len(self.contour) - len(self.source), 0)] * (not self.is_own)
+        pairs = enumerate(zip(self.spans, self.ranges, strict=True))
+        return [(len(span) - len(own), k) for k, (span, own) in pairs if not self.own[k]]
+
+    def keep(self, k: int) -> None:
+        """Leave a stretch as the font has it, or all of them if what they replace is not known."""
+        if self.ranges is None:
+            self.own = [True] * len(self.own)
+        else:
+            self.own[k] = True
+
+    def _pieces(self) -> list[tuple[MasterContour, IntArray, bool]]:
+        """The contours and segments of them that follow one another, and whether they are the source's."""
+        if self.is_own:
+            return [(self.source, np.arange(len(self.source)), True)]
+        pieces = []
+        for k, span in enumerate(self.spans):
+            if self.own[k]:
+                assert self.ranges is not None
+                pieces.append((self.source, np.array(self.ranges[k]) % len(self.source), True))
+            else:
+                pieces.append((self.contour, span, False))
+        return pieces
+
+    def stored(self) -> MasterContour:
+        """See :class:`Plan`."""
+        points, degrees = [], []
+        for contour, span, _ in self._pieces():
+            starts = np.cumsum(contour.degrees) - contour.degrees
+            points += [contour.points[:, starts[j] : starts[j] + contour.degrees[j]] for j in span.tolist()]
+            degrees.append(contour.degrees[span])
+        return MasterContour(np.concatenate(points, axis=1), np.concatenate(degrees))
+
+    def inside(self) -> BoolArray:
+        """(m,) whether a segment of :meth:`stored` begins inside an arc that is drawn anew."""
+        parts = [np.zeros(len(span), bool) if own else self.inner[span] for _, span, own in self._pieces()]
+        return np.concatenate(parts)
+
+    def too_far(self) -> bool:
+        """See :class:`Plan`: the curves given are as near as they are."""
+        return False
+
+    def retreat(self, segment: int) -> bool:
+        """See :class:`Plan`."""
+        if self.is_own:
+            return False
+        owners = np.repeat(np.arange(len(self.own)), [len(span) for _, span, _ in self._pieces()])
+        for k in (int(owners[segment - 1]), int(owners[segment])):
+            if not self.own[k]:
+                self.keep(k)
+                return True
+        return False
+
+
+def fewest(plans: Sequence[Segments]) -> None:
+    """Leave stretches as the font has them, those that need most more segments first, until a glyph has no more."""
+    while True:
+        every = [(more, -c, -k) for c, plan in enumerate(plans) for more, k in plan.excess()]
+        total = sum(len(plan.stored()) - len(plan.source) for plan in plans)
+        if total <= 0 or not every:
+            return
+        _, c, k = max(every)
+        plans[-c].keep(-k)
+
+
+def tally(points: tuple[int, int], turning: tuple[Turning, Turning], fewest: bool) -> Tally:
+    """What a glyph's plans come to.
+
+    Raises:
+        GlyphsplineError: the glyph would have more points than its source, which ``fewest`` forbids.
+    """
+    if fewest and points[1] > points[0]:
+        raise GlyphsplineError(f"it would have {counted(points[1], 'point')}, not {points[0]}")
+    source, found = turning
+    return Tally(points, (source.kinks, found.kinks), (source.between, found.between))

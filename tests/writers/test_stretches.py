@@ -1,0 +1,204 @@
+"""Glyphs of variable fonts drawn anew arc by arc: no new kink, no more points, and what stays, stays as it was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fontTools.ttLib import TTFont
+from fontTools.varLib.iup import iup_delta
+
+from glyphspline import Options, open_font
+from glyphspline.checks.turns import joint_controls, turns_of
+from glyphspline.fitting.convert_masters import convert_masters
+from glyphspline.outlines.masters import MasterContour, Masters
+from glyphspline.readers import Font
+from glyphspline.runs.jobs.masters import redrawn_glyph
+from glyphspline.writers.font.master_deltas import Redrawn
+from glyphspline.writers.font.stretches import ranges_of
+from glyphspline.writers.font.variable_font import VariableSummary, to_variable_font
+from tests.places import FONTS
+from tests.variable_fonts import quadratic, variable_font
+
+AXES = (("wght", 100, 400, 900, "Weight"), ("wdth", 75, 100, 100, "Width"))
+SUPPORTS = ({"wght": (0, 1, 1)}, {"wght": (-1, -1, 0)}, {"wdth": (-1, -1, 0)})
+TOLERANCE = 1.0
+
+
+def arch(rng: np.random.Generator) -> tuple[list[tuple[float, float]], list[bool]]:
+    """Two slanted stems, whose lines go on as an arch of many points, and another arch inside."""
+    lean, height, width = rng.integers(-8, 9) * 5, rng.integers(80, 100) * 5, rng.integers(60, 80) * 5
+    left, right = np.array([lean, height]), np.array([width + lean, height])
+    up = left / 5
+    turn = np.linspace(np.pi, 0, 17)[1:-1]
+    middle, half = (left + right) / 2 + up, width / 2
+    bow = np.round(middle + np.stack([1.02 * half * np.cos(turn), 140 * np.sin(turn)], axis=1))
+    points = [(0, 0), left, left + up, *bow, right + up, right, (width, 0), (width - 70, 0)]
+    on = [True, True, *[False] * 17, True, True, True]
+    inside = np.round((left + right) / 2 + np.stack([0.7 * half * np.cos(turn[::-1]), 90 * np.sin(turn)], axis=1))
+    points += [right - [70, 0], *inside, (left[0] + 60, left[1]), (60, 0)]
+    on += [True, *[False] * 15, True, True]
+    return [(int(x), int(y)) for x, y in points], on
+
+
+def drawn_font(folder: Path, seed: int) -> Font:
+    """A glyph whose masters are drawn by the same rule, with other numbers, so that lines go on as arches in all."""
+    shapes = [arch(np.random.default_rng([seed, k])) for k in range(4)]
+    points, on = shapes[0]
+    tuples = [
+        (support, [(x - a, y - b) for (a, b), (x, y) in zip(points, other, strict=True)])
+        for support, (other, _) in zip(SUPPORTS, shapes[1:], strict=True)
+    ]
+    return open_font(variable_font(folder / "arch.ttf", {"n": quadratic(points, on)}, {"n": tuples}, AXES))
+
+
+def converted(masters: Masters, corners: str = "sharp", tolerance: float = TOLERANCE) -> Redrawn:
+    options = Options(corners=corners, tolerance=tolerance, effort="fast")  # type: ignore[arg-type]
+    return redrawn_glyph(convert_masters(masters, options))
+
+
+def written(
+    font: Font, redrawn: dict[str, Redrawn], flavour: str = "ttf", tolerance: float = TOLERANCE
+) -> tuple[Font, VariableSummary]:
+    data, summary = to_variable_font(font, redrawn, flavour, tolerance=tolerance)  # type: ignore[arg-type]
+    return Font(font.path, data, 0, None), summary
+
+
+def kinks(masters: Masters, least: float) -> list[tuple[np.ndarray, float]]:
+    """Joints that turn by ``least`` to 12 degrees at masters or between: their places in all masters, and the turn."""
+    grid = masters.grid()
+    at = np.vstack([masters.peaks, np.random.default_rng(0).uniform(grid.min(0), grid.max(0), (60, grid.shape[1]))])
+    found = []
+    for contour in masters.contours:
+        controls = joint_controls(contour)
+        turns = np.abs(turns_of(np.tensordot(masters.weights_at(at), controls, axes=1))).max(axis=0)
+        smooth = (np.abs(turns_of(controls)) < 12).all(axis=0)
+        found += [(controls[:, j, 0, 0], turns[j]) for j in np.flatnonzero(smooth & (turns > least))]
+    return found
+
+
+def new_kinks(source: Masters, result: Masters) -> int:
+    known = kinks(source, 0.0)
+    return sum(
+        not any(np.abs(place - there).max() < 1.5 and turn < before + 0.1 for there, before in known)
+        for place, turn in kinks(result, 0.5)
+    )
+
+
+def points_of(font: Font, name: str) -> int:
+    return len(font.tables()["glyf"][name].coordinates)
+
+
+def test_no_kink_that_the_source_has_not(tmp_path: Path) -> None:
+    made, fewer, anew = 0, 0, 0
+    for seed in range(8):
+        font = drawn_font(tmp_path, seed)
+        masters = font.masters("n")
+        new = converted(masters, tolerance=TOLERANCE / 2)
+        plain, _ = written(font, {"n": Redrawn(new.masters, new.contours, new.inner)})
+        made += new_kinks(masters, plain.masters("n"))
+        result, summary = written(font, {"n": new})
+        assert new_kinks(masters, result.masters("n")) == 0
+        assert points_of(result, "n") <= points_of(font, "n")
+        fewer += points_of(result, "n") < points_of(font, "n")
+        anew += len(summary.glyphs)
+        for stored in summary.glyphs.values():
+            assert stored.bound is not None
+            assert stored.bound <= TOLERANCE
+            assert stored.tally is not None
+            assert stored.tally.points == (points_of(font, "n"), points_of(result, "n"))
+    assert made > 0, "the curves by themselves do kink"
+    assert anew > 3
+    assert fewer > 3
+
+
+def test_a_cff2_glyph_has_no_more_segments(tmp_path: Path) -> None:
+    font = open_font(FONTS / "variable-cff2.otf")
+    names = [name for name in font.glyph_names if font.masters(name).contours]
+    redrawn = {name: converted(font.masters(name), tolerance=8.0) for name in names}
+    result, summary = written(font, redrawn, "otf")
+    assert summary.glyphs
+    for name in names:
+        before, after = ([len(contour) for contour in each.masters(name).contours] for each in (font, result))
+        assert sum(after) <= sum(before)
+        assert new_kinks(font.masters(name), result.masters(name)) == 0
+    loose = {name: replace(new, fewest=False) for name, new in redrawn.items()}
+    _, summary = written(font, loose, "otf")
+    tallies = [glyph.tally.points for glyph in summary.glyphs.values() if glyph.tally]
+    assert any(after > before for before, after in tallies)
+
+
+def own_segments(masters: Masters, inner: np.ndarray) -> Redrawn:
+    """The source's own contour, with the joints given inside arcs, which are moved a little."""
+    (contour,) = masters.contours
+    points = contour.points.copy()
+    points[:, (np.cumsum(contour.degrees) - contour.degrees)[inner]] += 0.01
+    return Redrawn(masters, (MasterContour(points, contour.degrees),), (inner,), (0.01,), (0,), True)
+
+
+def test_a_glyph_of_arcs_that_stay_keeps_its_bytes(tmp_path: Path) -> None:
+    font = drawn_font(tmp_path, 1)
+    masters = font.masters("n")
+    result, summary = written(font, {"n": own_segments(masters, np.zeros(len(masters.contours[0]), dtype=bool))})
+    assert "drawn anew" in summary.left["n"]
+    for tag in ("glyf", "gvar", "loca", "hmtx", "maxp"):
+        assert result.tables().reader[tag] == font.tables().reader[tag]
+
+
+@pytest.mark.parametrize("shifted", [0, 3])
+def test_stretches_that_stay_keep_their_points(tmp_path: Path, shifted: int) -> None:
+    font = drawn_font(tmp_path, 1)
+    tables = font.tables()
+    glyph = tables["glyf"]["n"]
+    if shifted:  # the contour begins elsewhere, at a control point
+        places = np.roll(np.array(glyph.coordinates), shifted, axis=0)
+        flags = np.roll(np.array(glyph.flags), shifted)
+        glyph.coordinates[:] = [tuple(map(int, place)) for place in places]
+        glyph.flags[:] = bytes(flags.tolist())
+        for variation in tables["gvar"].variations["n"]:
+            moved = variation.coordinates[:-4]
+            variation.coordinates[:-4] = moved[-shifted:] + moved[:-shifted]
+        file = BytesIO()
+        tables.save(file)
+        font = Font(font.path, file.getvalue(), 0, None)
+    masters = font.masters("n")
+    contour = masters.contours[0]
+    # The arch outside is an arc of its own; all else stays.
+    starts = contour.points[0, np.cumsum(contour.degrees) - contour.degrees]
+    plain = drawn_font(tmp_path, 1).masters("n").contours[0].points[0]
+    inner = np.array([(np.abs(plain[3:34:2] - start).max(axis=1) < 1e-6).any() for start in starts])
+    assert inner.sum() == 16
+    result, summary = written(font, {"n": own_segments(masters, inner)}, tolerance=3.0)
+    (stored,) = summary.glyphs.values()
+    assert stored.tally is not None
+    assert stored.tally.points[1] < stored.tally.points[0]
+    assert new_kinks(masters, result.masters("n")) == 0
+
+    def rows(of: Font) -> set[tuple[int, ...]]:
+        """Each point with all its deltas, and whether it is on the curve."""
+        each: TTFont = of.tables()
+        own = each["glyf"]["n"]
+        places = [*own.coordinates, *[(0, 0)] * 4]
+        tuples = [iup_delta(v.coordinates, places, own.endPtsOfContours)[:-4] for v in each["gvar"].variations["n"]]
+        columns = [
+            np.array(own.coordinates),
+            *map(np.array, tuples),
+            np.array([flag & 1 for flag in own.flags])[:, None],
+        ]
+        return set(map(tuple, np.concatenate(columns, axis=1).astype(int).tolist()))
+
+    before, after = rows(font), rows(result)
+    assert len(before & after) >= len(before) - (inner.sum() + 1)
+
+
+def test_arcs_know_what_they_replace() -> None:
+    corners = np.array([[0, 0], [100, 0], [100, 50], [100, 100], [0, 100]], dtype=float)
+    source = MasterContour(corners[None], np.ones(5, dtype=np.int64))
+    new = MasterContour(corners[None, [1, 3, 4, 0]], np.ones(4, dtype=np.int64))
+    assert ranges_of(new, np.zeros(4, dtype=bool), source) == [range(1, 3), range(3, 4), range(4, 5), range(1)]
+    away = MasterContour(corners[None, [1, 3, 4, 0]] + 1, np.ones(4, dtype=np.int64))
+    assert ranges_of(away, np.zeros(4, dtype=bool), source) is None
+    assert ranges_of(new, np.ones(4, dtype=bool), source) == [range(5)]
