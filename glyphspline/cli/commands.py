@@ -147,7 +147,7 @@ def dataset(
         say(f"written to {out}: read {out.rstrip('/')}/README.md")
     if run.as_json:
         print_json(summary.facts())
-    return bool(summary.failed or summary.fonts["failed"])
+    return bool(summary.failed or summary.outside_tolerance or summary.fonts["failed"])
 
 
 app.command()(text)
@@ -234,6 +234,7 @@ def atlas(
     """
     from ..readers import open_source
     from ..runs.jobs.atlas import make_atlas, make_axis_atlas
+    from ..runs.summary import listed
 
     if out.suffix.lower() not in (".pdf", ""):
         stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
@@ -249,18 +250,17 @@ def atlas(
     chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
         if axis is not None:
-            pages, failed = make_axis_atlas(
-                source, names, out, options, axis, maps=maps, jobs=run.jobs, observer=observer
-            )
+            made = make_axis_atlas(source, names, out, options, axis, maps=maps, jobs=run.jobs, observer=observer)
         else:
-            pages, failed = make_atlas(
-                source, names, out, options, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer
-            )
+            made = make_atlas(source, names, out, options, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer)
     if not run.quiet:
-        say(f"{pages} pages written to {out}" + (f"; {len(failed)} glyphs failed" if failed else ""))
+        failed = made.failed
+        say(f"{made.pages} pages written to {out}" + (f"; {len(failed)} glyphs failed" if failed else ""))
         for line in [*failed[:10], *([f"and {len(failed) - 10} more"] if len(failed) > 10 else [])]:
             say(f"failed: {line}")
-    return bool(failed or names.missing)
+        if made.outside:
+            say(f"not within the tolerance: {listed(made.outside[:10], len(made.outside))}")
+    return bool(made.failed or made.outside or names.missing)
 
 
 app.command()(check)

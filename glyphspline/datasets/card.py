@@ -44,6 +44,7 @@ class Summary:
     Attributes:
         splits: by name. fonts: faces, at each of their locations, by status: taken, left out, duplicate, failed.
         licences: fonts and rows by licence. failed: glyphs that have no rows, and some of them: (font, glyph, reason).
+        outside_tolerance: glyphs with a contour that is not within it, if it was asked for.
         unread: the first few fonts that failed: (file, reason). seconds: that the run took.
     """
 
@@ -51,6 +52,7 @@ class Summary:
     fonts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(STATUSES, 0))
     licences: dict[str, tuple[int, int]] = field(default_factory=dict)
     failed: int = 0
+    outside_tolerance: int = 0
     failures: list[tuple[str, str, str]] = field(default_factory=list)
     unread: list[tuple[str, str]] = field(default_factory=list)
     seconds: float = 0.0
@@ -76,6 +78,8 @@ class Summary:
             fonts, rows = found.licences.get(font.licence or UNKNOWN, (0, 0))
             found.licences[font.licence or UNKNOWN] = fonts + 1, rows + own.rows
             found.failed += own.failed
+            if plan.spec.options and not plan.spec.options.is_fixed:
+                found.outside_tolerance += own.outside
             found.failures += [(font.file, *pair) for pair in own.reasons][: SHOWN - len(found.failures)]
         for name, split in found.splits.items():
             split.families = len(families[name])
@@ -116,6 +120,8 @@ class Summary:
             yield f"{counted(self.failed, 'glyph')} failed"
             for file, glyph, reason in self.failures:
                 yield f"{file}, {glyph}: {reason}"
+        if self.outside_tolerance:
+            yield f"{counted(self.outside_tolerance, 'glyph')} not within the tolerance: see column within_tolerance"
 
 
 HUB = {

@@ -34,6 +34,7 @@ class OfFont(NamedTuple):
 
     Attributes:
         glyphs: those with rows. rows: their number. duplicates: of them. failed: glyphs without rows.
+        outside: glyphs with a contour that is not within the tolerance.
         reasons: (glyph, reason) of the first few of those.
     """
 
@@ -41,11 +42,12 @@ class OfFont(NamedTuple):
     rows: int = 0
     duplicates: int = 0
     failed: int = 0
+    outside: int = 0
     reasons: tuple[tuple[str, str], ...] = ()
 
     def plus(self, other: OfFont) -> OfFont:
         """The sum of two."""
-        sums = [a + b for a, b in zip(self[:4], other[:4], strict=True)]
+        sums = [a + b for a, b in zip(self[:-1], other[:-1], strict=True)]
         return OfFont._make([*sums, (*self.reasons, *other.reasons)[:NAMED]])
 
 
@@ -94,6 +96,17 @@ def marked(table: Any, shapes: Shapes) -> tuple[Any, int]:
     return table.set_column(at, table.schema.field(at), pa.array(values)), int(values.sum())
 
 
+def outside(table: Any) -> int:
+    """Number of glyphs of a table with a contour that is not within the tolerance."""
+    pa = need("parquet")
+    within = table["within_tolerance"].combine_chunks()
+    rows = np.arange(len(within))
+    if pa.types.is_list(within.type):
+        rows, within = within.value_parent_indices().to_numpy(), within.flatten()
+    far = rows[np.array([one is False for one in within.to_pylist()], dtype=np.bool_)]
+    return len(table["gid"].take(pa.array(far)).unique())
+
+
 def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mark: str, schema: Any) -> Held:
     """Write a shard whole.
 
@@ -112,7 +125,8 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
         for font, chunk in made:
             table = table_in(chunk.rows) if chunk.rows else schema.empty_table()
             table, duplicates = marked(table, shapes)
-            new = OfFont(chunk.glyphs, table.num_rows, duplicates, len(chunk.failed), tuple(chunk.failed[:NAMED]))
+            reasons = tuple(chunk.failed[:NAMED])
+            new = OfFont(chunk.glyphs, table.num_rows, duplicates, len(chunk.failed), outside(table), reasons)
             held[font] = held.get(font, OfFont()).plus(new)
             yield table
 

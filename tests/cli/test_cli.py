@@ -405,3 +405,16 @@ def test_files_are_called_after_characters_if_asked(tmp_path: Path) -> None:
     options = ["--text", "龍O", "--names", "char", "--format", "svg", "--out", str(tmp_path / "out"), "-j", "0"]
     assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
     assert {path.name for path in (tmp_path / "out" / "svg").iterdir()} == {"龍.svg", "O.svg"}
+
+
+@pytest.mark.parametrize(("tolerance", "status"), [("1", 0), ("0.00001", 1)])
+@pytest.mark.parametrize("command", ["convert", "text", "atlas", "dataset"])
+def test_a_missed_tolerance_is_something_that_was_not_done(
+    command: str, tolerance: str, status: int, tmp_path: Path
+) -> None:
+    given = ["O"] if command == "text" else ["--text", "O", *(["--format", "svg"] if command == "convert" else [])]
+    out = tmp_path / {"text": "o.svg", "atlas": "o.pdf"}.get(command, "o")
+    font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+    words = [command, font, *given, "--corners", "smooth", "--tolerance", tolerance, "--out", str(out)]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == status, result.output

@@ -171,6 +171,18 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
     assert contents(out) == contents(tmp_path / "whole")
 
 
+@pytest.mark.parametrize("rows", ["glyph", "contour"])
+@pytest.mark.parametrize(
+    ("options", "count"),
+    [(gs.Options(), 0), (gs.Options(tolerance=1e-5, corners="smooth"), 2), (gs.Options(step=300.0), 0)],
+)
+def test_glyphs_that_miss_the_tolerance_are_counted(rows: Any, options: gs.Options, count: int, tmp_path: Path) -> None:
+    spec = DatasetSpec(options=options, characters="O8", rows=rows)
+    for _ in range(2):
+        summary = gs.dataset(FONTS / "kouzan-gyosho.ttf", tmp_path, spec, jobs=0)
+        assert (summary.glyphs, summary.outside_tolerance) == (2, count)
+
+
 def test_shards_that_are_gone_or_broken_are_made_again(tmp_path: Path) -> None:
     gs.dataset(FONTS, tmp_path, PLAIN, jobs=0)
     before = contents(tmp_path)

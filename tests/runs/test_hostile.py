@@ -159,7 +159,7 @@ def test_check_and_atlas_go_on_without_the_glyph_that_never_ends(
     assert (face.glyphs, face.failed) == (2, [("endless", "took longer than 5 s")])
     font = open_font(tmp_path / "endless.otf")
     found = make_atlas(font, font.glyph_names, tmp_path / "atlas.pdf", Options(), jobs=1)
-    assert found == (3, ["endless: took longer than 5 s"])
+    assert found == (3, ["endless: took longer than 5 s"], [])
 
 
 def test_a_text_that_needs_too_many_vertices_is_refused(tmp_path: Path) -> None:

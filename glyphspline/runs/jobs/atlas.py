@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from ...checks.kinks import tags_of
 from ...errors import GlyphsplineError
@@ -28,6 +28,19 @@ if TYPE_CHECKING:
 
 PROFILED = 12
 """Up to this number of glyphs, each has a profile page by default."""
+
+
+class Atlas(NamedTuple):
+    """An atlas that is written.
+
+    Attributes:
+        pages: their number. failed: glyphs that failed, with the reasons. outside: glyphs not within the tolerance.
+    """
+
+    pages: int
+    failed: list[str]
+    outside: list[str]
+
 
 Converted: TypeAlias = "GlyphResult | MastersResult | tuple[str, str]"
 """A result, or a glyph's name and why it could not be converted."""
@@ -78,7 +91,7 @@ def make_atlas(
     maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
-) -> tuple[int, list[str]]:
+) -> Atlas:
     """Write the atlas of some glyphs.
 
     Args:
@@ -88,13 +101,10 @@ def make_atlas(
         maps: what the pages of combs show.
         jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
         observer: called with the number of glyphs done, of all, and of those that failed.
-
-    Returns:
-        Number of pages written; glyphs that failed, with the reasons.
     """
     make_folder(path.parent)
     chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
-    job, total, failed = AtlasJob(place_of(source), options), len(names), list[str]()
+    job, total, notable = AtlasJob(place_of(source), options), len(names), Atlas(0, [], [])
     em = source.metrics.units_per_em
     with workers(jobs, kinds=kinds_for(options), expected=total) as pool:
         sample = names[:: -(-total // SCALE_SAMPLE) or 1]
@@ -104,11 +114,11 @@ def make_atlas(
         others = run(job, left, pool, ordered=True, observer=observer, before=len(kept), total=total)
         made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
         pages = write_atlas(
-            path, _shown(made, failed), scale, heading=f"{source.family} {source.style}", combs=maps.comb,
+            path, _shown(made, notable), scale, heading=f"{source.family} {source.style}", combs=maps.comb,
             in_corners=maps.corner_teeth,
             profiled=lambda glyph: glyph.outline.name in chosen,
         )  # fmt: skip
-    return pages, failed
+    return notable._replace(pages=pages)
 
 
 def make_axis_atlas(
@@ -121,7 +131,7 @@ def make_axis_atlas(
     maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
-) -> tuple[int, list[str]]:
+) -> Atlas:
     """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
 
     Args:
@@ -129,9 +139,6 @@ def make_axis_atlas(
         options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
         maps: its scale, if it has one. jobs: as of :func:`make_atlas`.
         observer: called with the number of glyphs done, of all, and of those that failed.
-
-    Returns:
-        Number of pages written; glyphs that failed, with the reasons.
 
     Raises:
         GlyphsplineError: the font is not variable, or has no such axis.
@@ -144,20 +151,31 @@ def make_axis_atlas(
     em, read = source.metrics.units_per_em, [each for each in sources if not isinstance(each, GlyphsplineError)]
     scale = maps.scale_for(em) or curvature_scale(map(as_glyph, read)) or 1 / em
     check_options(options)
-    failed: list[str] = []
+    notable = Atlas(0, [], [])
     with workers(jobs, kinds=kinds_for(options, masters=True), expected=len(names)) as pool:
         parts = run(AtlasJob(place_of(source), options, masters=True), names, pool, ordered=True, observer=observer)
         made: Iterator[Any] = (part.result for part in parts)
         pages = write_axis_atlas(
-            path, _shown(made, failed), axis, source.location, scale, f"{source.family} {source.style}",
+            path, _shown(made, notable), axis, source.location, scale, f"{source.family} {source.style}",
         )  # fmt: skip
-    return pages, failed
+    return notable._replace(pages=pages)
 
 
-def _shown(glyphs: Iterator[Any], failed: list[str]) -> Iterator[Any]:
-    """Results, and names and errors of glyphs that failed, without those that are empty; ``failed`` gets the rest."""
+def _shown(glyphs: Iterator[Any], notable: Atlas) -> Iterator[Any]:
+    """Results, and names and errors of glyphs that failed, without those that are empty; ``notable`` gets the rest."""
     for glyph in glyphs:
         if isinstance(glyph, tuple):
-            failed.append(": ".join(glyph))
+            notable.failed.append(": ".join(glyph))
+        elif _is_outside(glyph):
+            notable.outside.append((glyph.outline if isinstance(glyph, GlyphResult) else glyph.masters).name)
         if isinstance(glyph, tuple) or glyph.contours:
             yield glyph
+
+
+def _is_outside(glyph: GlyphResult | MastersResult) -> bool:
+    """Whether a tolerance was asked for, and a contour is not within it."""
+    if glyph.options.is_fixed:
+        return False
+    if isinstance(glyph, GlyphResult):
+        return False in glyph.arrays.measures.get("within_tolerance", ())
+    return not all(contour.within_tolerance for contour in glyph.contours)
