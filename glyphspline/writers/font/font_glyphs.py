@@ -79,8 +79,6 @@ def drawn_result(
     """
     name, em = result.outline.name, result.outline.metrics.units_per_em
     g2 = is_g2(result)
-    if g2 and flavour == "ttf" and (drawn := quadratic_result(result, tolerance)):
-        return drawn
     exact = oriented([contour.curve for contour in result.contours], flavour)
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
@@ -117,22 +115,6 @@ def stays(result: GlyphResult) -> bool:
     arrays = result.outline.arrays
     whole = np.abs(2 * arrays.points - np.rint(2 * arrays.points)).max(initial=0.0) <= GRID
     return is_g2(result) and bool((arrays.degrees < 3).all()) and not whole
-
-
-def quadratic_result(result: GlyphResult, tolerance: float) -> Drawn | None:
-    """A glyph of lines and quadratics with as few points as follow it; None if the source is none, or off the grid."""
-    from ...fitting.sharp.font_fit import quadratic_points  # imports the compiler
-
-    outline = result.outline
-    found = quadratic_points(outline.arrays, result.options, tolerance, outline.metrics.units_per_em)
-    if found is None:
-        return None
-    contours, distance = found
-    points = np.concatenate([np.empty((0, 2)), *(points for points, _ in contours)]).astype(np.int64)
-    check_size(points.tolist(), outline.name)
-    on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in contours)])
-    data = simple_glyph(points, on, (np.cumsum([len(on) for _, on in contours]) - 1).tolist(), False)
-    return Drawn(data, bounds_of(data, []), distance + outline.snapped)
 
 
 def chosen(contour: Contour, split: Sequence[list[FloatArray]], parts: int, room: float) -> Contour:
