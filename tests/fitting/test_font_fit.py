@@ -179,3 +179,13 @@ def test_fonts_are_written_as_they_are_fitted(tmp_path: Path) -> None:
 )
 def test_fonts_alone_have_their_own_defaults(given: dict[str, object], expected: bool) -> None:
     assert for_fonts(given) == (FOR_FONTS if expected else {})
+
+
+def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:
+    given = outlines(FONTS / "kouzan-gyosho.ttf")
+    for result in gs.convert_many(given, OPTIONS):
+        for contour in result.contours:
+            assert contour.measures.within_tolerance
+            assert set(contour.curve.degrees.tolist()) <= {1, 3}
+            a, b = (gs.sample(each, step=0.5) for each in (contour.source, contour.curve))
+            assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1

@@ -70,10 +70,15 @@ def fit_contours(
             first += 1
         for s in range(r):
             q = (first + s) % r
-            found[count + s], kinds[count + s] = run[q], types[q]
+            found[count + s], kinds[count + s] = run[q], 1 if types[q] == 1 else 3
             anchors[count + c + s, 0], anchors[count + c + s, 1] = s, (nodes[q] + k) % m
         places = anchors[count + c : count + c + r, 1]
-        near_places(1, cubics[a:b], places.copy(), found[count : count + r], True, 0.0, 0.0, places)
+        hints = places.copy()
+        near_places(1, cubics[a:b], hints, found[count : count + r], True, 0.0, 0.0, places)
+        for s in range(r):
+            here, p = cubics[a + int(hints[s]), 0], found[count + s, 0]
+            if here[0] == p[0] and here[1] == p[1]:  # the outline may come by here twice
+                places[s] = hints[s]
         if places[0] < 0.0:
             places += m
         anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m
