@@ -189,3 +189,15 @@ def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:
             assert set(contour.curve.degrees.tolist()) <= {1, 3}
             a, b = (gs.sample(each, step=0.5) for each in (contour.source, contour.curve))
             assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+def test_a_truetype_font_of_cubics_is_within_the_tolerance(tmp_path: Path) -> None:
+    font = gs.open_font(FONTS / "kouzan-gyosho.otf")
+    names = font.select(text="永g好")
+    summary = write_font(font, gs.convert_many(font.outlines(names), OPTIONS), tmp_path / "new.ttf", tolerance=1.024)
+    assert summary.beyond == ()
+    new = gs.open_font(tmp_path / "new.ttf")
+    for name in names:
+        for one, other in zip(font.outline(name).contours, new.outline(name).contours, strict=True):
+            a, b = (gs.sample(each, step=0.5) for each in (one, other))
+            assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1

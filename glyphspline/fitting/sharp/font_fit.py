@@ -103,7 +103,7 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
     found, anchors = _fitted(source, tries, options, tolerance, share, em)
     parts = [(found, c) for c in range(source.num_contours)]
     places = [anchors[a:b] for a, b in pairwise((found.curves.offsets + np.arange(len(parts) + 1)).tolist())]
-    expected = np.concatenate([_findings(source, em), _turning(source)])
+    expected = _findings(source, em)
     for level in GATES:
         wrong = _new_findings(source, expected, assembled(parts).curves, places, em)
         outside = [c for c, (each, k) in enumerate(parts) if not each.measures["within_tolerance"][k]]
@@ -153,17 +153,19 @@ def _fitted(
 
 
 def _findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints and in segments; see :data:`...checks.segments.WHAT`."""
+    """(n, 7) what a check finds at joints and in segments, and all turns; see :data:`...checks.segments.WHAT`."""
     segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
-    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits)])
+    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), _turning(contours)])
     return found[found[:, WHAT] != JUMP]
 
 
 def _turning(contours: ContourArrays) -> FloatArray:
-    """(n, 7) joints that turn, also where that may be rounding's: a cubic's handles are none of a quadratic's."""
+    """(n, 7) joints of curves that turn, also where a check takes that for rounding's."""
     rows = []
     for c in range(contours.num_contours):
-        joints = np.flatnonzero(np.abs(turns(all_cubics(contours.part(c, c + 1)), NO_HANDLE)) > KINKED)
+        part = contours.part(c, c + 1)
+        line = part.degrees == 1
+        joints = np.flatnonzero((np.abs(turns(all_cubics(part), NO_HANDLE)) > KINKED) & ~(line & np.roll(line, 1)))
         own = np.zeros((len(joints), SEEN + 1))
         own[:, WHAT], own[:, CONTOUR], own[:, PLACE] = KINK, c, joints
         rows.append(own)
@@ -180,7 +182,8 @@ def _new_findings(
         own, m = places[c][:, 1], int(np.diff(source.offsets)[c])
         low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * (row[WHAT] == KINK), own[s + 1]
         alike = expected[(expected[:, CONTOUR] == c) & (expected[:, WHAT] == row[WHAT]), PLACE]
-        if ((alike - low + 0.5) % m <= high - low + 1.0).any():
+        first, last = (own[s], own[s]) if row[WHAT] == KINK else (low, high)
+        if ((alike - first + 0.5) % m <= last - first + 1.0).any():
             continue
         wrong[source.offsets[c] + np.arange(int(np.floor(low + 1e-6)), int(np.ceil(high - 1e-6))) % m] = True
     return wrong
@@ -273,4 +276,4 @@ def _more_findings(source: ContourArrays, made: ContourArrays, em: float) -> boo
     before, after = (
         np.bincount(_findings(each, em)[:, WHAT].astype(np.int64), minlength=20) for each in (source, made)
     )
-    return bool((after > before).any()) or len(_turning(made)) > len(_turning(source))
+    return bool((after > before).any())
