@@ -8,9 +8,9 @@ from ...curves.cubics import turns
 from ...curves.pairing import SHARPNESS, pair_stretches
 from ...fitting.results import GlyphResult
 from ...fitting.sharp.font_fit import of_points, quadratic_points
-from ...outlines.masters import MasterContour, Masters
+from ...outlines.masters import quadratics
 from ...outlines.outline import Contour
-from ...types import BoolArray, FloatArray
+from ...types import BoolArray, FloatArray, IntArray
 from .font_glyphs import (
     QUADRATIC_SHARE,
     ROUNDING,
@@ -21,16 +21,14 @@ from .font_glyphs import (
     quadratic_glyph,
     simple_glyph,
 )
-from .variable_glyf import drawn_contour
+from .implied_quadratics import fit
+from .quadratic_contours import cut
 
 SMOOTH = np.radians(12.0)
 """Turn up to which a joint of cubics is inside an arc of quadratics."""
 
 TRIES = (0.85, 0.6, 0.3)
 """Shares of the tolerance for quadratics whose certificate fails at the one before."""
-
-ALONE = Masters("", axes=(), regions=np.empty((0, 0, 3)), contours=(), advances=np.zeros(1))
-"""The design space of a font that does not vary."""
 
 
 def quadratic_result(result: GlyphResult, tolerance: float) -> Drawn:
@@ -69,17 +67,15 @@ def approximated(contour: Contour, tolerance: float) -> tuple[FloatArray, BoolAr
     starts = np.flatnonzero(~inner)
     best: tuple[FloatArray, BoolArray, float] | None = None
     for share in TRIES:
-        masters = MasterContour(contour.points[None], contour.degrees)
-        drawn = drawn_contour(ALONE, masters, inner, np.zeros(1), max(share * tolerance, 0.5 * ROUNDING))
-        points, on = drawn.steps[0].astype(np.float64), drawn.on
+        points, on = arcs_of(cubics, contour.degrees, inner, max(share * tolerance, 0.5 * ROUNDING))
         made = of_points(points, on)
-        ends = Contour(made.points, made.degrees).cubics()
+        stored = Contour(made.points, made.degrees).cubics()
+        _, _, implied = quadratics(points[None], on)
         # Arcs and lines follow each other in both; each begins where the other does.
-        stored = np.flatnonzero(~drawn.implied)
-        rows = np.column_stack([stored, starts])
-        rows = np.vstack([rows, [len(ends), starts[0] + len(cubics)]]).astype(np.float64)
+        rows = np.column_stack([np.flatnonzero(~implied), starts]).astype(np.float64)
+        rows = np.vstack([rows, [len(stored), starts[0] + len(cubics)]])
         bounds, _ = pair_stretches(
-            ends, np.array([0, len(ends)]), cubics, np.array([0, len(cubics)]), rows, np.array([0, len(rows)]),
+            stored, np.array([0, len(stored)]), cubics, np.array([0, len(cubics)]), rows, np.array([0, len(rows)]),
             SHARPNESS * tolerance, tolerance,
         )  # fmt: skip
         if best is None or bounds.max() < best[2]:
@@ -88,3 +84,19 @@ def approximated(contour: Contour, tolerance: float) -> tuple[FloatArray, BoolAr
             break
     assert best is not None
     return best
+
+
+def arcs_of(cubics: FloatArray, degrees: IntArray, inner: BoolArray, tolerance: float) -> tuple[FloatArray, BoolArray]:
+    """Points of the lines and arcs of a contour, and which are on the curve: the ends of these."""
+
+    def rounded(points: FloatArray, metric: FloatArray | None = None) -> FloatArray:
+        return np.asarray(np.rint(points))
+
+    points, on = [np.empty((0, 2))], list[bool]()
+    for arc in cut(cubics[None], degrees, inner, rounded):
+        points.append(arc.ends[0, :1])
+        on.append(True)
+        if not arc.straight and (found := fit(arc, np.ones((1, 1)), tolerance, rounded)):
+            points.append(found.controls[0])
+            on += [False] * found.controls.shape[1]
+    return np.concatenate(points), np.array(on)
