@@ -96,7 +96,11 @@ def text(
             sys.stdout.buffer.write(drawing)
         else:
             write_made(file, drawing)
-    remarks = [*missing(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
+    remarks = [
+        *missing(layout),
+        *pulled_apart(layout),
+        *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note),
+    ]
     if len(remarks) > SHOWN:
         remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
     for line in () if run.quiet else remarks:
@@ -246,3 +250,15 @@ def missing(layout: Layout) -> Iterator[str]:
         named = ", ".join([f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]])
         more = f" and {len(layout.missing) - SHOWN} more" if len(layout.missing) > SHOWN else ""
         yield f"no glyph for {named}{more}: .notdef stands there"
+
+
+def pulled_apart(layout: Layout) -> Iterator[str]:
+    """The remark on scripts whose letters join, if space is added between letters."""
+    if layout.letter_spacing:
+        from fontTools.unicodedata import script_name
+
+        from ..typesetting.scripts import JOINED, scripts_of
+
+        if found := sorted(JOINED.intersection(scripts_of(layout.text))):
+            names = ", ".join(map(script_name, found))
+            yield f"letters of {names} join, and --letter-spacing pulls them apart"

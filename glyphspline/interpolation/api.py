@@ -90,8 +90,7 @@ def interpolate(
     (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
     if isinstance(result, PolygonError):
         raise result
-    given = np.array(points, dtype=np.float64)
-    return replace(result, points=np.delete(given, result.merged, axis=0) if len(result.merged) else given)
+    return result
 
 
 @overload
@@ -217,6 +216,10 @@ def _interpolated(
         if method.finish == "solve" and isinstance(found[j], Interpolation):
             tolerance = method.tolerance_for(float(np.ptp(parts[j], axis=0).max()))
             results[k] = solved(found[j], parts[j], None if ends is None else ends[j], tolerance)
+        if isinstance(found[j], Interpolation):
+            merged = found[j].merged
+            own = np.delete(parts[j], merged, axis=0) if len(merged) else parts[j].copy()
+            results[k] = replace(results[k], points=own)
     return results
 
 

@@ -34,7 +34,7 @@ class Interpolation:
             the search gives up only where the curve is not finite, or after many parts of an interval. ``converged``
             does not depend on it, as any footpoint is a point of the curve in its interval. ``rate_bound`` needs 0:
             in Theorem 2 a footpoint is no farther from its vertex than the curve at the parameter of the pass before.
-        points: (n, d) the vertices, without those merged; None in a batch, whose caller has them.
+        points: (n, d) the vertices, without those merged; None in fits of outlines, which have them end to end.
         history, rate_observed, spectral_radii: with ``diagnostics=True``, else None.
     """
 

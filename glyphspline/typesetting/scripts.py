@@ -17,6 +17,12 @@ COMMON = frozenset({"Zyyy", "Zinh", "Zzzz"})
 PAIRS = {**CLOSING, "«": "»", "‹": "›", "“": "”", "‘": "’"}
 """Opening to closing bracket or quotation mark."""
 
+JOINED = {
+    "Adlm", "Arab", "Aran", "Beng", "Chrs", "Deva", "Guru", "Mand", "Mani", "Mong", "Nkoo", "Ougr", "Phag", "Phlp",
+    "Rohg", "Sogd", "Syrc", "Tirh",
+}  # fmt: skip
+"""Scripts whose letters join, by a stroke or a headline."""
+
 UPRIGHT = """
 A7 A9 AE B1 BC-BE D7 F7 2EA-2EB 1100-11FF 1401-167F 18B0-18F5 2016 2020-2021 2030-2031 203B-203C 2042 2047-2049 2051
 20DD-20E0 20E2-20E4 2100-2101 2103-2109 210F 2113-2114 2116-2117 211E-2123 2125 2127 2129 212E 2135-213F 2145-214A

@@ -309,3 +309,12 @@ def test_binary_drawings_go_to_standard_output_whole() -> None:
     result = text("g", "-o", "-", "--format", "png", "--count", "20")
     assert result.exit_code == 0
     assert io.BytesIO(result.stdout_bytes).read(8) == b"\x89PNG\r\n\x1a\n"
+
+
+def test_letters_that_join_are_named_once_if_they_come_apart(tmp_path: Path) -> None:
+    for words, spacing, said in (("سلام سلام", "0.1em", "Arabic"), ("سلام", "0", ""), ("abc", "0.1em", "")):
+        result = runner.invoke(
+            app, ["text", str(DEJAVU), words, "--letter-spacing", spacing, "--out", str(tmp_path / "t.svg")]
+        )
+        assert result.exit_code == 0
+        assert (result.stderr.count("join"), said in result.stderr) == (bool(said), True)

@@ -262,6 +262,18 @@ def test_a_result_is_a_plain_value() -> None:
         r.iterations = 3  # type: ignore[misc]
 
 
+@pytest.mark.parametrize("finish", ["iterate", "solve"])
+@pytest.mark.parametrize("degree", [3, 5])
+def test_results_have_their_vertices_without_duplicates(degree: int, finish: Any) -> None:
+    given = np.array([[0, 0], [4, 0], [4, 0], [5, 3], [2, 5]], dtype=np.float64)
+    many = gs.interpolate_many([given, given[::-1], [[0, 0]]], degree=degree, finish=finish, errors="return")
+    for found, points in zip(many, (given[[0, 1, 3, 4]], given[[4, 3, 2, 0]]), strict=False):
+        assert isinstance(found, gs.Interpolation)
+        np.testing.assert_array_equal(found.points, points)
+    given[:] = 0.0
+    assert many[0].points.any()  # type: ignore[union-attr]
+
+
 def test_many_give_what_each_gives() -> None:
     polygons = [random_polygon(n, n) for n in (5, 3, 17, 8)]
     for p, r in zip(polygons, gs.interpolate_many(polygons, 2, margin=0.01), strict=True):
