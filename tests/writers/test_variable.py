@@ -447,3 +447,18 @@ def test_a_feature_that_vanishes_in_one_master_is_measured_there_too(tmp_path: P
         wanted = list(new.contours[0].mixed(new.masters.weights_at(np.array([at]))).segments())
         fine, other = dense(segments, 60), dense(wanted, 60)
         assert max(apart(fine, other), apart(other, fine)) < stored.distance + 0.02
+
+
+def test_a_composite_of_a_glyph_that_does_not_exist_costs_only_itself(tmp_path: Path) -> None:
+    tables = TTFont(FONTS / "variable.ttf", recalcBBoxes=False)
+    composites = [name for name in tables.getGlyphOrder() if tables["glyf"][name].isComposite()]
+    tables.save(tmp_path / "v.ttf")
+    data = bytearray((tmp_path / "v.ttf").read_bytes())
+    at = (
+        TTFont(BytesIO(data)).reader.tables["glyf"].offset
+        + TTFont(BytesIO(data))["loca"][tables.getGlyphID(composites[0])]
+    )
+    data[at + 12 : at + 14] = b"\0\x63"  # the number of the first component
+    (tmp_path / "v.ttf").write_bytes(data)
+    font = open_font(tmp_path / "v.ttf")
+    assert set(components(font, font.glyph_names)) == set(font.glyph_names) - {*composites}

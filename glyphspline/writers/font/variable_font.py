@@ -8,6 +8,7 @@ quadratics in whole units, which meet inside an arc midway between their control
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from io import BytesIO
 from typing import Any
@@ -156,7 +157,10 @@ def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(dict.fromkeys(names))
     gids = {name: gid for gid, name in enumerate(source.glyph_names)}
     order = font.getGlyphOrder()
-    found = [part for name in names for part in parts_of(font, order[gids[name]])]
+    found: list[str] = []
+    for name in names:
+        with suppress(Exception):  # of a broken composite, which is an error when it is read
+            found += parts_of(font, order[gids[name]])
     return tuple(dict.fromkeys(source.glyph_names[font.getGlyphID(part)] for part in found))
 
 
