@@ -99,6 +99,7 @@ class RunSpec:
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
         masters: all masters of a variable font at once; see :mod:`.jobs.masters`.
+        keep_name: whether written fonts have the source's family name.
         in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
 
     Raises:
@@ -124,7 +125,10 @@ class RunSpec:
         "designspace (ufo).",
         WRITTEN,
     )  # fmt: skip
-
+    keep_name: bool = option(
+        False, "Keep the family name in an otf or ttf. Licences reserve the names of fonts that are not your own.",
+        WRITTEN,
+    )  # fmt: skip
     in_place: bool = option(
         False, "Write new outlines into the source, a UFO, designspace or Glyphs file. Nothing else in it changes.",
         WRITTEN,
@@ -155,6 +159,10 @@ class RunSpec:
         order = OURS if set(own) <= OURS.keys() else format_names()
         given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
         object.__setattr__(self, "formats", tuple(given))
+
+    def family_of(self, source: Source) -> str:
+        """The family name of an otf or ttf."""
+        return source.family if self.keep_name else f"{source.family} Spline"
 
     @property
     def is_back(self) -> bool:
@@ -235,6 +243,7 @@ def describe(
         **asdict(spec.maps),
         "flatness": spec.settings.flatness,
         "dxf": spec.settings.dxf,
+        **({"keep_name": True} if spec.keep_name else {}),
         **({"in_place": spec.in_place, "layer": spec.layer} if spec.is_back else {}),
         "names": spec.names,
         "curvature_scale": curvature_scale,

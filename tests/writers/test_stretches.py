@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fontTools.fontBuilder import FontBuilder
 from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables._f_v_a_r import NamedInstance
 from fontTools.varLib.iup import iup_delta
+from typer.testing import CliRunner
 
 from glyphspline import Options, open_font
+from glyphspline.checks.kinds import KINK, THRESHOLDS
+from glyphspline.checks.on_axes import on_axes
 from glyphspline.checks.turns import joint_controls, turns_of
+from glyphspline.cli.commands import app
 from glyphspline.fitting.convert_masters import convert_masters
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.runs.jobs.masters import redrawn_glyph
+from glyphspline.writers.font.family_name import replace_family
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.stretches import ranges_of
 from glyphspline.writers.font.variable_font import VariableSummary, to_variable_font
@@ -202,3 +210,62 @@ def test_arcs_know_what_they_replace() -> None:
     away = MasterContour(corners[None, [1, 3, 4, 0]] + 1, np.ones(4, dtype=np.int64))
     assert ranges_of(away, np.zeros(4, dtype=bool), source) is None
     assert ranges_of(new, np.ones(4, dtype=bool), source) == [range(5)]
+
+
+def test_what_is_stored_is_as_check_counts_it(tmp_path: Path) -> None:
+    font = drawn_font(tmp_path, 2)
+    call = ["convert", str(font.path), "--masters", "--glyphs", "n", "--corners", "sharp", "--effort", "fast"]
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, [*call, "--format", "ttf", "--jobs", "0", "--out", str(out)])
+    assert done.exit_code == 0
+    (file,) = out.glob("*.ttf")
+    (line,) = [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
+    stored = line["stored"]
+    assert stored["within_tolerance"]
+    assert stored["bound"] <= TOLERANCE
+    result = open_font(file)
+    assert stored["points"] == [points_of(font, "n"), points_of(result, "n")]
+    before, after = stored["points"]
+    assert f"points {before} → {after}, kinks at masters and along axes" in done.output.replace("\n", " ")
+    tags = [axis.tag for axis in font.axes]
+    for each, count in zip((font, result), stored["kinks"], strict=True):
+        rows, _ = on_axes([each.masters("n")], {}, tags, 4, THRESHOLDS)
+        assert (rows.kinds == KINK).sum() == count
+    assert result.family == "Masters Spline"
+    assert CliRunner().invoke(
+        app, [*call, "--format", "ttf", "--jobs", "0", "--out", str(out), "--keep-name", "--restart"]
+    )
+    assert open_font(file).family == "Masters"
+
+
+def test_a_new_family_name_is_in_all_names(tmp_path: Path) -> None:
+    builder = FontBuilder(1000)
+    builder.setupGlyphOrder([".notdef"])
+    names = {
+        "familyName": "Old Sans Light",
+        "styleName": "Regular",
+        "typographicFamily": "Old Sans",
+        "psName": "OldSans-Light",
+    }
+    builder.setupNameTable({**names, "trademark": "Old Sans is a trademark", "licenseDescription": "OFL"})
+    builder.setupFvar([("wght", 300, 300, 700, "Weight")], [])
+    font = builder.font
+    table = font["name"]
+    for weight, style in ((300, "Light"), (700, "Bold")):
+        instance = NamedInstance()
+        instance.coordinates = {"wght": weight}
+        instance.subfamilyNameID = table.addName(style)
+        instance.postscriptNameID = table.addName(f"OldSans-{style}")
+        font["fvar"].instances.append(instance)
+    styles = [table.getDebugName(instance.subfamilyNameID) for instance in font["fvar"].instances]
+    replace_family(font, "Old Sans Spline")
+    texts = {record.nameID: record.toUnicode() for record in table.names}
+    assert texts[1] == "Old Sans Spline Light"
+    assert texts[16] == "Old Sans Spline"
+    assert texts[13] == "OFL"
+    assert 7 not in texts
+    assert [table.getDebugName(instance.subfamilyNameID) for instance in font["fvar"].instances] == styles
+    assert [texts[instance.postscriptNameID] for instance in font["fvar"].instances] == [
+        "OldSansSpline-Light", "OldSansSpline-Bold",
+    ]  # fmt: skip
+    assert not any("OldSans-" in text for text in texts.values())

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ...curves.curvature import shared_scale
 from ...errors import OutputError
@@ -439,7 +439,8 @@ def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec:
             yield result
 
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
-    data, summary = to_font(source, each(), "otf" if path.suffix == ".otf" else "ttf", tolerance=tolerance)
+    flavour: Literal["otf", "ttf"] = "otf" if path.suffix == ".otf" else "ttf"
+    data, summary = to_font(source, each(), flavour, tolerance=tolerance, family=spec.family_of(source))
     write_whole(str(path), data, durable=True)
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:

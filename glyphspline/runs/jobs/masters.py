@@ -26,7 +26,7 @@ from ...readers.designspace import Designspace, GlyphsFile
 from ...readers.single_fonts import axis_of
 from ...types import MadeOnDemand, counted, rounded_up
 from ...writers.font.font_glyphs import Flavour
-from ...writers.font.master_deltas import Redrawn
+from ...writers.font.master_deltas import Redrawn, StoredGlyph
 from ..engine import Job, Observer, reason
 from ..folder import Done, Record, Task, done, finish, locked, recorded_lines
 from ..result_text import stored
@@ -38,6 +38,7 @@ from .convert import back_to_source, check_back, font_files, prepare, recorded, 
 if TYPE_CHECKING:
     from ...fitting.convert_masters import MastersContourResult
     from ...outlines.masters import Masters
+    from ...writers.font.variable_font import VariableSummary
 
 FORMATS = ("ufo", "otf", "ttf")
 """Formats of a run over masters: a designspace with its UFOs, and variable fonts."""
@@ -72,7 +73,7 @@ class MastersJob(Job[Task, list[Done]]):
         entry = {
             "status": "ok" if result.contours else "empty", "files": {RESULTS: file}, "masters": len(result.masters),
             "contours": [_measures(contour) for contour in result.contours], "notes": list(result.notes),
-            "kept": None, "error": None,
+            "stored": None, "kept": None, "error": None,
         }  # fmt: skip
         return [done(task, entry, [size], encode=_encoded)]
 
@@ -81,7 +82,8 @@ class MastersJob(Job[Task, list[Done]]):
         others = {str(path): path.name for path, _, _ in self.places[1:]}
         where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
         entry: dict[str, Any] = {
-            "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [], "kept": None,
+            "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [], "stored": None,
+            "kept": None,
             "error": f"{where}: {reason(error)}" if where else reason(error),
         }  # fmt: skip
         return [done(task, entry, encode=_encoded)]
@@ -155,14 +157,14 @@ class MastersSummary:
             self.failed[entry["glyph"]] = entry["error"]
             return
         self.glyphs += 1
-        contours = entry["contours"]
+        contours, stored = entry["contours"], entry.get("stored")
         for contour in contours:
             self.segments += contour["segments"]
             self.source_segments += contour["source_segments"]
             self.kept += contour["source_segments_kept"]
             self.bound = max(self.bound or 0.0, contour["deviation_bound"])
         for named, holds in (
-            (self.outside, any(not contour["within_tolerance"] for contour in contours)),
+            (self.outside, any(not each["within_tolerance"] for each in ([stored] if stored else contours))),
             (self.stopping, any(not contour["regular"] for contour in contours)),
             (self.crossing, any(contour["new_crossings"] for contour in contours)),
             (self.collapsed, any(contour["collapsed"] for contour in contours)),
@@ -245,18 +247,19 @@ def convert_font_masters(
         for _ in recorded(job, left, executor, record, out, observer):
             pass
         remove_partials(out / RESULTS)
-        kept = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        with finish(out, record, partial(_with_kept, kept)) as lines:
+        written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
+        with finish(out, record, partial(_with_written, *written)) as lines:
             for _, line in lines:
                 summary.add(json.loads(line))
     summary.seconds = time.perf_counter() - began
     return summary
 
 
-def _with_kept(kept: Mapping[str, str], line: bytes) -> bytes:
-    """A line of the manifest that says why a font has the glyph's old outline."""
+def _with_written(kept: Mapping[str, str], stored: Mapping[str, Any], line: bytes) -> bytes:
+    """A line of the manifest that says what a font stores of the glyph, or why it has the old outline."""
     entry = json.loads(line)
-    return f"{_encoded(entry | {'kept': kept.get(entry['glyph'])})}\n".encode()
+    name = entry["glyph"]
+    return f"{_encoded(entry | {'stored': stored.get(name), 'kept': kept.get(name)})}\n".encode()
 
 
 def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
@@ -306,6 +309,29 @@ def redrawn_glyph(result: MastersResult) -> Redrawn:
     )  # fmt: skip
 
 
+def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, tolerance: float) -> dict[str, Any]:
+    """What the manifest says of a glyph as a font stores it. Where its arcs were not compared with the source, what is
+    certified and how far it is stored add up.
+    """
+    bound, tally = glyph.bound, glyph.tally
+    if bound is None:
+        bound = max(redrawn[name].bounds, default=0.0) + glyph.distance
+    counts = {"points": tally.points, "kinks": tally.kinks, "kinks_between_masters": tally.between} if tally else {}
+    return {"bound": rounded_up(bound, 6), "within_tolerance": bound <= tolerance, **counts}
+
+
+def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> str:
+    """What became of the glyphs of a written font, in words."""
+    remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
+    if bounds:
+        remark += f", certified as stored within {rounded_up(max(bounds), 3):g} units of the source"
+    if (tally := facts.tally) is not None:
+        pairs = (tally.points, tally.kinks, tally.between)
+        points, kinks, between = (f"{before:,} → {after:,}" for before, after in pairs)
+        remark += f"; points {points}, kinks at masters and along axes {kinks}, of them between masters {between}"
+    return remark
+
+
 def _write_fonts(
     sources: Sequence[Source],
     redrawn: Mapping[str, Redrawn],
@@ -313,9 +339,9 @@ def _write_fonts(
     spec: RunSpec,
     summary: MastersSummary,
     axis: str | None,
-) -> dict[str, str]:
-    """Write the run's fonts; returns why glyphs of them have their old outlines."""
-    source, stays = sources[0], dict[str, str]()
+) -> tuple[dict[str, str], dict[str, Any]]:
+    """Write the run's fonts; returns why glyphs of them have their old outlines, and what is stored of the others."""
+    source, stays, stored = sources[0], dict[str, str](), dict[str, Any]()
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
     paths = {path.suffix[1:]: path for path in font_files(source, out, spec)}
     for flavour in _flavours(spec):
@@ -325,16 +351,21 @@ def _write_fonts(
                 from ...writers.font.variable_font import to_variable_font
 
                 assert isinstance(source, Font)
-                data, facts = to_variable_font(source, redrawn, flavour, tolerance=tolerance, with_contours=False)
+                family = None if spec.keep_name else spec.family_of(source)
+                data, facts = to_variable_font(
+                    source, redrawn, flavour, tolerance=tolerance, family=family, with_contours=False
+                )
             else:
                 from ...writers.font.new_variable_font import to_new_variable_font
 
-                data, facts = to_new_variable_font(sources, axis, redrawn, tolerance=tolerance, with_contours=False)
+                family = spec.family_of(source)
+                left = (1 - SHARE) * tolerance
+                data, facts = to_new_variable_font(
+                    sources, axis, redrawn, tolerance=left, family=family, with_contours=False
+                )
             write_whole(str(path), data, durable=True)
-        remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
-        if facts.largest_distance is not None:
-            remark += f", stored within {rounded_up(facts.largest_distance, 3):g} units of the curves"
-        summary.remarks.append(remark)
+        stored |= {name: _stored(glyph, redrawn, name, tolerance) for name, glyph in facts.glyphs.items()}
+        summary.remarks.append(_replaced(path, facts, [each["bound"] for each in stored.values()]))
         stays |= facts.left
     if isinstance(source, Designspace) and ("ufo" in spec.formats or spec.is_back):
         from ...writers.back.back import of_masters
@@ -352,4 +383,4 @@ def _write_fonts(
         stays |= left
     if stays:
         summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {_few(list(stays))}; the manifest says why")
-    return stays
+    return stays, stored

@@ -63,6 +63,14 @@ class Tally:
     kinks: tuple[int, int]
     between: tuple[int, int]
 
+    def __add__(self, other: Tally) -> Tally:
+        """Those of both."""
+        pairs = zip(
+            (*self.points, *self.kinks, *self.between), (*other.points, *other.kinks, *other.between), strict=True
+        )
+        a, b, c, d, e, f = (one + two for one, two in pairs)
+        return Tally((a, b), (c, d), (e, f))
+
 
 @dataclass(frozen=True, eq=False)
 class StoredGlyph:

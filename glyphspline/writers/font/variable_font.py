@@ -24,8 +24,9 @@ from ...outlines.masters import MasterContour
 from ...readers import Font
 from ...readers.source import reusing
 from ...types import FloatArray, IntArray
+from .family_name import replace_family
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of
-from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, region_key, rounded_deltas
+from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, region_key, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
 
@@ -59,6 +60,12 @@ class VariableSummary:
         """The largest distance of any glyph; None if there is none."""
         return max((glyph.distance for glyph in self.glyphs.values()), default=None)
 
+    @property
+    def tally(self) -> Tally | None:
+        """Points and kinks of all glyphs replaced; None where they were not compared."""
+        found = [glyph.tally for glyph in self.glyphs.values() if glyph.tally is not None]
+        return sum(found[1:], found[0]) if found else None
+
 
 def to_variable_font(
     source: Font,
@@ -66,6 +73,7 @@ def to_variable_font(
     flavour: Flavour,
     *,
     tolerance: float = 0.5,
+    family: str | None = None,
     with_contours: bool = True,
 ) -> tuple[bytes, VariableSummary]:
     """The font as a file's bytes; the same input gives the same bytes.
@@ -78,6 +86,7 @@ def to_variable_font(
         tolerance: for "ttf", how far the quadratics, rounded, may be from the contours given, in font units; of
             contours with bounds, how far from their source. A glyph that cannot be so close is written as close as it
             was found, see ``distance``, or where it has bounds stays as it is.
+        family: its new family name; None keeps the source's.
         with_contours: whether the summary has what is drawn, which is much of a large font.
 
     Raises:
@@ -128,6 +137,8 @@ def to_variable_font(
                 left[name] = "no quadratics could be fitted to its curves"
         if quadratics:
             quadratics.finish()
+        if family is not None:
+            replace_family(font, family)
         font.save(file, reorderTables=False)
     return file.getvalue(), VariableSummary(glyphs, tuple(composites), left)
 
