@@ -359,9 +359,9 @@ def _write_fonts(
                 from ...writers.font.new_variable_font import to_new_variable_font
 
                 family = spec.family_of(source)
-                left = (1 - SHARE) * tolerance
+                rest = (1 - SHARE) * tolerance
                 data, facts = to_new_variable_font(
-                    sources, axis, redrawn, tolerance=left, family=family, with_contours=False
+                    sources, axis, redrawn, tolerance=rest, family=family, with_contours=False
                 )
             write_whole(str(path), data, durable=True)
         stored |= {name: _stored(glyph, redrawn, name, tolerance) for name, glyph in facts.glyphs.items()}
