@@ -37,8 +37,8 @@ EASE = (1.0, 0.2, 0.1, 0.03, 0.0, 0.0)
 KEPT = len(SHARES) - 1
 """Tries after which a stretch stays as the source has it."""
 
-ATTEMPTS = 10
-"""Tries of a run before it stays as it is."""
+ATTEMPTS = 20
+"""Tries of a run before it stays as it is. With 10, 30 more joints jump of 1,184 in EB Garamond, in 0.8 of the time."""
 
 CORNER = np.radians(12.5)
 """Turn that a corner keeps."""
