@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..outlines.contour_arrays import ContourArrays, offsets_of
-from ..outlines.masters import MasterContour, Masters
-from ..types import FloatArray
+from ..outlines.masters import Masters
+from ..types import FloatArray, IntArray
 from .check import measured
 from .finding import Measured
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
@@ -118,15 +118,18 @@ def kinks_of(
     parts += [_off_axes(g, masters, location, axes, thresholds.kink) for g, masters in enumerate(glyphs)]
     rows = Measured.joined(parts)
     height = thresholds.kink_height * glyphs[0].metrics.units_per_em / 1000
-    kept = []
+    kept, controls = [], dict[tuple[int, int], FloatArray]()
     for k, (g, contour, joint) in enumerate(joints_of(rows)):
         turn, made = rows.numbers[k, 1:3]
         of_contour = glyphs[g].contours[contour]
         lines = of_contour.degrees[joint - 1] == of_contour.degrees[joint] == 1
         meant = lines and turn - made >= thresholds.kink
         weights = glyphs[g].weights_at(rows.locations[k])
-        rounded = thresholds.rounding * by_rounding(of_contour, joint, weights)
-        arm = _arm(of_contour, joint, weights)
+        if (g, contour) not in controls:
+            controls[g, contour] = joint_controls(of_contour)
+        own, degrees = controls[g, contour][:, joint], of_contour.degrees[[joint - 1, joint]]
+        rounded = thresholds.rounding * by_rounding(own, degrees, weights)
+        arm = _arm(own, weights)
         rows.numbers[k, 4] = turn / thresholds.corner_angle * arm
         if (g, contour, joint) in smooth and turn >= rounded and np.radians(turn) * arm >= height and not meant:
             kept.append(k)
@@ -151,8 +154,11 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
     return Measured.joined(parts, len(base))
 
 
-def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> float:
+def by_rounding(controls: FloatArray, degrees: IntArray, weights: FloatArray) -> float:
     """Standard deviation in degrees of a joint that rounding turns, at (K,) weights of the masters.
+
+    Args:
+        controls: (K, 2, 4, 2) of :func:`.turns.joint_controls`. degrees: (2,) of the segments before and behind.
 
     See :func:`.segments.rounding_turn`.
 
@@ -160,8 +166,6 @@ def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> floa
 
     Deltas are whole too. Those of points between others are not, but no farther off.
     """
-    controls = joint_controls(contour)[:, joint]
-    degrees = contour.degrees[[joint - 1, joint]]
     handles = 3 / degrees[:, None] * (controls[0, :, 1] - controls[0, :, 0])  # segments are raised to cubics
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
@@ -170,9 +174,9 @@ def by_rounding(contour: MasterContour, joint: int, weights: FloatArray) -> floa
     return float(np.degrees(rounding_turn(before, behind)))
 
 
-def _arm(contour: MasterContour, joint: int, weights: FloatArray) -> float:
+def _arm(controls: FloatArray, weights: FloatArray) -> float:
     """Length of the shorter segment at a joint, at (K,) weights of the masters: see :func:`.segments.arc`."""
-    here = np.tensordot(weights, joint_controls(contour)[:, joint], axes=1)
+    here = np.tensordot(weights, controls, axes=1)
     return min(arc(points) for points in here.view(np.complex128)[..., 0])
 
 

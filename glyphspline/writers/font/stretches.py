@@ -58,7 +58,6 @@ class Turning:
     Attributes:
         joints: (n, 2) contour and segment of those that turn, whatever the reason, along an axis or at
             :func:`.locations`. places: (n, K, 2) where they are. turns: (n,) their largest turns, in degrees.
-        kinks, between: see :class:`.Tally`.
     """
 
     def __init__(self, masters: Masters) -> None:
@@ -81,12 +80,15 @@ class Turning:
         self.joints = chosen
         self.turns = np.array([largest[joint] for joint in chosen])
         self.places = np.array([starts[joint] for joint in chosen]).reshape(len(chosen), len(masters), 2)
-        seen = kinks_of([masters], {}, moving, along, THRESHOLDS)
-        made: dict[tuple[int, int], tuple[float, float]] = {}
+        self._seen = lambda: kinks_of([masters], {}, moving, along, THRESHOLDS)
+
+    def kinks(self) -> tuple[int, int]:
+        """How many joints ``check`` reports, and how many of them turn more between masters than in them."""
+        seen, made = self._seen(), dict[tuple[int, int], tuple[float, float]]()
         rows = zip(seen.contours.tolist(), seen.segments.tolist(), *seen.numbers[:, 1:3].T.tolist(), strict=True)
         for c, s, turn, more in rows:
             made[c, s] = max(made.get((c, s), (0.0, 0.0)), (turn, more))
-        self.kinks, self.between = len(made), sum(more > 0 for _, more in made.values())
+        return len(made), sum(more > 0 for _, more in made.values())
 
     def not_in(self, source: Turning) -> list[tuple[int, int]]:
         """Contour and segment of the joints that do not turn so in the source."""
@@ -262,5 +264,5 @@ def tally(points: tuple[int, int], turning: tuple[Turning, Turning], fewest: boo
     """
     if fewest and points[1] > points[0]:
         raise GlyphsplineError(f"it would have {counted(points[1], 'point')}, not {points[0]}")
-    source, found = turning
-    return Tally(points, (source.kinks, found.kinks), (source.between, found.between))
+    (kinks, between), (kinks_after, between_after) = (each.kinks() for each in turning)
+    return Tally(points, (kinks, kinks_after), (between, between_after))
