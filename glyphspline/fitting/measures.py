@@ -120,15 +120,21 @@ def geometry(
         )
         length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
         extrema[c] = curvature_extrema(contour_cubics(curves, c), length[c], CORNER)
-        extrema_before[c] = curvature_extrema(given, length_before, CORNER)
-        bends = turns(given, 0.0)
-        corners = bends[np.abs(bends) >= CORNER_TURN]
-        floor[c] = extrema_before[c] + len(corners)
-        for k in range(len(corners) if len(corners) > 1 else 0):
-            floor[c] += corners[k] * corners[k - 1] > 0
+        extrema_before[c], floor[c] = extrema_floor(given, length_before)
         change[c] = area(cubics) - area(given)
         beyond[c] = overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
     return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before, floor)
+
+
+@compiled
+def extrema_floor(given: FloatArray, length: float) -> tuple[int, int]:
+    """Extrema of curvature of a contour (m, 4, 2) of a length, and the fewest of a C2 curve near it."""
+    extrema, bends = curvature_extrema(given, length, CORNER), turns(given, 0.0)
+    corners = bends[np.abs(bends) >= CORNER_TURN]
+    floor = extrema + len(corners)
+    for k in range(len(corners) if len(corners) > 1 else 0):
+        floor += corners[k] * corners[k - 1] > 0
+    return extrema, floor
 
 
 @compiled

@@ -13,7 +13,7 @@ from glyphspline.curves.curvature import comb
 from glyphspline.fitting.closed_curves import beziers, interpolated
 from glyphspline.fitting.faithful import faithful
 from glyphspline.fitting.measures import geometry
-from glyphspline.fitting.smooth import steps
+from glyphspline.fitting.smooth import fairing, steps
 from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import smooth_fits
 from glyphspline.fitting.smooth.spacing import growth_of
@@ -22,6 +22,7 @@ from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
 from scripts.paper.measures import shape
 from tests.fitting.test_distance import true_distance
+from tests.places import DEJAVU
 from tests.polygons import circle_contour, overshoot, random_polygon, square_contour
 
 NONE = np.empty((0, 2))
@@ -237,6 +238,25 @@ def test_held_corners_have_no_rings(points: list[tuple[float, float]]) -> None:
         assert (arc.spline.control_points == corner).all(axis=1).any()
         assert not (held.polygon == corner).all(axis=1).any()
     np.testing.assert_allclose(arc.spline(arc.parameters), held.polygon, atol=0.01)
+
+
+def test_vertices_leave_the_outline_where_curvature_ripples(monkeypatch: pytest.MonkeyPatch) -> None:
+    font = gs.open_font(DEJAVU)
+    options, extrema, results = gs.Options(corners="smooth", tolerance=2.0), [], []
+    for tries in (0, fairing.TRIES):
+        monkeypatch.setattr(fairing, "TRIES", tries)
+        results.append([gs.convert(font.outline(name), options) for name in ("S", "ampersand", "eight", "g")])
+        measures = [contour.measures for result in results[-1] for contour in result.contours]
+        assert all(m.within_tolerance and (m.rate_bound or 0) < 1 for m in measures)
+        extrema.append(sum((m.curvature_extrema or 0) - (m.curvature_extrema_floor or 0) for m in measures))
+    assert extrema[1] < 0.6 * extrema[0]
+    before, after = ([c for result in each for c in result.contours] for each in results)
+    for plain, faired in zip(before, after, strict=True):
+        assert faired.measures.vertices <= plain.measures.vertices
+        assert (faired.measures.curvature_extrema or 0) <= (plain.measures.curvature_extrema or 0)
+        assert (faired.measures.max_curvature or 0) <= 1.3 * (plain.measures.max_curvature or 0)
+        (arc,) = faired.interpolations  # variant 2 from the vertices gives the curve
+        np.testing.assert_allclose(arc.spline(arc.parameters), faired.polygon, atol=0.01 * 2)
 
 
 def test_no_held_corner_where_it_does_not_serve() -> None:

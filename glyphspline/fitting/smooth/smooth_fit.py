@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from ..ladders import SMOOTH_TRIES, TRY_APART
 from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
-from . import steps
+from . import fairing, steps
 from .canonical_contours import CanonicalContours, canonical_contours
 from .spacing import growth_of
 
@@ -57,6 +57,8 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
             search.hold[missed] = False
             search.refine(1 if early is None else early, missed)
         search.thin()
+        if options.hold_corners and attempt < TRY_APART:  # there strands lie too near to each other
+            search.fair()
         return search.converted(contours, tolerance)
 
     return Fits(len(SMOOTH_TRIES), fit, apart=TRY_APART)
@@ -84,6 +86,35 @@ class Round:
     def part(self, values: Any, i: int) -> Any:
         """Part i of a ragged array."""
         return values[self.trial.offsets[i] : self.trial.offsets[i + 1]]
+
+
+class Gathered(NamedTuple):
+    """What is kept of some contours, end to end; see :func:`.fairing.faired`."""
+
+    offsets: IntArray
+    places: FloatArray
+    points: FloatArray
+    ends: FloatArray
+    pieces: FloatArray
+    knots: FloatArray
+    parameters: FloatArray
+    held: BoolArray
+
+    @classmethod
+    def of(cls, kept: Sequence[tuple[Round, int]]) -> Gathered:
+        """Parts of rounds, in order."""
+        columns: list[list[Any]] = [[] for _ in range(7)]
+        for found, i in kept:
+            a, b = found.trial.offsets[i : i + 2].tolist()
+            held = found.held[a:b] if len(found.held) else np.zeros(b - a, dtype=np.bool_)
+            whole = slice(a + i, b + i + 1)
+            parts = (
+                found.trial.places[a:b], found.trial.points[a:b], found.trial.ends[whole], found.pieces[a:b],
+                found.found.knots[whole], found.found.parameters[a:b], held,
+            )  # fmt: skip
+            for column, part in zip(columns, parts, strict=True):
+                column.append(part)
+        return cls(offsets_of([len(part) for part in columns[0]]), *map(np.concatenate, columns))
 
 
 class _Search:
@@ -152,9 +183,43 @@ class _Search:
                 break
             trial = self.attempt(which, places, offsets).trial
 
+    def fair(self) -> None:
+        """Let vertices leave the outline where a contour that passed bends more often than it has to."""
+        which = np.array([k for k, found in sorted(self.kept.items()) if self.passes(found)], dtype=np.int64)
+        if len(which) == 0:
+            return
+        before = Gathered.of([self.kept[k] for k in which.tolist()])
+        floors = fairing.floors(self.contours, which)
+        extrema, peaks = fairing.bends(self.contours, which, before.offsets, before.pieces)
+        most = fairing.PEAK * np.maximum.reduceat(peaks, before.offsets[:-1])
+        some = (extrema > floors) & (np.diff(before.offsets) >= fairing.FEWEST)
+        limits = fairing.first_limits(self.contours, which, before.offsets, peaks, self.near)
+        for _ in range(fairing.TRIES):
+            if not some.any():
+                break
+            points = fairing.faired(self.contours, which, *before, limits, some)
+            rows, left = np.repeat(some, np.diff(before.offsets)), np.flatnonzero(some)
+            offsets = offsets_of(np.diff(before.offsets)[left])
+            done = self.run(which[left], before.places[rows], offsets, points[rows])
+            if len(done.pieces) < offsets[-1]:  # vertices fell together
+                break
+            count, peaks = fairing.bends(self.contours, which[left], offsets, done.pieces)
+            good = (done.most <= self.near) & (np.maximum.reduceat(peaks, offsets[:-1]) <= most[left])
+            some[left[good]] = False
+            for n in np.flatnonzero(good & (count < extrema[left]) & (done.found.rates < 1)).tolist():
+                self.kept[int(which[left[n]])] = done, n
+            limits[rows] = fairing.lowered(limits[rows], offsets, done.trial.bounds, self.near, peaks, most[left])
+
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
         """Interpolate contours through their points at places, measure, and keep improvements."""
-        points = steps.polygons(self.contours, which, places, offsets)
+        done = self.run(which, places, offsets, steps.polygons(self.contours, which, places, offsets))
+        for i, k in enumerate(done.trial.which.tolist()):
+            if k not in self.kept or self.is_better((done, i), self.kept[k]):
+                self.kept[k] = done, i
+        return done
+
+    def run(self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray) -> Round:
+        """Interpolate contours through points at their places, or beside them, and measure."""
         try:
             held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
             held = held if held.any() else NONE_HELD
@@ -163,15 +228,12 @@ class _Search:
             error.contour = None if error.contour is None else int(which[error.contour])
             raise
         if found.whole[:, 1].sum() < len(places):  # duplicates were merged
-            kept = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
-            return self.attempt(which, places[np.concatenate(kept)], offsets_of([len(part) for part in kept]))
+            parts = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
+            kept = np.concatenate(parts)
+            return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
         pieces, written = beziers(found.controls, found.knots, offsets, 10.0**self.options.precision)
         trial = steps.measured(self.contours, which, places, offsets, points, written, self.near)
-        done = Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
-        for i, k in enumerate(which.tolist()):
-            if k not in self.kept or self.is_better((done, i), self.kept[k]):
-                self.kept[k] = done, i
-        return done
+        return Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
     def passes(self, found: tuple[Round, int]) -> bool:
         """Whether a part of a round is within the distance allowed."""

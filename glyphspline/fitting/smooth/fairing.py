@@ -1,0 +1,346 @@
+"""Fairing within the tolerance: vertices leave the outline so that curvature rises and falls less often.
+
+Control points move along the curve's normals at their footpoints, which is how variant 2 moves them: from the places
+that the footpoints move to, it finds the same curve again but for small terms of second order. What is minimized is the
+total variation of curvature, each change as a share of the curvature there, by Newton steps of reweighted least
+squares; a logarithmic barrier keeps samples of the curve near the outline.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import jet
+from ...curves.fairness import TURN, curvature_extrema, curvatures
+from ...curves.nearest import search_place
+from ...types import BoolArray, FloatArray, IntArray
+from ..measures import CORNER, extrema_floor
+from .canonical_contours import CanonicalContours, table_of
+
+SAMPLES, TUBE = 3, 1
+"""Samples of curvature in a span, and every how many of them the distance is limited."""
+
+STEPS = 4
+"""Newton steps."""
+
+SMALL = 0.02
+"""Share of the curvature by which it may change at little cost; from ten times this a change counts as an extremum."""
+
+FLAT = 10 * TURN
+"""Over the length of the contour, the curvature below which changes count as if it were this."""
+
+STRAIGHT = 0.1 * TURN
+"""Over the length of the contour, the curvature up to which a span is straight."""
+
+BARRIER, WEAKER = 0.1, 0.7
+"""The barrier's first weight, and its share from step to step."""
+
+LIMIT, CUT = 0.8, 0.8
+"""Share of the distance allowed that samples keep to at first, as they are few; share of what a span that then fails
+should have had."""
+
+TRIES = 3
+"""How often contours are faired before they stay as they were: each time nearer to the outline where they failed."""
+
+PEAK = 1.2
+"""Largest factor by which the largest curvature may grow."""
+
+FEWEST = 9
+"""Vertices of a contour from which the bands of its equations do not overlap."""
+
+BAND = 9
+"""Diagonals of the equations, in the order of :func:`_folded`."""
+
+
+@compiled
+def floors(contours: CanonicalContours, which: IntArray) -> IntArray:
+    """The fewest extrema of curvature of C2 curves near the contours; see :class:`..results.Measures`."""
+    found = np.empty(len(which), dtype=np.int64)
+    for i in range(len(which)):
+        k = which[i]
+        outline = contours.cubics[contours.offsets[k] : contours.offsets[k + 1]]
+        _, found[i] = extrema_floor(outline, table_of(contours.lengths, contours.offsets, k)[-1])
+    return found
+
+
+@compiled
+def bends(
+    contours: CanonicalContours, which: IntArray, offsets: IntArray, pieces: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """(k,) extrema of curvature of ragged curves, and (n,) the largest curvature of each span."""
+    extrema, peaks = np.empty(len(which), dtype=np.int64), np.zeros(len(pieces))
+    for i in range(len(which)):
+        length = table_of(contours.lengths, contours.offsets, which[i])[-1]
+        curve = pieces[offsets[i] : offsets[i + 1]]
+        extrema[i] = curvature_extrema(curve, length, CORNER)
+        values, where, n = curvatures(curve, length, CORNER)
+        for j in range(n):
+            span = offsets[i] + min(int(where[j]), len(curve) - 1)
+            peaks[span] = max(peaks[span], abs(values[j]))
+    return extrema, peaks
+
+
+@compiled
+def first_limits(
+    contours: CanonicalContours, which: IntArray, offsets: IntArray, peaks: FloatArray, near: float
+) -> FloatArray:
+    """Ragged limits of :func:`faired` to begin with, from the peaks of spans: what is straight stays."""
+    limits = np.empty(len(peaks))
+    for i in range(len(which)):
+        straight = STRAIGHT / table_of(contours.lengths, contours.offsets, which[i])[-1]
+        for j in range(offsets[i], offsets[i + 1]):
+            limits[j] = LIMIT * near if peaks[j] > straight else 0.0
+    return limits
+
+
+@compiled
+def lowered(
+    limits: FloatArray, offsets: IntArray, bounds: FloatArray, near: float, peaks: FloatArray, most: FloatArray
+) -> FloatArray:
+    """Ragged limits, lower in the spans whose bounds are too large, and in those beside them.
+
+    They are 0, and nothing moves, where a span misses again, or its peak is above that allowed for its contour.
+    """
+    after = limits.copy()
+    for i in range(len(offsets) - 1):
+        a, n = offsets[i], offsets[i + 1] - offsets[i]
+        for j in range(n):
+            for c in range(-1, 2):
+                at = a + (j + c) % n
+                if peaks[a + j] > most[i] or (bounds[a + j] > near and limits[at] < LIMIT * near):
+                    after[at] = 0.0
+                elif bounds[a + j] > near:
+                    after[at] = min(after[at], CUT * near / bounds[a + j] * limits[at])
+    return after
+
+
+@compiled
+def faired(
+    contours: CanonicalContours, which: IntArray, offsets: IntArray, places: FloatArray, points: FloatArray,
+    ends: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
+    limits: FloatArray, some: BoolArray,
+) -> FloatArray:  # fmt: skip
+    """New vertices (n, 2) of the contours that are among ``some``; those of held control points stay.
+
+    Args:
+        which: (k,) contours, with ragged vertices: places on the outline, points, ends of spans on it (see
+            :class:`.steps.Trial`), Bézier pieces, knots, footpoints' parameters, and whether they are held.
+        limits: (n,) largest distance of samples of each span from the outline; 0 where nothing moves.
+    """
+    moved = points.copy()
+    for i in range(len(which)):
+        a, b, k = offsets[i], offsets[i + 1], which[i]
+        if some[i]:
+            _fair(
+                contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], pieces[a:b], knots[a + i : b + i + 1],
+                parameters[a:b], held[a:b], ends[a + i : b + i + 1], limits[a:b], moved[a:b],
+            )  # fmt: skip
+    return moved
+
+
+@compiled
+def _fair(
+    outline: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
+    ends: FloatArray, limits: FloatArray, points: FloatArray,
+) -> None:  # fmt: skip
+    """Write the new vertices of one contour."""
+    n = len(pieces)
+    m, length, basis = n * SAMPLES, knots[n] - knots[0], _span_basis(knots)
+    spans, local, normals = np.empty(n, dtype=np.int64), np.empty(n), np.zeros((n + 3, 2))
+    for i in range(n):
+        t = parameters[i] - np.floor((parameters[i] - knots[0]) / length) * length
+        j = min(max(np.searchsorted(knots, t, side="right") - 1, 0), n - 1)
+        spans[i], local[i] = j, (t - knots[j]) / (knots[j + 1] - knots[j])
+        if not held[i] and min(limits[i - 1], limits[i]) > 0:
+            _, _, dx, dy, _, _ = jet(pieces, j, local[i])
+            speed = np.sqrt(dx * dx + dy * dy)
+            normals[i + 1, 0], normals[i + 1, 1] = -dy / speed, dx / speed
+    normals[0], normals[n + 1], normals[n + 2] = normals[n], normals[1], normals[2]  # row c of span j is j + c
+    # Each sample's derivatives, those of these by the four control points, and the same of its distance.
+    jets, first, second = np.empty((m, 4)), np.empty((m, 4, 2)), np.empty((m, 4, 2))
+    away, most, slopes = np.empty(m), np.empty(m), np.empty((m, 4))
+    for j in range(n):
+        for k in range(SAMPLES):
+            s, x = j * SAMPLES + k, k / SAMPLES
+            px, py, dx, dy, bx, by = jet(pieces, j, x)
+            jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3] = dx, dy, bx, by
+            ex = ey = 0.0
+            if k % TUBE == 0:
+                away[s], ex, ey = _distance(outline, pieces, j, x, ends, px, py, dx, dy)
+                most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9)
+            for c in range(4):
+                value, slope, bend = _cubic(basis, j, c, x)
+                nx, ny = normals[j + c, 0], normals[j + c, 1]
+                first[s, c, 0], first[s, c, 1] = slope * nx, slope * ny
+                second[s, c, 0], second[s, c, 1] = bend * nx, bend * ny
+                slopes[s, c] = value * (nx * ex + ny * ey)
+    moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
+    for _ in range(STEPS):
+        band, right = _equations(jets, first, second, away, most, slopes, FLAT / length, weight)
+        _solve(band, right)
+        for c in range(n + 3):
+            delta[c] = right[_folded((c - 1) % n, n)]
+        share = 1.0
+        for s in range(0, m, TUBE):
+            j, move = s // SAMPLES, 0.0
+            for c in range(4):
+                move += slopes[s, c] * delta[j + c]
+            room = most[s] - away[s] if move > 0 else most[s] + away[s]
+            if abs(move) * share > 0.9 * room:
+                share = 0.9 * room / abs(move)
+        for c in range(n + 3):
+            delta[c] *= share
+            moves[c] += delta[c]
+        for s in range(m):
+            j = s // SAMPLES
+            for c in range(4):
+                d = delta[j + c]
+                jets[s, 0] += d * first[s, c, 0]
+                jets[s, 1] += d * first[s, c, 1]
+                jets[s, 2] += d * second[s, c, 0]
+                jets[s, 3] += d * second[s, c, 1]
+                if s % TUBE == 0:
+                    away[s] += d * slopes[s, c]
+        weight *= WEAKER
+    for i in range(n):
+        if not held[i]:
+            j = spans[i]
+            points[i, 0], points[i, 1], _, _, _, _ = jet(pieces, j, local[i])
+            for c in range(4):
+                value, _, _ = _cubic(basis, j, c, local[i])
+                points[i, 0] += value * moves[j + c] * normals[j + c, 0]
+                points[i, 1] += value * moves[j + c] * normals[j + c, 1]
+
+
+@compiled
+def _distance(
+    outline: FloatArray, pieces: FloatArray, j: int, x: float, ends: FloatArray, px: float, py: float, dx: float,
+    dy: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Signed distance from the outline of a point of span j, at x, and the unit vector along which it grows."""
+    place = ends[j]
+    if x > 0:
+        point = np.empty((1, 1, 2))
+        point[0, 0, 0], point[0, 0, 1] = px, py
+        place = search_place(1, outline, ends[j], ends[j + 1], point, 0, 0)
+    s = int(np.floor(place))
+    qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
+    ex, ey, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
+    nx, ny, d = -dy / speed, dx / speed, np.sqrt(ex * ex + ey * ey)
+    if place == s and d > 0.02:  # a corner may be the nearest
+        sign = 1.0 if ex * nx + ey * ny >= 0 else -1.0
+        nx, ny = sign * ex / d, sign * ey / d
+    return ex * nx + ey * ny, nx, ny
+
+
+@compiled
+def _equations(
+    jets: FloatArray, first: FloatArray, second: FloatArray, away: FloatArray, most: FloatArray, slopes: FloatArray,
+    flat: float, weight: float,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """The matrix of a Newton step, its lower band in the order of :func:`_folded`, and the right side."""
+    m = len(jets)
+    n = m // SAMPLES
+    kappa, by = np.empty(m), np.empty((m, 4))
+    for s in range(m):
+        dx, dy, ax, ay = jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3]
+        square = dx * dx + dy * dy
+        cube = 1.0 / (square * np.sqrt(square))
+        kappa[s] = (dx * ay - dy * ax) * cube
+        whole = 3 * kappa[s] / square
+        p, q = ay * cube - whole * dx, -ax * cube - whole * dy
+        for c in range(4):
+            by[s, c] = p * first[s, c, 0] + q * first[s, c, 1] + (dx * second[s, c, 1] - dy * second[s, c, 0]) * cube
+    cyclic, right = np.zeros((n + 4, 5)), np.zeros(n + 4)  # row i of control point i - 1, and entries to the right
+    row = np.empty(5)
+    for j in range(n):
+        for k in range(SAMPLES):
+            s = j * SAMPLES + k
+            after = s + 1 if s + 1 < m else 0
+            scale = 1.0 / max(max(abs(kappa[s]), abs(kappa[after])), flat)
+            change = (kappa[after] - kappa[s]) * scale
+            w = 1.0 / (abs(change) + SMALL)
+            row[4] = 0.0
+            for c in range(4):
+                row[c] = -by[s, c] * scale
+            for c in range(4):
+                row[c + (k == SAMPLES - 1)] += by[after, c] * scale
+            for a in range(5):
+                right[j + a] -= w * change * row[a]
+                for b in range(a, 5):
+                    cyclic[j + a, b - a] += w * row[a] * row[b]
+            if k % TUBE == 0:
+                z, unit = away[s] / most[s], 1.0 / most[s]
+                inside = 1 / (1 - z * z)
+                slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
+                for a in range(4):
+                    right[j + a] -= slope * slopes[s, a]
+                    for b in range(a, 4):
+                        cyclic[j + a, b - a] += bend * slopes[s, a] * slopes[s, b]
+    band, folded = np.zeros((n, BAND + 1)), np.zeros(n)
+    for j in range(n + 4):
+        i = _folded((j - 1) % n, n)
+        folded[i] += right[j]
+        for a in range(5):
+            k = _folded((j - 1 + a) % n, n)
+            band[max(i, k), abs(i - k)] += cyclic[j, a]
+    for i in range(n):
+        band[i, 0] += 1e-9 * band[i, 0] + 1e-3  # held points have nothing else
+    return band, folded
+
+
+@compiled
+def _folded(i: int, n: int) -> int:
+    """Where index i of a cycle stands in an order in which all neighbours are near."""
+    return 2 * i if 2 * i < n else 2 * (n - 1 - i) + 1
+
+
+@compiled
+def _solve(band: FloatArray, x: FloatArray) -> None:
+    """Solve a positive definite system by Cholesky's method, in place; ``band[i, d]`` is its entry (i, i - d)."""
+    n = len(x)
+    for i in range(n):
+        first = max(0, i - BAND)
+        for j in range(first, i + 1):
+            v = band[i, i - j]
+            for k in range(first, j):
+                if j - k <= BAND:
+                    v -= band[i, i - k] * band[j, j - k]
+            band[i, i - j] = v / band[j, 0] if j < i else np.sqrt(max(v, 1e-300))
+        for k in range(first, i):
+            x[i] -= band[i, i - k] * x[k]
+        x[i] /= band[i, 0]
+    for i in range(n - 1, -1, -1):
+        x[i] /= band[i, 0]
+        for k in range(max(0, i - BAND), i):
+            x[k] -= band[i, i - k] * x[i]
+
+
+@compiled
+def _cubic(basis: FloatArray, j: int, c: int, x: float) -> tuple[float, float, float]:
+    """Value, first and second derivative of a basis function on span j."""
+    y, a, b, d, e = 1 - x, basis[j, c, 0], basis[j, c, 1], basis[j, c, 2], basis[j, c, 3]
+    value = y * y * (y * a + 3 * x * b) + x * x * (3 * y * d + x * e)
+    slope = 3 * (y * y * (b - a) + 2 * x * y * (d - b) + x * x * (e - d))
+    return value, slope, 6 * (y * (d - 2 * b + a) + x * (e - 2 * d + b))
+
+
+@compiled
+def _span_basis(knots: FloatArray) -> FloatArray:
+    """(n, 4, 4) Bézier coefficients on span j of the basis functions of control points j - 1 to j + 2."""
+    n = len(knots) - 1
+    basis = np.zeros((n, 4, 4))
+    for j in range(n):
+        e = knots[j + 1] - knots[j]
+        d, k = knots[(j - 1) % n + 1] - knots[(j - 1) % n], knots[(j + 1) % n + 1] - knots[(j + 1) % n]
+        f, g = knots[(j - 2) % n + 1] - knots[(j - 2) % n], knots[(j + 2) % n + 1] - knots[(j + 2) % n]
+        whole, b = d + e + k, basis[j]
+        b[1, 1], b[2, 1], b[1, 2], b[2, 2] = (e + k) / whole, d / whole, k / whole, (d + e) / whole
+        s = d / (d + e)
+        b[0, 0], b[2, 0] = (1 - s) * e / (f + d + e), s * b[2, 1]
+        b[1, 0] = 1 - b[0, 0] - b[2, 0]
+        s = e / (e + k)
+        b[3, 3], b[1, 3] = s * e / (e + k + g), (1 - s) * b[1, 2]
+        b[2, 3] = 1 - b[3, 3] - b[1, 3]
+    return basis
