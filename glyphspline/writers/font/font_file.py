@@ -151,7 +151,7 @@ class _InPlace:
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
         self.is_g2 = self.is_g2 or is_g2(result)
-        if self.flavour == "ttf" and stays(result):
+        if stays(result, self.flavour):
             return Drawn(None, None, 0.0)
         drawn = drawn_as(result, tolerance, self.flavour, self._width(name), extrema)
         if self.flavour == "ttf":

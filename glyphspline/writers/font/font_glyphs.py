@@ -110,11 +110,17 @@ def is_g2(result: GlyphResult) -> bool:
     return (result.options.corners, result.options.continuity) == ("sharp", "g2")
 
 
-def stays(result: GlyphResult) -> bool:
-    """Whether a glyph of quadratics keeps its record: it has points off the grid, as a scaled component has."""
-    arrays = result.outline.arrays
-    whole = np.abs(2 * arrays.points - np.rint(2 * arrays.points)).max(initial=0.0) <= GRID
-    return is_g2(result) and bool((arrays.degrees < 3).all()) and not whole
+def stays(result: GlyphResult, flavour: Flavour) -> bool:
+    """Whether a glyph keeps its record: in CFF, an outline that is the source's still; in glyf, one of quadratics with
+    points off the grid, as a scaled component has them.
+    """
+    source, made = result.outline.arrays, result.arrays.curves
+    if not is_g2(result):
+        return False
+    if flavour == "otf":
+        return np.array_equal(source.degrees, made.degrees) and np.array_equal(source.points, made.points)
+    whole = np.abs(2 * source.points - np.rint(2 * source.points)).max(initial=0.0) <= GRID
+    return bool((source.degrees < 3).all()) and not whole
 
 
 def chosen(contour: Contour, split: Sequence[list[FloatArray]], parts: int, room: float) -> Contour:
