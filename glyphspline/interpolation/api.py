@@ -87,10 +87,10 @@ def interpolate(
         diagnostics,
     )  # fmt: skip
     tangents = None if end_tangents is None else [end_tangents]
-    (result,) = _interpolated([points], method, [knots] if own else None, tangents, 1)
+    (result,) = interpolate_each([points], method, [knots] if own else None, tangents, 1)
     if isinstance(result, PolygonError):
         raise result
-    return result
+    return _with_points(result, points)
 
 
 @overload
@@ -154,23 +154,32 @@ def interpolate_many(
     require_choice("errors", errors, ("raise", "return"))
     if any(each is not None and len(each) != len(everything) for each in (own, end_tangents)):
         raise OptionError("knots and end_tangents are given for each polygon of the list, or for none")
-    results = _interpolated(everything, Method(variant, knots=rule, **options), own, end_tangents, threads)
+    results: list[Any] = interpolate_each(
+        everything, Method(variant, knots=rule, **options), own, end_tangents, threads
+    )
     for k, result in enumerate(results):
         if isinstance(result, PolygonError):
             result.locate(contour=k)
             if errors == "raise":
                 raise result
+        else:
+            results[k] = _with_points(result, everything[k])
     return results
 
 
-def _interpolated(
+def _with_points(result: Interpolation, points: ArrayLike) -> Interpolation:
+    given = np.array(points, dtype=np.float64)
+    return replace(result, points=np.delete(given, result.merged, axis=0) if len(result.merged) else given)
+
+
+def interpolate_each(
     polygons: Sequence[ArrayLike],
     method: Method,
     own_knots: Sequence[ArrayLike] | None,
     tangents: Sequence[Tangents | None] | None,
     threads: int | None,
 ) -> list[Interpolation | PolygonError]:
-    """A result or an error for each polygon, in order."""
+    """A result without ``points``, or an error, for each polygon, in order; arguments as of the functions above."""
     if method.closed and tangents is not None and any(pair is not None for pair in tangents):
         raise OptionError("end_tangents belong to an open arc (closed=False)")
     results: list[Any] = [None] * len(polygons)
@@ -216,10 +225,6 @@ def _interpolated(
         if method.finish == "solve" and isinstance(found[j], Interpolation):
             tolerance = method.tolerance_for(float(np.ptp(parts[j], axis=0).max()))
             results[k] = solved(found[j], parts[j], None if ends is None else ends[j], tolerance)
-        if isinstance(found[j], Interpolation):
-            merged = found[j].merged
-            own = np.delete(parts[j], merged, axis=0) if len(merged) else parts[j].copy()
-            results[k] = replace(results[k], points=own)
     return results
 
 

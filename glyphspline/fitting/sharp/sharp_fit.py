@@ -13,7 +13,8 @@ import numpy as np
 from ...curves.bspline import Spline
 from ...curves.pairing import SHARPNESS
 from ...errors import PolygonError
-from ...interpolation.api import interpolate_many
+from ...interpolation.api import interpolate_each
+from ...interpolation.method import Method
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
@@ -230,15 +231,15 @@ def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[i
         if not chosen:
             continue
         ring = bool(closed[chosen[0]])
-        try:
-            found = interpolate_many(
-                [vertices[starts[q] : starts[q + 1]] for q in chosen], options.variant,
-                end_tangents=None if ring else [(t[0], t[1]) for t in tangents[chosen]], threads=1,
-                margin=options.margin, residual_tolerance=options.solver_tolerance,
-                max_iterations=options.max_iterations, closed=ring,
-            )  # fmt: skip
-        except PolygonError as error:
-            error.contour = int(pieces.contour[chosen[error.contour or 0]])
-            raise
-        arcs |= zip(chosen, found, strict=True)
+        method = Method(
+            options.variant, margin=options.margin, residual_tolerance=options.solver_tolerance,
+            max_iterations=options.max_iterations, closed=ring,
+        )  # fmt: skip
+        polygons = [vertices[starts[q] : starts[q + 1]] for q in chosen]
+        found = interpolate_each(polygons, method, None, None if ring else [(t[0], t[1]) for t in tangents[chosen]], 1)
+        for q, one in zip(chosen, found, strict=True):
+            if isinstance(one, PolygonError):
+                one.contour = int(pieces.contour[q])
+                raise one
+            arcs[q] = one
     return arcs
