@@ -58,6 +58,8 @@ KINDS = (
     Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
 )
 
+MENDED = ("kink",)
+"""Names of the kinds that :func:`glyphspline.mend` mends."""
 
 ABOVE_ZERO = Rule("above 0 and up to a million", lambda value: is_positive(value, 1e6))
 

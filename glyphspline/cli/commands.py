@@ -23,6 +23,7 @@ from . import interruption
 from .check_command import check
 from .diff_command import diff
 from .groups import grouped, only, place, without
+from .mend_command import mend
 from .messages import listen, print_json, printable, progress, say, stop
 from .running import (
     Conversion,
@@ -267,6 +268,9 @@ app.command()(check)
 
 
 app.command()(diff)
+
+
+app.command()(mend)
 
 
 @app.command()

@@ -118,7 +118,7 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
     is the number of curvatures.
     """
     m, n = len(cubics), 0
-    values, where, places = np.empty(4 * m + MOST + 1), np.empty(4 * m + MOST + 1), np.empty(MOST)
+    values, where, places = np.empty(4 * m + MOST + 1), np.empty(4 * m + MOST + 1), np.zeros(MOST)
     # Share of the contour's length below which pieces and handles are rounding errors and passed over.
     least = 1e-9 * length
     ax = ay = 0.0

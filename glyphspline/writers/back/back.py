@@ -22,6 +22,7 @@ from ...errors import OutputError
 from ...files import write_whole
 from ...fitting.results import GlyphResult
 from ...outlines.extrema import with_extrema
+from ...outlines.masters import Masters
 from ...outlines.outline import Contour
 from ...readers.designspace import Designspace, Drawing, GlyphsFile
 from ...readers.ufo import Ufo
@@ -29,7 +30,7 @@ from ..font.master_deltas import Redrawn
 from ..ufo_folder import places_of, replacing
 from .glif import Glif
 from .glyphs_text import GlyphsText, Layer
-from .nodes import Node, replaced
+from .nodes import Node, moved, replaced
 
 
 @dataclass
@@ -37,20 +38,31 @@ class Written:
     """What was written back.
 
     Attributes:
-        glyphs: number of those that changed. kept: why contours of others stayed as they were, by glyph.
+        names: of the glyphs that changed. kept: why contours of others stayed as they were, by glyph.
+        contours: the same by glyph and number of the contour in its outline.
     """
 
-    glyphs: int = 0
+    names: list[str] = field(default_factory=list)
     kept: dict[str, str] = field(default_factory=dict)
+    contours: dict[tuple[str, int], str] = field(default_factory=dict)
+
+    @property
+    def glyphs(self) -> int:
+        """Number of glyphs that changed."""
+        return len(self.names)
 
 
 @dataclass(frozen=True)
 class New:
-    """A glyph's new contours: ``contours[c][k]`` is contour c where ``drawings[k]`` says."""
+    """A glyph's new contours: ``contours[c][k]`` is contour c where ``drawings[k]`` says.
+
+    With ``old``, the contours as they were, nothing but coordinates changes: the new ones have the same points.
+    """
 
     name: str
     contours: Sequence[Sequence[Contour]]
     drawings: Sequence[Drawing]
+    old: Sequence[Sequence[Contour]] | None = None
 
 
 def is_editable(source: object) -> bool:
@@ -75,14 +87,27 @@ def of_masters(source: Designspace, redrawn: Mapping[str, Redrawn]) -> Iterable[
         yield New(name, [[Contour(c.points[k], c.degrees) for k in chosen] for c in new.contours], drawings)
 
 
+def moved_points(source: Ufo | Designspace, old: Masters, new: Masters) -> New:
+    """The contours of a glyph of which points moved, in all masters."""
+    drawings = [Drawing(source.path, None, ())]
+    chosen = [0]
+    if isinstance(source, Designspace):
+        places, drawings = places_of(new), source.drawings(new.name)
+        chosen = [places.index(each.place) for each in drawings]
+    both = [[[Contour(c.points[k], c.degrees) for k in chosen] for c in each.contours] for each in (new, old)]
+    return New(new.name, both[0], drawings, both[1])
+
+
 def write_back(
-    source: Ufo | Designspace, glyphs: Iterable[New], digits: int, *, copy: Path | None = None, layer: str | None = None
-) -> Written:
+    source: Ufo | Designspace, glyphs: Iterable[New], digits: int, *, copy: Path | None = None,
+    layer: str | None = None, dry: bool = False,
+) -> Written:  # fmt: skip
     """Write new contours, rounded to ``digits`` decimals, into a source or a copy of it.
 
     Args:
         copy: a folder (for a Glyphs file: a file) that becomes a copy of the source with the new outlines; None writes
             into the source itself. layer: put them into this layer beside the old ones, which stay.
+        dry: write nothing; only look what would be.
 
     Raises:
         OutputError: something else is at ``copy``; a UFO before version 3 has no layers. OSError: it cannot be written.
@@ -90,17 +115,18 @@ def write_back(
     """
     if isinstance(source, GlyphsFile):
         edit = _GlyphsEdit(source, layer)
-        found = _edited(source, glyphs, digits, edit)
-        write_whole(str(copy or source.path), edit.text(), durable=True)
+        found = _edited(source, glyphs, digits, edit, dry)
+        if not dry and (found.glyphs or copy is not None):
+            write_whole(str(copy or source.path), edit.text(), durable=True)
         return found
-    if copy is None:
-        return _edited(source, glyphs, digits, _UfoEdit(Path(), Path(), layer))
+    if copy is None or dry:
+        return _edited(source, glyphs, digits, _UfoEdit(Path(), Path(), layer), dry)
     if copy.is_symlink() or (
         copy.exists() and not ((copy / "metainfo.plist").exists() or [*copy.rglob("*.designspace")])
     ):
         raise OutputError("is there already, and is no source of a font", font=str(copy))
     with replacing(copy) as partial:
-        return _edited(source, glyphs, digits, _UfoEdit(_copied(source, partial), partial, layer))
+        return _edited(source, glyphs, digits, _UfoEdit(_copied(source, partial), partial, layer), dry)
 
 
 def _copied(source: Ufo | Designspace, folder: Path) -> Path:
@@ -120,15 +146,18 @@ def _copied(source: Ufo | Designspace, folder: Path) -> Path:
     return root
 
 
-def _edited(source: Ufo | Designspace, glyphs: Iterable[New], digits: int, edit: _UfoEdit | _GlyphsEdit) -> Written:
+def _edited(
+    source: Ufo | Designspace, glyphs: Iterable[New], digits: int, edit: _UfoEdit | _GlyphsEdit, dry: bool
+) -> Written:
     found = Written()
     for new in glyphs:
         changes, stays = _changes(source, new, digits, edit)
         if stays:
-            found.kept[new.name] = "; ".join(stays)
+            found.kept[new.name] = "; ".join([f"contour {number} {why}" for number, _, why in stays])
+            found.contours |= {(new.name, index): why for _, index, why in stays}
         if changes:
-            found.glyphs += 1
-            for drawing, nodes in zip(new.drawings, changes, strict=True):
+            found.names.append(new.name)
+            for drawing, nodes in zip(new.drawings, () if dry else changes, strict=not dry):
                 edit.put(drawing, new.name, nodes)
     edit.finish()
     return found
@@ -136,8 +165,11 @@ def _edited(source: Ufo | Designspace, glyphs: Iterable[New], digits: int, edit:
 
 def _changes(
     source: Ufo | Designspace, new: New, digits: int, edit: _UfoEdit | _GlyphsEdit
-) -> tuple[list[dict[int, list[Node]]], list[str]]:
-    """By drawing, the contours that change and their nodes; and a phrase for each contour that stays."""
+) -> tuple[list[dict[int, list[Node]]], list[tuple[int, int, str]]]:
+    """By drawing, the contours that change and their nodes; and numbers of contours that stay, and why.
+
+    The numbers are those in the file and in the outline.
+    """
     changes: list[dict[int, list[Node]]] = [{} for _ in new.drawings]
     stays = []
     old = [edit.contours(drawing, new.name) for drawing in new.drawings]
@@ -145,12 +177,16 @@ def _changes(
     for number, index in enumerate(source.own_contours(new.name)):
         if index is None:
             continue
-        made = replaced([contours[number] for contours in old], new.contours[index], held, digits)
+        nodes, contours = [contours[number] for contours in old], new.contours[index]
+        if new.old is None:
+            made = replaced(nodes, contours, held, digits)
+        else:
+            made = moved(nodes, new.old[index], contours, held, digits)
         if isinstance(made, str):
-            stays.append(f"contour {number} {made}")
+            stays.append((number, index, made))
         elif made:
-            for change, nodes in zip(changes, made, strict=True):
-                change[number] = nodes
+            for change, own in zip(changes, made, strict=True):
+                change[number] = own
     return (changes if any(changes) else []), stays
 
 

@@ -73,6 +73,42 @@ def replaced(
     return found
 
 
+def moved(
+    nodes: Sequence[Sequence[Node]], old: Sequence[Contour], new: Sequence[Contour],
+    held: Sequence[frozenset[Position]], digits: int,
+) -> list[list[Node]] | str | None:  # fmt: skip
+    """The nodes of a contour in each master where points of it moved; why it stays as it is; None where none moved.
+
+    Args:
+        nodes: as they are, by master. old: the same contour as it was read. new: the same points, elsewhere.
+        held, digits: see :func:`replaced`.
+    """
+    if all(np.array_equal(a.points, b.points) for a, b in zip(old, new, strict=True)):
+        return None
+    if any(node.kind == "move" for own in nodes for node in own):
+        return "is open"
+    places = [np.array([node.at for node in own]) for own in nodes]
+    if any(at.shape != contour.points.shape for at, contour in zip(places, old, strict=True)):
+        return "has points that are not read"
+    shifts = (
+        k for k in range(len(nodes[0]))
+        if all(np.allclose(np.roll(c.points, k, axis=0), at, atol=1e-6) for c, at in zip(old, places, strict=True))
+    )  # fmt: skip
+    shift = next(shifts, None)
+    if shift is None:
+        return "is read otherwise than it is drawn"
+    found = []
+    for own, before, behind, anchors in zip(nodes, old, new, held, strict=True):
+        moves = np.roll((before.points != behind.points).any(axis=1), shift)
+        to = np.round(np.roll(behind.points, shift, axis=0), digits).tolist()
+        for node, goes in zip(own, moves, strict=True):
+            if goes and node.kind and node.at in anchors:
+                return f"would lose the point at {node.at[0]:g} {node.at[1]:g}, where an anchor is"
+        there = [tuple(at) if goes else node.at for node, at, goes in zip(own, to, moves, strict=True)]
+        found.append([n._replace(at=(as_number(x), as_number(y))) for n, (x, y) in zip(own, there, strict=True)])
+    return found
+
+
 def _nodes(contour: Contour, smooth: Sequence[bool], shift: int) -> list[Node]:
     """The nodes of a contour that begins with its segment number ``shift``."""
     points, nodes = iter([(as_number(x), as_number(y)) for x, y in contour.points.tolist()]), list[list[Node]]()

@@ -1,0 +1,146 @@
+"""The command ``mend``: kinks of sources are mended, and what moved goes back into them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..checks.kinds import MENDED
+from ..errors import OptionError
+from ..fields import WRITTEN, About
+from ..runs.spec import RunSpec
+from ..types import counted, rounded_up
+from . import arguments as opt
+from .check_command import thresholds_of
+from .groups import grouped, only
+from .messages import print_json, progress, say, stop
+from .running import say_missing
+from .tables import plain
+
+if TYPE_CHECKING:
+    from ..mending.mend import Change
+    from ..readers.designspace import Designspace
+    from ..readers.ufo import Ufo
+    from ..runs.jobs.mend import MendedSource
+
+SOURCES_HELP = "UFOs, designspaces and Glyphs files."
+LEFT = 5
+"""Findings that are left and named."""
+
+
+@grouped
+def mend(
+    sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
+    subset: opt.Subset,
+    spec: Annotated[RunSpec, only("in_place", "layer")],
+    report: Annotated[opt.ReportOptions, only("rows")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
+    out: Annotated[
+        Path | None,
+        About("Write copies of the sources to this folder.", WRITTEN, "DIR", ("--out", "-o"), more=opt.PLACE),
+    ] = None,
+    dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
+    kinds: Annotated[
+        str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}.", opt.FOUND, "KIND,…")
+    ] = ",".join(MENDED),
+    tolerance: Annotated[
+        float | None,
+        About("Let outlines move by this, in font units. Without it, 1/1000 em.", opt.FOUND, metavar="UNITS"),
+    ] = None,
+    thresholds: Annotated[
+        str | None, About("Take these thresholds of check: kink=1.", opt.FOUND, "NAME=VALUE,…")
+    ] = None,
+) -> bool:
+    """Mend kinks in sources: handles, then nodes, move as little as it takes. No point comes or goes.
+
+    All glyphs are mended unless some are asked for, in all their masters, so that joints meant to be smooth kink
+    nowhere along an axis. Those that would move outlines by more than the tolerance, or bring a new finding of any
+    kind, are left and named, and end the command with status 1.
+    """
+    from ..readers import open_source
+    from ..readers.designspace import Designspace
+    from ..readers.ufo import Ufo
+    from ..runs.jobs.mend import mend_source
+    from ..runs.schedule import workers
+
+    if (out is not None) + spec.is_back + dry_run != 1:
+        stop("give one of --in-place, --layer, --out and --dry-run")
+    if out is not None and len({path.name for path in sources}) < len(sources):
+        raise OptionError("--out takes no two sources of one name")
+    limits = thresholds_of(thresholds, None)
+    found: list[MendedSource] = []
+    undone = False
+    with workers(run.jobs, kinds=["checks"], expected=1) as pool:
+        for path in sources:
+            source = open_source(path)
+            if not isinstance(source, Ufo | Designspace):
+                stop(f"{path}: only UFOs, designspaces and Glyphs files are mended")
+            names: Sequence[str] = source.glyph_names
+            if subset.is_given:
+                chosen = subset.of(source)
+                undone |= bool(chosen.missing)
+                say_missing([] if run.quiet else chosen.missing)
+                names = chosen
+            copy = None if out is None else copy_of(source, out)
+            with progress(run.quiet) as observer:
+                found.append(mend_source(
+                    source, names, kinds=opt.items_of(kinds), tolerance=tolerance, thresholds=limits, copy=copy,
+                    layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
+                ))  # fmt: skip
+    if run.as_json:
+        print_json([one.facts() for one in found])
+    for one in found:
+        if not run.as_json and not run.quiet and one.mended and report.rows:
+            typer.echo(table(one.mended[: report.rows]))
+        if not run.quiet:
+            for line in lines(one, dry_run):
+                say(line)
+    return undone or any(one.left or one.failed for one in found)
+
+
+def copy_of(source: Ufo | Designspace, out: Path) -> Path:
+    """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
+    from ..files import make_folder
+    from ..readers.designspace import Designspace, GlyphsFile
+
+    make_folder(out)
+    is_folder = isinstance(source, Designspace) and not isinstance(source, GlyphsFile)
+    return out / (source.path.stem if is_folder else source.path.name)
+
+
+def table(changes: Sequence[Change]) -> str:
+    """What moved, a joint a line."""
+    rows = [
+        [
+            change.glyph, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point), f"{change.before:.2f}°",
+            f"{change.after:.2f}°", f"{change.moved:.3g}", f"{rounded_up(change.distance or 0.0, 3):g}",
+        ]
+        for change in changes
+    ]  # fmt: skip
+    headings = ("glyph", "contour", "at", "turned by", "turns by", "points moved", "curves moved")
+    return plain(headings, rows, numbers=headings[1:])
+
+
+def lines(found: MendedSource, dry: bool) -> Iterator[str]:
+    """What the table does not say."""
+    mended, left = found.mended, found.left
+    verb = "would change" if dry else "changed"
+    yield (
+        f"{found.source}: {counted(len(found.changed), 'glyph')} of {found.glyphs} {verb}, "
+        f"{counted(len(found.changes), 'kink')} before, {len(left)} after"
+    )
+    if mended:
+        yield f"the largest move of a point is {mended[0].moved:.3g} units"
+    for change in left[:LEFT]:
+        needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
+        place = "contour {}, {:.0f} {:.0f}, turns by {:.1f}°".format(change.contour, *change.point, change.before)
+        yield f"left: {change.glyph}, {place}, and {change.why}{needs}"
+    if len(left) > LEFT:
+        yield f"left: {len(left) - LEFT} more, which --json lists"
+    for name, why in found.failed[:LEFT]:
+        yield f"failed: {name}: {why}"
+    if len(found.failed) > LEFT:
+        yield f"failed: {len(found.failed) - LEFT} more"

@@ -1,0 +1,174 @@
+"""Sources mended: glyph by glyph in workers, and what moved written back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ...checks.kinds import MENDED, THRESHOLDS, Thresholds
+from ...errors import OutputError
+from ...files import writing
+from ...mending.mend import DIGITS, Change, check_kinds, mended
+from ...readers.designspace import Designspace
+from ...readers.ufo import Ufo
+from ..engine import Item, Job, Observer, reason, run
+from ..schedule import Head, Place, place_of, sources, workers
+from ..spec import Limits
+
+if TYPE_CHECKING:
+    from ...outlines.masters import Masters
+
+OF_COMPONENT = "is of a component"
+"""Why contours are left that another glyph draws; there they are mended."""
+
+
+class Mended(NamedTuple):
+    """What a worker made of a glyph: as it was, mended (None: nothing moved), what became of its findings, an error."""
+
+    old: Masters | None
+    new: Masters | None
+    changes: Sequence[Change]
+    error: str | None = None
+
+
+@dataclass(frozen=True)
+class MendJob(Job[Head, list[Mended]]):
+    """Glyphs mended as their source draws them; ``outer``: see :attr:`.Source.outer`."""
+
+    place: Place
+    kinds: tuple[str, ...]
+    tolerance: float | None
+    thresholds: Thresholds
+    outer: int
+
+    chunk = 8
+    budget = 1.0
+
+    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
+        """Glyphs in all their masters, with the contours that they do not draw themselves."""
+        (source,) = sources(self.place)
+        found: list[Item | Exception] = []
+        for name, _, _ in tasks:
+            try:
+                masters = source.masters(name)
+                count = sum(len(contour) for contour in masters.contours)
+                found.append(Limits().error_of(count) or Item((masters, _fixed(source, masters))))
+            except Exception as error:  # broken data raises anything
+                found.append(error)
+        return found
+
+    def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
+        """Mend glyphs."""
+        found = []
+        for masters, fixed in contents:
+            new, changes = mended(masters, self.kinds, self.tolerance, self.thresholds, self.outer, fixed)
+            moved = None if new is masters else new
+            found.append(Mended(masters if moved else None, moved, [c for c in changes if c.why != OF_COMPONENT]))
+        return found
+
+    def failed(self, task: Head, error: Exception) -> list[Mended]:
+        """Why a glyph could not be mended."""
+        return [Mended(None, None, (), reason(error))]
+
+
+def _fixed(source: Any, masters: Masters) -> dict[int, str]:
+    """The contours of a glyph that may not change, and why."""
+    own = {index for index in source.own_contours(masters.name) if index is not None}
+    count = len(masters.contours)
+    if isinstance(source, Designspace):
+        from ...writers.ufo_folder import places_of
+
+        if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
+            return dict.fromkeys(range(count), "has masters in which only its components are drawn")
+    return {number: OF_COMPONENT for number in range(count) if number not in own}
+
+
+@dataclass
+class MendedSource:
+    """What became of a source.
+
+    Attributes:
+        source: its path. glyphs: number of those looked at. changed: names of those that changed.
+        changes: what became of each finding. failed: glyphs that could not be read, with the reasons.
+    """
+
+    source: str
+    glyphs: int = 0
+    changed: list[str] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
+    failed: list[tuple[str, str]] = field(default_factory=list)
+
+    @property
+    def left(self) -> list[Change]:
+        """Findings that are still there."""
+        return [change for change in self.changes if not change.is_mended]
+
+    @property
+    def mended(self) -> list[Change]:
+        """Findings that are there no more, the largest move first."""
+        return sorted((change for change in self.changes if change.is_mended), key=lambda change: -change.moved)
+
+    def facts(self) -> dict[str, Any]:
+        """As JSON data."""
+        moved = [change.moved for change in self.mended]
+        return {
+            "source": self.source, "glyphs": self.glyphs, "changed": self.changed, "before": len(self.changes),
+            "after": len(self.left), "largest_move": max(moved, default=None),
+            "changes": [asdict(change) for change in self.changes], "failed": dict(self.failed),
+        }  # fmt: skip
+
+
+def mend_source(
+    source: Ufo | Designspace,
+    names: Sequence[str],
+    *,
+    kinds: Sequence[str] = MENDED,
+    tolerance: float | None = None,
+    thresholds: Thresholds = THRESHOLDS,
+    copy: Path | None = None,
+    layer: str | None = None,
+    dry: bool = False,
+    executor: Executor | None = None,
+    observer: Observer | None = None,
+) -> MendedSource:
+    """Mend glyphs of a source, and write those that changed into it, a layer of it or a copy.
+
+    Args:
+        names: of the glyphs. kinds, tolerance, thresholds: see :func:`glyphspline.mend`.
+        copy, layer: see :func:`.back.write_back`. dry: write nothing.
+        executor: see :func:`.schedule.workers`; without it, this process does all.
+
+    Raises:
+        OptionError: a kind cannot be mended. OutputError: the source takes nothing back, or cannot be written.
+    """
+    from ...writers.back.back import is_editable, moved_points, write_back
+
+    check_kinds(kinds)
+    if not is_editable(source):
+        raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
+    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
+    job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
+    found, new = MendedSource(str(source.path)), []
+    with workers(0, executor=executor) as pool:
+        for part in run(job, tasks, pool, ordered=True, observer=observer):
+            for (name, _, _), one in zip(part.tasks, part.result, strict=True):
+                found.glyphs += one.error is None
+                if one.error is not None:
+                    found.failed.append((name, one.error))
+                found.changes += one.changes
+                if one.old is not None and one.new is not None:
+                    new.append(moved_points(source, one.old, one.new))
+    with writing(copy or source.path):
+        written = write_back(source, new, DIGITS, copy=copy, layer=layer, dry=dry)
+    found.changed = written.names
+    kept = written.contours
+    found.changes = [
+        replace(c, why=kept[c.glyph, c.contour], after=None, moved=0.0, moves=(), distance=None)
+        if c.is_mended and (c.glyph, c.contour) in kept else c
+        for c in found.changes
+    ]  # fmt: skip
+    return found

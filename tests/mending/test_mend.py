@@ -1,0 +1,226 @@
+"""Mended kinks: near the clean outline, nowhere along an axis, and nothing else is found or changed."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib import get_data_path
+from typer.testing import CliRunner
+
+import glyphspline as gs
+from glyphspline.checks.finding import Finding
+from glyphspline.cli.commands import app
+from glyphspline.outlines.masters import DesignAxis, MasterContour
+from glyphspline.outlines.outline import Contour
+from glyphspline.readers import open_source
+from scripts.planted_faults import cubics_of, planted
+
+SHAPE = [(0, 0), (0, 262), (161, 563), (300, 500), (424, 444), (600, 292), (600, 0)]
+BOLD = [(0, 0), (0, 202), (193, 460), (300, 500), (415, 543), (600, 276), (600, 0)]
+"""Two curves and a line; the joint at 300, 500 is smooth in both, and turns by 2.2° between them."""
+
+ENOUGH = 5.0
+"""Units by which curves may move there."""
+
+WEIGHT = DesignAxis("wght", "Weight", 400, 400, 700)
+
+
+def family_of(regular: object, bold: object) -> gs.Masters:
+    """A glyph of two masters."""
+    points = np.array([regular, bold], dtype=np.float64)
+    contour = MasterContour(points, np.array([3, 3, 1]))
+    return gs.Masters(
+        "a", axes=(WEIGHT,), regions=np.array([[[0.0, 1.0, 1.0]]]), contours=[contour], advances=np.zeros(2)
+    )
+
+
+def turn_at(outline: gs.Outline) -> float:
+    """Degrees at the joint of the shape."""
+    a, b = np.diff(outline.contours[0].points[2:5], axis=0)
+    return abs(float(np.degrees(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))))
+
+
+def kinds_of(found: list[Finding]) -> Counter[object]:
+    return Counter((one.kind, one.contour, one.segment, one.other) for one in found)
+
+
+def test_planted_kinks_come_back_to_the_clean_outline() -> None:
+    font = gs.open_font(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
+    rng = np.random.default_rng(5)
+    near = meant = 0
+    for name in font.select(text="abcdeghmnopqrsuBCDGJOPQRS035689&@"):
+        clean = cubics_of(font.outline(name))
+        em = clean.metrics.units_per_em
+        before = gs.check(clean)
+        for fault in ("kink of 2°", "kink of 3°", "kink of 5°", "line into curve, 3°"):
+            made = planted([list(c.segments()) for c in clean.contours], em, before, fault, rng)
+            if made is None:
+                continue
+            outline = replace(clean, contours=[Contour.from_segments(segments) for segments in made[0]])
+            mended, changes = gs.mend(outline, tolerance=em / 250)
+            found = gs.check(outline)
+            assert not kinds_of(gs.check(mended)) - kinds_of(found)
+            own = [one for one in changes if np.allclose(one.point, made[1].point)]
+            joint = [(one.contour, one.segment) for one in own]
+            if not own or any((one.contour, one.segment) in joint for one in before):  # a jump that the kink hides
+                continue
+            meant += 1
+            near += gs.compare(clean, mended).bound <= 2 * em / 1000 and own[0].is_mended
+            for old, new in zip(outline.contours, mended.contours, strict=True):
+                assert (old.degrees == new.degrees).all()
+                assert (new.points == np.round(new.points)).all()
+            assert gs.compare(outline, mended).seen <= em / 250
+    assert meant >= 50
+    assert near >= 0.9 * meant
+
+
+def test_a_level_handle_stays_level() -> None:
+    shape = [(0, 0), (0, 300), (140, 500), (300, 500), (420, 507), (600, 300), (600, 0)]
+    outline = gs.Outline("n", contours=[Contour(np.array(shape), np.array([3, 3, 1]))])
+    mended, (change,) = gs.mend(outline, tolerance=5)
+    assert mended.contours[0].points[2:5, 1].tolist() == [500, 500, 500]
+    assert change.is_mended
+    assert change.after == 0
+    assert change.before > 3
+    assert not [one for one in gs.check(mended) if one.kind == "kink"]
+
+
+def test_kinks_between_masters_are_gone_everywhere() -> None:
+    masters = family_of(SHAPE, BOLD)
+    assert turn_at(masters.instance({"wght": 550})) > 2
+    mended, (change,) = gs.mend(masters, tolerance=ENOUGH)
+    turns = [turn_at(mended.instance({"wght": float(w)})) for w in np.linspace(400, 700, 301)]
+    assert max(turns) < 0.7
+    assert change.after is not None
+    assert max(turns) <= change.after + 1e-9
+    assert change.distance is not None
+    assert change.distance <= ENOUGH
+    for weight in (400.0, 470.0, 550.0, 700.0):
+        assert gs.compare(masters.instance({"wght": weight}), mended.instance({"wght": weight})).seen <= ENOUGH
+    assert (mended.contours[0].points == np.round(mended.contours[0].points)).all()
+
+
+def test_what_needs_more_than_the_tolerance_is_left_and_named() -> None:
+    masters = family_of(SHAPE, BOLD)
+    same, (change,) = gs.mend(masters, tolerance=0.2)
+    assert same is masters
+    assert not change.is_mended
+    assert change.needs is not None
+    assert change.needs > 0.2
+    mended, (change,) = gs.mend(masters, tolerance=1.01 * change.needs)
+    assert mended is not masters
+    assert change.is_mended
+    with pytest.raises(gs.OptionError, match="what can be mended"):
+        gs.mend(masters, kinds=["sparkle"])
+
+
+def sources(folder: Path) -> Path:
+    """A designspace of two UFOs: a joint that kinks between them, with names and anchors, and a glyph without."""
+    ufoLib2 = pytest.importorskip("ufoLib2")
+    from fontTools.designspaceLib import DesignSpaceDocument
+
+    document = DesignSpaceDocument()
+    document.addAxisDescriptor(tag="wght", name="Weight", minimum=400, default=400, maximum=700)
+    for style, weight, points in (("Regular", 400, SHAPE), ("Bold", 700, BOLD)):
+        font = ufoLib2.Font()
+        font.info.familyName, font.info.styleName, font.info.unitsPerEm = "Mine", style, 1000
+        font.info.ascender, font.info.descender = 800, -200
+        for name in ("a", "b"):
+            glyph = font.newGlyph(name)
+            glyph.width, glyph.unicodes = 600, [ord(name)]
+            pen = glyph.getPen()
+            pen.moveTo(points[0])
+            if name == "a":
+                pen.curveTo(*points[1:4])
+                pen.curveTo(*points[4:7])
+            else:
+                pen.lineTo(points[3])
+                pen.lineTo(points[6])
+            pen.closePath()
+        glyph = font["a"]
+        glyph.contours[0].points[3].smooth = True
+        glyph.contours[0].points[3].name = "top"
+        glyph.appendAnchor({"name": "top", "x": 300, "y": 500})
+        font.newGlyph("aa").getPen().addComponent("a", (1, 0, 0, 1, 20, 0))
+        font.save(folder / f"{style}.ufo")
+        document.addSourceDescriptor(
+            path=str(folder / f"{style}.ufo"), styleName=style, familyName="Mine", location={"Weight": weight}
+        )
+    document.write(folder / "Mine.designspace")
+    return folder / "Mine.designspace"
+
+
+def glyphs_file(folder: Path) -> Path:
+    """The same as a Glyphs file."""
+    glyphsLib = pytest.importorskip("glyphsLib")
+    from fontTools.designspaceLib import DesignSpaceDocument
+
+    glyphsLib.to_glyphs(DesignSpaceDocument.fromfile(sources(folder))).save(str(folder / "Mine.glyphs"))
+    return folder / "Mine.glyphs"
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def without_numbers(data: bytes) -> bytes:
+    return re.sub(rb'(<point x="|y=")[-\d.]+', rb"\1", data)
+
+
+def test_in_sources_only_coordinates_change(tmp_path: Path) -> None:
+    path = sources(tmp_path)
+    before = contents(tmp_path)
+    run = CliRunner().invoke(app, ["mend", str(path), "--in-place", "-j", "1", "--json", "--tolerance", "5"])
+    assert run.exit_code == 0, run.output
+    (facts,) = json.loads(run.stdout)
+    assert (facts["changed"], facts["before"], facts["after"], facts["glyphs"]) == (["a"], 1, 0, 3)
+    after = contents(tmp_path)
+    changed = [name for name in before if before[name] != after[name]]
+    assert before.keys() == after.keys()
+    assert set(changed) <= {"Regular.ufo/glyphs/a.glif", "Bold.ufo/glyphs/a.glif"}
+    assert changed
+    for name in changed:
+        assert without_numbers(before[name]) == without_numbers(after[name])
+    assert not [one for one in gs.kinks(open_source(path))[0] if one.turn >= 0.7]
+
+
+def test_a_dry_run_writes_nothing_and_a_copy_leaves_the_source(tmp_path: Path) -> None:
+    path = sources(tmp_path)
+    before = contents(tmp_path)
+    run = CliRunner().invoke(app, ["mend", str(path), "--dry-run", "-j", "1", "--tolerance", "5"])
+    assert run.exit_code == 0
+    assert "1 glyph of 3 would change, 1 kink before, 0 after" in run.output
+    assert contents(tmp_path) == before
+    run = CliRunner().invoke(app, ["mend", str(path), "--out", str(tmp_path / "out"), "-j", "1", "--tolerance", "5"])
+    assert run.exit_code == 0, run.output
+    (copy,) = (tmp_path / "out").rglob("*.designspace")
+    assert not [one for one in gs.kinks(open_source(copy))[0] if one.turn >= 0.7]
+    now = contents(tmp_path)
+    assert {name: now[name] for name in before} == before
+    run = CliRunner().invoke(app, ["mend", str(path), "--dry-run", "-j", "1", "--tolerance", "0.01"])
+    assert run.exit_code == 1
+    assert "left: a, contour 0" in run.output
+
+
+@pytest.mark.parametrize("layer", [None, "mended"])
+def test_a_glyphs_file_is_mended(layer: str | None, tmp_path: Path) -> None:
+    path = glyphs_file(tmp_path)
+    text = path.read_text()
+    options = ["--in-place"] if layer is None else ["--layer", layer]
+    run = CliRunner().invoke(app, ["mend", str(path), *options, "-j", "1", "--tolerance", "5"])
+    assert run.exit_code == 0, run.output
+    assert len(open_source(path).glyph_names) == 3
+    left = [one for one in gs.kinks(open_source(path))[0] if one.turn >= 0.7]
+    if layer is None:
+        assert not left
+        numbers = r"[-\d.]+ [-\d.]+ (?=LINE|CURVE|OFFCURVE)|\([-\d.]+,[-\d.]+,(?=[a-z])"
+        assert re.sub(numbers, "", text) == re.sub(numbers, "", path.read_text())
+    else:
+        assert left
+        assert layer in path.read_text()
