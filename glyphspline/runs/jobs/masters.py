@@ -328,7 +328,8 @@ def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> st
     if (tally := facts.tally) is not None:
         pairs = (tally.points, tally.kinks, tally.between)
         points, kinks, between = (f"{before:,} → {after:,}" for before, after in pairs)
-        remark += f"; points {points}, kinks at masters and along axes {kinks}, of them between masters {between}"
+        what = "points" if path.suffix == ".ttf" else "segments"
+        remark += f"; {what} {points}, kinks at masters and along axes {kinks}, of them between masters {between}"
     return remark
 
 
