@@ -91,8 +91,8 @@ def test_an_interpolation_shows_its_vertices_knots_and_footpoints(axes: Any, deg
     assert [len(np.asarray(line.get_xydata())) for line in axes.lines[-3:]] == [6, 7, 6]
     np.testing.assert_array_equal(np.asarray(axes.lines[0].get_xydata())[:-1], L_SHAPE)
     (many,) = gs.interpolate_many([L_SHAPE])
-    assert many.points is None
-    assert 'class="vertices"' not in svg_of(many)
+    np.testing.assert_array_equal(many.points, L_SHAPE)
+    assert 'class="vertices"' in svg_of(many)
 
 
 @pytest.mark.parametrize("dimension", [3, 6])
