@@ -35,7 +35,7 @@ STEPS = 8
 GOOD = 0.25
 """Share of its turn that a mended joint may keep: where handles are short the grid is coarse."""
 
-TRIES = 8
+TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
 
 DIGITS = 3
@@ -252,7 +252,7 @@ class _Joint:
 
     @classmethod
     def of(cls, change: Change, contour: MasterContour, design: _Design, fixed: str | None) -> _Joint:
-        """Find the moves of a joint that are within the tolerance and mend it; in masters the smallest ones first."""
+        """Find the moves of a joint that are within the tolerance and mend it; in masters nodes come last."""
         numbers, old = points_of(contour, change.segment)
         joint = cls(change, len(contour), numbers, old, [], fixed or obstacle(contour, change.segment))
         if joint.why:
@@ -271,10 +271,7 @@ class _Joint:
             joint.why, joint.needs = "is beyond the tolerance", min(each.distance for each in joint.tries)
         several = len(old) > 1
         node = [bool((each.places[:, 1] != old[:, 1]).any()) for each in within]
-        order = sorted(
-            range(len(within)),
-            key=lambda k: (within[k].turn >= design.kink, several and node[k], within[k].distance if several else 0.0),
-        )
+        order = sorted(range(len(within)), key=lambda k: (within[k].turn >= design.kink, several and node[k]))
         joint.tries = [within[k] for k in order[:TRIES]]
         return joint
 
