@@ -98,6 +98,28 @@ def weights_of(q: Quads, s: int, t: float, B: FloatArray) -> None:
 
 
 @compiled
+def across(
+    q: Quads, s: int, t: float, c: FloatArray, p: FloatArray, x: float, y: float, B: FloatArray, row: FloatArray
+) -> float:
+    """How far the point (x, y) is off quadratic s, across it at its place t; inf where the curve stands still.
+
+    Args:
+        c, p: of quadratic s, see :func:`distances`. B: room. row: (6,) how the curve's own distance moves with the
+            coordinates of the three control points of :func:`weights_of`.
+    """
+    dx, dy = 2 * c[1, 0] * t + c[0, 0], 2 * c[1, 1] * t + c[0, 1]
+    size = length(dx, dy)
+    if size <= 0.0:
+        return np.inf
+    nx, ny = -dy / size, dx / size
+    weights_of(q, s, t, B)
+    for i in range(3):
+        row[2 * i], row[2 * i + 1] = B[i] * nx, B[i] * ny
+    gap = nx * (x - (c[1, 0] * t + c[0, 0]) * t - p[0, 0])
+    return gap + ny * (y - (c[1, 1] * t + c[0, 1]) * t - p[0, 1])
+
+
+@compiled
 def relax(q: Quads, samples: FloatArray, tolerance: float) -> float:
     """Move the control points nearest to the samples (N, 2), by least squares; the largest distance left."""
     R = len(q.c)
@@ -106,7 +128,7 @@ def relax(q: Quads, samples: FloatArray, tolerance: float) -> float:
     for k in range(n):
         first[k] = max(0, 2 * (k // 2 - 2))
     x, e, weight = np.empty(len(samples)), np.zeros(len(samples)), np.ones(len(samples))
-    c, p, B, n3 = np.empty((3, 2)), np.empty((4, 2)), np.empty(3), np.empty((3, 2))
+    c, p, B, row = np.empty((3, 2)), np.empty((4, 2)), np.empty(3), np.empty(6)
     for s in range(R):
         for k in range(q.lo[s], q.lo[s + 1] + 1):
             x[k] = (k - q.lo[s]) / max(q.lo[s + 1] - q.lo[s], 1)
@@ -121,33 +143,25 @@ def relax(q: Quads, samples: FloatArray, tolerance: float) -> float:
                 continue
             scale = 1 / max(b - a - 1, 1)
             for k in range(a + 1, b):
-                t = x[k]
-                dx, dy = 2 * c[1, 0] * t + c[0, 0], 2 * c[1, 1] * t + c[0, 1]
-                size = length(dx, dy)
-                if size <= 0.0:
+                gap = across(q, s, x[k], c, p, samples[k, 0], samples[k, 1], B, row)
+                if gap == np.inf:
                     continue
                 if m > 0 and own > 0.0:
                     weight[k] *= 0.3 + e[k] / own
-                nx, ny = -dy / size, dx / size
-                gap = nx * (samples[k, 0] - (c[1, 0] * t + c[0, 0]) * t - p[0, 0])
-                gap += ny * (samples[k, 1] - (c[1, 1] * t + c[0, 1]) * t - p[0, 1])
-                weights_of(q, s, t, B)
                 w = scale * weight[k]
-                for i in range(3):
-                    n3[i, 0], n3[i, 1] = B[i] * nx, B[i] * ny
                 for i in range(3):
                     u = s - 1 + i
                     if u < 0 or u >= R:
                         continue
                     for ia in range(2):
-                        g[2 * u + ia] += w * n3[i, ia] * gap
+                        g[2 * u + ia] += w * row[2 * i + ia] * gap
                         for j in range(i + 1):
                             v = s - 1 + j
                             if v < 0:
                                 continue
                             for ja in range(2):
                                 if 2 * v + ja <= 2 * u + ia:
-                                    A[2 * u + ia, 2 * v + ja] += w * n3[i, ia] * n3[j, ja]
+                                    A[2 * u + ia, 2 * v + ja] += w * row[2 * i + ia] * row[2 * j + ja]
         if m == ROUNDS or worst <= 0.1 * tolerance:
             break
         for s in range(R):
@@ -272,19 +286,11 @@ def round_quads(q: Quads, samples: FloatArray, tolerance: float, T: FloatArray, 
         distances(q, s, samples[a : b + 1], x[a : b + 1], e[a : b + 1], c, p)
         w = 1 / (max(b - a - 1, 1) * tolerance * tolerance)
         for k in range(a + 1, b):
-            t = x[k]
-            dx, dy = 2 * c[1, 0] * t + c[0, 0], 2 * c[1, 1] * t + c[0, 1]
-            size = length(dx, dy)
-            if size <= 0.0:
+            gap = across(q, s, x[k], c, p, samples[k, 0], samples[k, 1], B, row)
+            if gap == np.inf:
                 continue
-            nx, ny = -dy / size, dx / size
-            gap = nx * ((c[1, 0] * t + c[0, 0]) * t + p[0, 0] - samples[k, 0])
-            gap += ny * ((c[1, 1] * t + c[0, 1]) * t + p[0, 1] - samples[k, 1])
-            weights_of(q, s, t, B)
-            for i in range(3):
-                row[2 * i], row[2 * i + 1] = B[i] * nx, B[i] * ny
             for i in range(6):
-                pulls[s, i] += w * gap * row[i]
+                pulls[s, i] -= w * gap * row[i]
                 for j in range(6):
                     forms[s, i, j] += w * row[i] * row[j]
     for s in range(R):
