@@ -156,14 +156,14 @@ def faithful(
             near = list(search.tried)
             for share in APART if turn == fits.apart else ():
                 search.attempt(search.found.crosses, partial(apart, near, share))
-    smooth_best = list(search.best)
-    for turn in range(fits.instead.tries if fits.instead else 0):
-        assert fits.instead is not None
-        search.go_back()
-        search.attempt(search.kept.crosses, partial(closer, turn, of=fits.instead))
+    own_best, instead = list(search.best), fits.instead
+    if instead is not None:
+        for turn in range(instead.tries):
+            search.go_back()
+            search.attempt(search.kept.crosses, partial(closer, turn, of=instead))
     fits_best = list(search.best)
     wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
-    if fits.instead is not None and fits.instead.keeps_crossing:
+    if instead and instead.keeps_crossing:
         wrong |= search.kept.crosses
     search.go_back()
     search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
@@ -171,7 +171,7 @@ def faithful(
     columns = {
         "new_crossings": [None if count < 0 else count for count in search.kept.new_crossings.tolist()],
         "collapsed": search.kept.collapsed.tolist(),
-        "corners_kept": [new is not old for new, old in zip(fits_best, smooth_best, strict=True)],
+        "corners_kept": [new is not old for new, old in zip(fits_best, own_best, strict=True)],
         "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
     }
     return with_geometry(replace(result, measures={**result.measures, **columns}), options)
