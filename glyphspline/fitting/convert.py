@@ -186,7 +186,7 @@ def _convert_contours(
         return convert_fixed(contours, options, tolerance)
     if options.is_fixed:
         fits = Fits(1, lambda given, _: convert_fixed(given, options, tolerance), keeps_collapsed=False)
-    elif options.corners == "sharp" and options.continuity == "g2":
+    elif options.is_for_fonts:
         from .sharp.font_fit import font_fits
 
         fits = font_fits(options, tolerance, em)

@@ -145,11 +145,15 @@ class Options:
         return self.step is not None or self.count is not None
 
     @property
+    def is_for_fonts(self) -> bool:
+        """Whether the result is what fonts store, on their grid, with points where they have them."""
+        return self.corners == "sharp" and self.continuity == "g2"
+
+    @property
     def words(self) -> str:
         """What a caption says of a conversion, in the words of the command line; only what made a difference."""
         sharp = self.corners == "sharp"
-        interpolated = not (sharp and self.continuity == "g2")
-        said = [f"variant {self.variant}", f"margin {self.margin:g}"] if interpolated else []
+        said = [] if self.is_for_fonts else [f"variant {self.variant}", f"margin {self.margin:g}"]
         said += [f"corners {self.corners}", *([f"continuity {self.continuity}"] if sharp else [])]
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
         said += [f"{name} {getattr(self, name):g}" for name in given] or [f"tolerance {self.thousandths:g}/1000 em"]

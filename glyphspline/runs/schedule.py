@@ -99,9 +99,8 @@ def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: boo
     rest = ["rest"] if options.remove_overlaps else []
     if formats and not needs_fit(formats):
         return ["unfitted", *rest]
-    g2 = (options.corners, options.continuity) == ("sharp", "g2")
-    fit = "g2" if g2 else options.corners
-    best = [f"{options.corners}_best"] if options.effort == "best" and not g2 else []
+    fit = "g2" if options.is_for_fonts else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" and not options.is_for_fonts else []
     drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
     return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
 

@@ -195,7 +195,7 @@ class RunSpec:
 
         With continuity "g2" results are on the font's grid, and quadratics are not made of them.
         """
-        written: tuple[Flavour, ...] = ("otf",) if self.options.continuity == "g2" else ("otf", "ttf")
+        written: tuple[Flavour, ...] = ("otf",) if self.options.is_for_fonts else ("otf", "ttf")
         flavours = [name for name in written if name in self.formats]
         if not flavours or self.options.is_fixed:
             return self.options

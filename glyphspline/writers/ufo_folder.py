@@ -135,15 +135,19 @@ def _close(writer: UFOWriter, layers: Mapping[str, Any], order: Sequence[str]) -
 def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
-    curves = [contour.curve for contour in result.contours]
-    if (result.options.corners, result.options.continuity) != ("sharp", "g2"):
-        curves = [with_extrema(curve, outline.metrics.units_per_em) for curve in curves]
+    curves = stored_curves(result)
     lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(result.options.facts())}
     width, note = as_number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
     front.writeGlyph(outline.name, glyph, lambda pen: draw(curves, digits, pen))
     back.writeGlyph(outline.name, SimpleNamespace(width=width), lambda pen: draw(lines, digits, pen))
+
+
+def stored_curves(result: GlyphResult) -> list[Contour]:
+    """The contours of a result as a UFO stores them: with points at extrema, which those for fonts have already."""
+    curves, em = [contour.curve for contour in result.contours], result.outline.metrics.units_per_em
+    return curves if result.options.is_for_fonts else [with_extrema(curve, em) for curve in curves]
 
 
 def draw(contours: Sequence[Contour], digits: int, pen: Any, flags: Sequence[Sequence[bool]] | None = None) -> None:

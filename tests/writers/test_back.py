@@ -12,6 +12,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
+from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_source
 from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.jobs.convert import convert_font
@@ -155,6 +156,23 @@ def test_the_format_ufo_of_a_ufo_is_a_copy_of_it(tmp_path: Path) -> None:
     assert files(path) == before
     assert copy.keys() == before.keys()
     assert {name for name in before if before[name] != copy[name]} == {"glyphs/o.glif", "glyphs/oi.glif"}
+
+
+def test_what_is_fitted_for_fonts_goes_back_point_for_point(tmp_path: Path) -> None:
+    source = open_source(FONTS / "kouzan-gyosho.otf")
+    font = ufoLib2.Font()
+    font.info.unitsPerEm = source.metrics.units_per_em
+    outline = source.outline(source.glyph_names[5])
+    outline.draw(font.newGlyph("a").getPen())
+    font.save(tmp_path / "My.ufo")
+    options = gs.Options(corners="sharp", continuity="g2", precision=0)
+    fitted = gs.convert(Ufo.opened(tmp_path / "My.ufo").outline("a"), options)
+    run(tmp_path / "My.ufo", tmp_path / "out", RunSpec(options, formats=("ufo",)))
+    (copy,) = (tmp_path / "out").glob("*.ufo")
+    written = Ufo.opened(copy).outline("a").contours
+    assert [len(contour) for contour in written] == [len(contour.curve) for contour in fitted.contours]
+    em = source.metrics.units_per_em
+    assert sum(map(len, written)) < sum(len(with_extrema(contour.curve, em)) for contour in fitted.contours)
 
 
 @pytest.mark.parametrize("make", [family, glyphs_file(2), glyphs_file(3)], ids=["designspace", "Glyphs 2", "Glyphs 3"])

@@ -379,11 +379,13 @@ def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> 
 
 def check_back(source: Source, spec: RunSpec) -> None:
     """Raise before the run if outlines cannot go back into the source."""
-    if not spec.is_back or source.format == "UFO":
+    if not spec.is_back:
         return
-    if source.format in ("designspace", "Glyphs"):
+    from ...readers.ufo import Ufo
+    from ...writers.back.back import editable
+
+    if not isinstance(editable(source), Ufo):
         raise OutputError("the outlines of a designspace go back in all masters: add --masters", font=str(source.path))
-    raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
 
 
 def results_to_source(
@@ -445,7 +447,7 @@ def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec:
     remark = f"{path.name}: {summary.replaced} glyphs replaced"
     if summary.largest_error is not None:
         remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
-    if spec.options.continuity != "g2":
+    if not spec.options.is_for_fonts:
         remark += f", as C2 splines (--continuity g2: fewer points), {summary.extrema} points added at extrema"
     if summary.beyond:
         remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...checks.kinds import MENDED, THRESHOLDS, Thresholds
-from ...errors import OutputError
 from ...files import writing
 from ...mending.mend import DIGITS, Change, check_kinds, mended
 from ...readers.designspace import Designspace
@@ -144,11 +143,10 @@ def mend_source(
     Raises:
         OptionError: a kind cannot be mended. OutputError: the source takes nothing back, or cannot be written.
     """
-    from ...writers.back.back import is_editable, moved_points, write_back
+    from ...writers.back.back import editable, moved_points, write_back
 
     check_kinds(kinds)
-    if not is_editable(source):
-        raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
+    editable(source)
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)

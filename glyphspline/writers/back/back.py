@@ -21,16 +21,19 @@ from fontTools.misc.filenames import userNameToFileName
 from ...errors import OutputError
 from ...files import write_whole
 from ...fitting.results import GlyphResult
-from ...outlines.extrema import with_extrema
 from ...outlines.masters import Masters
 from ...outlines.outline import Contour
+from ...readers import Source
 from ...readers.designspace import Designspace, Drawing, GlyphsFile
 from ...readers.ufo import Ufo
 from ..font.master_deltas import Redrawn
-from ..ufo_folder import places_of, replacing
+from ..ufo_folder import places_of, replacing, stored_curves
 from .glif import Glif
 from .glyphs_text import GlyphsText, Layer
-from .nodes import Node, moved, replaced
+from .nodes import Node, Position, moved, replaced
+
+Drawn = tuple[list[list[Node]], frozenset[Position]]
+"""The nodes of a glyph's own contours, and where its anchors are."""
 
 
 @dataclass
@@ -65,16 +68,21 @@ class New:
     old: Sequence[Sequence[Contour]] | None = None
 
 
-def is_editable(source: object) -> bool:
-    """Whether outlines can be written back into a source."""
-    return isinstance(source, Ufo | Designspace)
+def editable(source: Source) -> Ufo | Designspace:
+    """A source that takes outlines back.
+
+    Raises:
+        OutputError: it is of another kind.
+    """
+    if not isinstance(source, Ufo | Designspace):
+        raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
+    return source
 
 
 def of_results(source: Ufo, results: Iterable[GlyphResult]) -> Iterable[New]:
     """The new contours of a UFO's glyphs."""
     for result in results:
-        em = result.outline.metrics.units_per_em
-        contours = [[with_extrema(contour.curve, em)] for contour in result.contours]
+        contours = [[curve] for curve in stored_curves(result)]
         yield New(result.outline.name, contours, [Drawing(source.path, None, ())])
 
 
@@ -172,8 +180,7 @@ def _changes(
     """
     changes: list[dict[int, list[Node]]] = [{} for _ in new.drawings]
     stays = []
-    old = [edit.contours(drawing, new.name) for drawing in new.drawings]
-    held = [edit.anchors(drawing, new.name) for drawing in new.drawings]
+    old, held = zip(*(edit.drawn(drawing, new.name) for drawing in new.drawings), strict=True)
     for number, index in enumerate(source.own_contours(new.name)):
         if index is None:
             continue
@@ -209,13 +216,10 @@ class _UfoEdit:
     def _glif(self, drawing: Drawing, name: str) -> Glif:
         return Glif(self._folder(drawing, drawing.layer).file(name).read_bytes())
 
-    def contours(self, drawing: Drawing, name: str) -> list[list[Node]]:
-        """The nodes of a glyph's own contours."""
-        return [span.nodes for span in self._glif(drawing, name).contours]
-
-    def anchors(self, drawing: Drawing, name: str) -> frozenset[tuple[float, float]]:
-        """Where a glyph's anchors are."""
-        return frozenset(self._glif(drawing, name).anchors)
+    def drawn(self, drawing: Drawing, name: str) -> Drawn:
+        """What a glyph draws itself."""
+        glif = self._glif(drawing, name)
+        return [span.nodes for span in glif.contours], frozenset(glif.anchors)
 
     def put(self, drawing: Drawing, name: str, nodes: Mapping[int, Sequence[Node]]) -> None:
         """Write a glyph with new nodes in some of its contours."""
@@ -300,13 +304,10 @@ class _GlyphsEdit:
         master, place = self.masters[drawing.ufo], _place(drawing.layer)
         return next(each for each in self.file.layers(name) if (each.master, _place(each.place)) == (master, place))
 
-    def contours(self, drawing: Drawing, name: str) -> list[list[Node]]:
-        """The nodes of a glyph's own contours."""
-        return [self.file.nodes(path) for path in self._layer(drawing, name).paths]
-
-    def anchors(self, drawing: Drawing, name: str) -> frozenset[tuple[float, float]]:
-        """Where a glyph's anchors are."""
-        return self._layer(drawing, name).anchors
+    def drawn(self, drawing: Drawing, name: str) -> Drawn:
+        """What a glyph draws itself."""
+        layer = self._layer(drawing, name)
+        return [self.file.nodes(path) for path in layer.paths], layer.anchors
 
     def put(self, drawing: Drawing, name: str, nodes: Mapping[int, Sequence[Node]]) -> None:
         """Put new nodes into some of a glyph's contours."""

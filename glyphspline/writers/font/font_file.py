@@ -35,7 +35,6 @@ from .font_glyphs import (
     drawn_outline,
     drawn_result,
     drop_endless,
-    is_g2,
     parts_of,
     stays,
     users,
@@ -125,7 +124,7 @@ def to_font(
 
 def drawn_as(result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool) -> Drawn:
     """A converted glyph ready to be stored; see :func:`.font_glyphs.drawn_result`."""
-    if flavour == "ttf" and is_g2(result):
+    if flavour == "ttf" and result.options.is_for_fonts:
         from .static_quadratics import quadratic_result  # imports the compiler
 
         return quadratic_result(result, tolerance)
@@ -150,7 +149,7 @@ class _InPlace:
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
-        self.is_g2 = self.is_g2 or is_g2(result)
+        self.is_g2 = self.is_g2 or result.options.is_for_fonts
         if stays(result, self.flavour):
             return Drawn(None, None, 0.0)
         drawn = drawn_as(result, tolerance, self.flavour, self._width(name), extrema)

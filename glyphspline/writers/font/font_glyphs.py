@@ -78,7 +78,7 @@ def drawn_result(
     leaves room for and than rounding it whole does.
     """
     name, em = result.outline.name, result.outline.metrics.units_per_em
-    g2 = is_g2(result)
+    g2 = result.options.is_for_fonts
     exact = oriented([contour.curve for contour in result.contours], flavour)
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
@@ -105,17 +105,12 @@ def drawn_result(
     return Drawn(data, bounds_of(data, contours), deviation + error if known else None, added)
 
 
-def is_g2(result: GlyphResult) -> bool:
-    """Whether a result has the curves that fonts store."""
-    return (result.options.corners, result.options.continuity) == ("sharp", "g2")
-
-
 def stays(result: GlyphResult, flavour: Flavour) -> bool:
     """Whether a glyph keeps its record: in CFF, an outline that is the source's still; in glyf, one of quadratics with
     points off the grid, as a scaled component has them.
     """
     source, made = result.outline.arrays, result.arrays.curves
-    if not is_g2(result):
+    if not result.options.is_for_fonts:
         return False
     if flavour == "otf":
         return np.array_equal(source.degrees, made.degrees) and np.array_equal(source.points, made.points)
