@@ -58,8 +58,6 @@ def obstacle(contour: MasterContour, joint: int) -> str | None:
     """Why a joint cannot be mended, or None."""
     degrees = contour.degrees[[joint - 1, joint]]
     _, points = points_of(contour, joint)
-    if (degrees == 2).any():
-        return "is drawn in quadratics"
     if (degrees == 1).all():
         return "is between two lines"
     if np.abs(np.diff(points, axis=1)).max(axis=2).min() <= EXACT:
@@ -69,7 +67,7 @@ def obstacle(contour: MasterContour, joint: int) -> str | None:
 
 def moves(contour: MasterContour, joint: int, step: float) -> Iterator[FloatArray]:
     """(K, 3, 2) new places of the points at a joint on a grid of ``step``."""
-    curved = (contour.degrees[[joint - 1, joint]] == 3).tolist()
+    curved = (contour.degrees[[joint - 1, joint]] > 1).tolist()
     _, points = points_of(contour, joint)
     several = len(points) > 1
     frees = [Free(*map(float, curved))]
@@ -81,7 +79,9 @@ def moves(contour: MasterContour, joint: int, step: float) -> Iterator[FloatArra
             found = _moved(points, free, part, step)
             if found is not None:
                 yield found
-    if not several and all(curved):  # with lengths by which curvatures meet, or nearly
+    if (
+        not several and (contour.degrees[[joint - 1, joint]] == 3).all()
+    ):  # with lengths by which curvatures meet, or nearly
         meets = _curvature_ratio(contour, joint)
         for share in SHARES if meets else ():
             for free in frees[:3]:
@@ -99,10 +99,11 @@ def controls_of(contour: MasterContour, joint: int, new: FloatArray) -> FloatArr
     """(K, n, 2, 4, 2) a joint as :func:`.turns.joint_controls` has it, with new places (n, K, 3, 2) of its points."""
     controls = np.repeat(joint_controls(contour)[:, None, joint], len(new), axis=1)
     for side in (0, 1):
-        if contour.degrees[joint - 1 + side] == 3:
-            controls[:, :, side, 0], controls[:, :, side, 1] = np.moveaxis(new[:, :, [1, 2 * side]], 0, 2).swapaxes(
-                0, 1
-            )
+        degree = contour.degrees[joint - 1 + side]
+        if degree > 1:
+            node, end = np.moveaxis(new[:, :, [1, 2 * side]], 0, 2).swapaxes(0, 1)
+            # A quadratic is raised to a cubic.
+            controls[:, :, side, 0], controls[:, :, side, 1] = node, end if degree == 3 else node + (end - node) * 2 / 3
     return controls
 
 

@@ -1,45 +1,35 @@
-"""Kinks of a glyph mended, in one master or in all: no point comes or goes, and nothing new is found.
+"""Findings of a glyph mended, in one master or in all: no point comes, and nothing new is found.
 
-Each joint has a list of moves (:mod:`.joints`). Those that keep the curves within the tolerance, everywhere between the
-masters, are tried: the first of every joint, then the next ones of those that still kink or bring a new finding.
+Each finding has a list of moves, of joints that kink (:mod:`.joints`) and of others (:mod:`.shapes`). Those that keep
+the curves within the tolerance, everywhere between the masters, are tried: the first of every finding, then the next
+ones of those that are still found or bring a new finding. The kinds follow each other. Last come those for which points
+go, or change their order (:mod:`.fewer`), one finding after the other.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, overload
 
 import numpy as np
 
-from ..checks.check import measured
-from ..checks.finding import Measured
-from ..checks.kinds import KINDS, KINK, MENDED, THRESHOLDS, Thresholds
-from ..checks.on_axes import OF_CONTOURS, on_axes
-from ..checks.turns import largest_turns, turns_of
-from ..curves.pairing import SHARPNESS, pair_instances
+from ..checks.kinds import KINDS, MENDED, THRESHOLDS, Thresholds
 from ..errors import OptionError, is_positive, require
-from ..outlines.contour_arrays import offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .joints import controls_of, moves, obstacle, points_of
+from .state import Design, State, distances
 
 PER_EM = 1e-3
 """The tolerance as a share of the em, unless another is given."""
-
-STEPS = 8
-"""Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
 
 GOOD = 0.25
 """Share of its turn that a mended joint may keep: where handles are short the grid is coarse."""
 
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
-
-DIGITS = 3
-"""Decimals of coordinates at most."""
 
 
 @dataclass(frozen=True)
@@ -138,11 +128,11 @@ def mended(
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
     """As :func:`mend`; ``fixed``: contours that may not change, and why."""
     tolerance = PER_EM * masters.metrics.units_per_em if tolerance is None else tolerance
-    before = _State.of(masters, thresholds, outer)
+    before = State.of(masters, thresholds, outer)
     kinks = {} if "kink" not in kinds else before.kinks
     if not kinks:
         return masters, []
-    design = _Design.of(masters, tolerance, thresholds.kink)
+    design = Design.of(masters, tolerance, thresholds.kink)
     joints = []
     for (contour, segment), turn in kinks.items():
         of_contour = masters.contours[contour]
@@ -155,40 +145,9 @@ def mended(
         trial = _with(masters, joints)
         if not any(joint.is_moved for joint in joints):
             return masters, [joint.left() for joint in joints]
-        after = _State.of(trial, thresholds, outer)
+        after = State.of(trial, thresholds, outer)
         if not _advance(joints, before, after, _beyond(masters, trial, joints, design)):
             return trial, [joint.result() for joint in joints]
-
-
-class _State:
-    """What is found in a glyph: the number of findings by what they are, and the turns of kinks by their places."""
-
-    def __init__(self, rows: Measured) -> None:
-        self.found = Counter(_keys(rows))
-        self.kinks = {
-            (c, s): value
-            for c, s, what, value in zip(
-                rows.contours.tolist(), rows.segments.tolist(), rows.kinds.tolist(), rows.numbers[:, 1].tolist(),
-                strict=True,
-            )
-            if what == KINK
-        }  # fmt: skip
-
-    @classmethod
-    def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> _State:
-        """Check a glyph: where it is, or in its masters and along all its axes."""
-        if not masters.axes:
-            em = masters.metrics.units_per_em
-            rows = measured([masters.master(0).arrays], thresholds, em, outer, [masters.repeats])
-            return cls(rows)
-        rows, _ = on_axes([masters], {}, [axis.tag for axis in masters.axes], STEPS, thresholds, outer)
-        return cls(rows)
-
-
-def _keys(rows: Measured) -> list[tuple[int, int, int, int]]:
-    """Kind, contour, segment and other contour of each row; those of whole contours have no segment."""
-    segments = np.where(np.isin(rows.kinds, OF_CONTOURS), -1, rows.segments)
-    return [*zip(*(x.tolist() for x in (rows.kinds, rows.contours, segments, rows.numbers[:, 3])), strict=True)]
 
 
 class _Try(NamedTuple):
@@ -197,45 +156,6 @@ class _Try(NamedTuple):
     places: FloatArray
     distance: float
     turn: float
-
-
-class _Design(NamedTuple):
-    """What holds for all joints of a glyph.
-
-    Attributes:
-        corners: (V, K) weights of the masters, between which every location lies. ticks: of each axis (T, K), between
-            which weights are linear along it. step: of the grid of points, whole units or the source's decimals.
-        tolerance: in font units. kink: threshold in degrees.
-    """
-
-    corners: FloatArray
-    ticks: list[FloatArray]
-    step: float
-    tolerance: float
-    kink: float
-
-    @classmethod
-    def of(cls, masters: Masters, tolerance: float, kink: float) -> _Design:
-        """Look at a glyph's axes and points."""
-        ticks = []
-        for axis in range(len(masters.axes)):
-            values = masters.ticks(axis)
-            at = np.zeros((len(values), len(masters.axes)))
-            at[:, axis] = values
-            ticks.append(masters.weights_at(at))
-        corners = masters.weights_at(masters.grid()) if masters.axes else np.ones((1, 1))
-        every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
-        digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
-        return cls(corners, ticks, float(10.0 ** -next(digits, DIGITS)), tolerance, kink)
-
-    def largest_turns(self, controls: FloatArray) -> FloatArray:
-        """(n,) degrees by which joints (K, n, 2, 4, 2) turn at most, in the masters and along each axis: exact."""
-        found = np.abs(turns_of(controls)).max(axis=0)
-        for weights in self.ticks:
-            at = np.tensordot(weights, controls, axes=1)  # (T, n, 2, 4, 2)
-            turns, _ = largest_turns(*(each.reshape(-1, 2, 4, 2) for each in (at[:-1], at[1:])))
-            found = np.maximum(found, turns.reshape(len(at) - 1, -1).max(axis=0, initial=0.0))
-        return found
 
 
 @dataclass
@@ -251,7 +171,7 @@ class _Joint:
     needs: float | None = None
 
     @classmethod
-    def of(cls, change: Change, contour: MasterContour, design: _Design, fixed: str | None) -> _Joint:
+    def of(cls, change: Change, contour: MasterContour, design: Design, fixed: str | None) -> _Joint:
         """Find the moves of a joint that are within the tolerance and mend it; in masters nodes come last."""
         numbers, old = points_of(contour, change.segment)
         joint = cls(change, len(contour), numbers, old, [], fixed or obstacle(contour, change.segment))
@@ -312,7 +232,7 @@ class _Joint:
         )  # fmt: skip
 
 
-def _advance(joints: Sequence[_Joint], before: _State, after: _State, beyond: Collection[tuple[int, int]]) -> bool:
+def _advance(joints: Sequence[_Joint], before: State, after: State, beyond: Collection[tuple[int, int]]) -> bool:
     """Give up moves that kink, bring new findings or are too far together; returns whether there were any."""
     given_up = False
     moved = [joint for joint in joints if joint.is_moved]
@@ -336,9 +256,16 @@ def _advance(joints: Sequence[_Joint], before: _State, after: _State, beyond: Co
 
 
 def _moved(contour: MasterContour, numbers: IntArray, new: FloatArray) -> MasterContour:
-    """A contour with other places of some points."""
+    """A contour with other places of some points; one midway between two control points of quadratics stays so."""
     points = contour.points.copy()
     points[:, numbers] = new
+    if (contour.degrees == 2).any():
+        starts = np.cumsum(contour.degrees) - contour.degrees
+        at = starts[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
+        behind = (at + 1) % points.shape[1]
+        implied = (contour.points[:, at - 1] + contour.points[:, behind] == 2 * contour.points[:, at]).all(axis=(0, 2))
+        at, behind = at[implied], behind[implied]
+        points[:, at] = (points[:, at - 1] + points[:, behind]) / 2
     return MasterContour(points, contour.degrees)
 
 
@@ -352,22 +279,7 @@ def _with(masters: Masters, joints: Sequence[_Joint]) -> Masters:
     return replace(masters, contours=contours)
 
 
-def distances(old: MasterContour, new: MasterContour, design: _Design) -> FloatArray:
-    """(m,) certified bounds of how far each segment moved, at any location."""
-    m, count = len(old), len(design.corners)
-    one, other = (np.tensordot(design.corners, contour.cubics(), axes=1) for contour in (old, new))  # (V, m, 4, 2)
-    changed = (one != other).any(axis=(0, 2, 3))
-    bounds, gaps = np.where(changed, np.nan, 0.0), np.zeros(m)
-    offsets, places = offsets_of([m]), np.arange(m + 1.0)
-    rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(m * count, 4, 2)) for each in (other, one)]
-    pair_instances(
-        count, rows[0], offsets, rows[1], offsets, np.column_stack([places, places]), offsets_of([m + 1]),
-        np.empty((0, 4)), SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
-    )  # fmt: skip
-    return bounds
-
-
-def _beyond(old: Masters, new: Masters, joints: Sequence[_Joint], design: _Design) -> set[tuple[int, int]]:
+def _beyond(old: Masters, new: Masters, joints: Sequence[_Joint], design: Design) -> set[tuple[int, int]]:
     """Joints at a segment that moved by more than the tolerance, as both of its ends did."""
     found = set()
     for contour in sorted({joint.change.contour for joint in joints if joint.is_moved}):

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...checks.kinds import MENDED, THRESHOLDS, Thresholds
 from ...files import writing
-from ...mending.mend import DIGITS, Change, check_kinds, mended
+from ...mending.mend import Change, check_kinds, mended
+from ...mending.state import DIGITS
 from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo
 from ..engine import Item, Job, Observer, reason, run

@@ -87,6 +87,8 @@ def moved(
         return None
     if any(node.kind == "move" for own in nodes for node in own):
         return "is open"
+    if any(node.kind == "qcurve" for own in nodes for node in own):
+        return "is drawn in quadratics"
     places = [np.array([node.at for node in own]) for own in nodes]
     if any(at.shape != contour.points.shape for at, contour in zip(places, old, strict=True)):
         return "has points that are not read"

@@ -1,0 +1,109 @@
+"""What mending measures of a glyph: what is found in it, how far curves moved, and its axes and grid."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks.check import measured
+from ..checks.finding import Measured
+from ..checks.kinds import KINK, Thresholds
+from ..checks.on_axes import OF_CONTOURS, on_axes
+from ..checks.turns import largest_turns, turns_of
+from ..curves.pairing import SHARPNESS, pair_instances
+from ..outlines.contour_arrays import offsets_of
+from ..outlines.masters import MasterContour, Masters
+from ..types import FloatArray
+
+STEPS = 8
+"""Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
+
+DIGITS = 3
+"""Decimals of coordinates at most."""
+
+
+class State:
+    """What is found in a glyph: the number of findings by what they are, and the turns of kinks by their places."""
+
+    def __init__(self, rows: Measured) -> None:
+        self.found = Counter(_keys(rows))
+        self.kinks = {
+            (c, s): value
+            for c, s, what, value in zip(
+                rows.contours.tolist(), rows.segments.tolist(), rows.kinds.tolist(), rows.numbers[:, 1].tolist(),
+                strict=True,
+            )
+            if what == KINK
+        }  # fmt: skip
+
+    @classmethod
+    def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> State:
+        """Check a glyph: where it is, or in its masters and along all its axes."""
+        if not masters.axes:
+            em = masters.metrics.units_per_em
+            rows = measured([masters.master(0).arrays], thresholds, em, outer, [masters.repeats])
+            return cls(rows)
+        rows, _ = on_axes([masters], {}, [axis.tag for axis in masters.axes], STEPS, thresholds, outer)
+        return cls(rows)
+
+
+def _keys(rows: Measured) -> list[tuple[int, int, int, int]]:
+    """Kind, contour, segment and other contour of each row; those of whole contours have no segment."""
+    segments = np.where(np.isin(rows.kinds, OF_CONTOURS), -1, rows.segments)
+    return [*zip(*(x.tolist() for x in (rows.kinds, rows.contours, segments, rows.numbers[:, 3])), strict=True)]
+
+
+class Design(NamedTuple):
+    """What holds for all joints of a glyph.
+
+    Attributes:
+        corners: (V, K) weights of the masters, between which every location lies. ticks: of each axis (T, K), between
+            which weights are linear along it. step: of the grid of points, whole units or the source's decimals.
+        tolerance: in font units. kink: threshold in degrees.
+    """
+
+    corners: FloatArray
+    ticks: list[FloatArray]
+    step: float
+    tolerance: float
+    kink: float
+
+    @classmethod
+    def of(cls, masters: Masters, tolerance: float, kink: float) -> Design:
+        """Look at a glyph's axes and points."""
+        ticks = []
+        for axis in range(len(masters.axes)):
+            values = masters.ticks(axis)
+            at = np.zeros((len(values), len(masters.axes)))
+            at[:, axis] = values
+            ticks.append(masters.weights_at(at))
+        corners = masters.weights_at(masters.grid()) if masters.axes else np.ones((1, 1))
+        every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
+        digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
+        return cls(corners, ticks, float(10.0 ** -next(digits, DIGITS)), tolerance, kink)
+
+    def largest_turns(self, controls: FloatArray) -> FloatArray:
+        """(n,) degrees by which joints (K, n, 2, 4, 2) turn at most, in the masters and along each axis: exact."""
+        found = np.abs(turns_of(controls)).max(axis=0)
+        for weights in self.ticks:
+            at = np.tensordot(weights, controls, axes=1)  # (T, n, 2, 4, 2)
+            turns, _ = largest_turns(*(each.reshape(-1, 2, 4, 2) for each in (at[:-1], at[1:])))
+            found = np.maximum(found, turns.reshape(len(at) - 1, -1).max(axis=0, initial=0.0))
+        return found
+
+
+def distances(old: MasterContour, new: MasterContour, design: Design) -> FloatArray:
+    """(m,) certified bounds of how far each segment moved, at any location."""
+    m, count = len(old), len(design.corners)
+    one, other = (np.tensordot(design.corners, contour.cubics(), axes=1) for contour in (old, new))  # (V, m, 4, 2)
+    changed = (one != other).any(axis=(0, 2, 3))
+    bounds, gaps = np.where(changed, np.nan, 0.0), np.zeros(m)
+    offsets, places = offsets_of([m]), np.arange(m + 1.0)
+    rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(m * count, 4, 2)) for each in (other, one)]
+    pair_instances(
+        count, rows[0], offsets, rows[1], offsets, np.column_stack([places, places]), offsets_of([m + 1]),
+        np.empty((0, 4)), SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
+    )  # fmt: skip
+    return bounds
