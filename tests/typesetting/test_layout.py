@@ -6,6 +6,7 @@ import lzma
 import math
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -24,8 +25,12 @@ from glyphspline.typesetting.bidi import ISOLATES, REMOVED, embedding_levels, vi
 from glyphspline.typesetting.paragraph import clusters
 from glyphspline.typesetting.placed import Layout
 from glyphspline.typesetting.scripts import scripts_of, upright_in_columns
+from glyphspline.typesetting.setting import parsed_features
 from tests.places import DEJAVU, ROOT
 from tests.text_fonts import advance, text_font
+
+SANS, AMIRI = "truetype/dejavu/DejaVuSans.ttf", "opentype/fonts-hosny-amiri/Amiri-Regular.ttf"
+SERIF_CJK = "opentype/noto/NotoSerifCJK-Regular.ttc"
 
 UNICODE = Path(__file__).with_name("unicode")
 """Files of the Unicode Character Database, compressed."""
@@ -42,19 +47,25 @@ def double(tmp_path_factory: pytest.TempPathFactory) -> gs.Font:
     return gs.open_font(text_font(tmp_path_factory.mktemp("fonts") / "double.ttf", em=2000, family="Double"))
 
 
-def shaped(font: gs.Font, text: str, direction: str, script: str, **features: Any) -> tuple[list[int], Any, Any]:
-    """Glyphs, clusters and origins by uharfbuzz, called plainly on the file."""
+def shaped(
+    font: Any, runs: Sequence[tuple[str, str]], text: str, script: str | None = None, **features: Any
+) -> tuple[list[int], list[int], Any]:
+    """Glyphs, clusters and origins by uharfbuzz, called plainly on the file, of runs in visual order."""
     face = hb.Face(hb.Blob.from_file_path(str(font.path)))
-    buffer = hb.Buffer()
-    buffer.add_str(text)
-    buffer.direction, buffer.script = direction, script
-    hb.shape(hb.Font(face), buffer, features)
-    pen, origins = np.zeros(2), []
-    for position in buffer.glyph_positions:
-        origins.append(np.add(pen, [position.x_offset, position.y_offset]))
-        pen = np.add(pen, [position.x_advance, position.y_advance])
-    infos = buffer.glyph_infos
-    return [info.codepoint for info in infos], [info.cluster for info in infos], np.array(origins)
+    gids, found, origins, pen = list[int](), list[int](), [], np.zeros(2)
+    for run, direction in runs:
+        buffer = hb.Buffer()
+        buffer.add_codepoints(list(map(ord, text)), text.index(run), len(run))
+        buffer.guess_segment_properties()
+        buffer.direction, buffer.script = direction, script or buffer.script or "Zyyy"
+        buffer.language = features.get("language", buffer.language)
+        hb.shape(hb.Font(face), buffer, {name: value for name, value in features.items() if name != "language"})
+        for info, position in zip(buffer.glyph_infos, buffer.glyph_positions, strict=True):
+            gids.append(info.codepoint)
+            found.append(info.cluster)
+            origins.append(np.add(pen, [position.x_offset, position.y_offset]))
+            pen = np.add(pen, [position.x_advance, position.y_advance])
+    return gids, found, np.array(origins)
 
 
 def names(found: Layout) -> list[str]:
@@ -78,12 +89,48 @@ def test_a_run_is_what_harfbuzz_makes_of_it(
     font: gs.Font, text: str, direction: Any, script: str, expected: list[str]
 ) -> None:
     found = gs.layout(font, text, direction=direction)
-    gids, clusters, origins = shaped(font, text, direction, script)
+    gids, clusters, origins = shaped(font, [(text, direction)], text, script)
     assert names(found) == expected
     assert found.gid.tolist() == gids
     assert found.cluster.tolist() == clusters
     np.testing.assert_array_equal(found.origin, origins)
     assert not found.angle.any()
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "runs", "setting"),
+    [
+        (SANS, "AVATAR To. Type WAVE", "ltr", {}),
+        (SANS, "office fluffy affliction", "ltr", {}),
+        ("truetype/noto/NotoSerif-Regular.ttf", "Office 1/2 AVATAR", "ltr", {"features": "-kern,-liga,smcp"}),
+        (SANS, "q\u0301\u0323 x\u0302 e\u0301", "ltr", {}),
+        (AMIRI, "السلام عليكم ورحمة الله", "rtl", {}),
+        (AMIRI, "بِسْمِ ٱللَّٰهِ ٱلرَّحْمَٰنِ", "rtl", {}),
+        ("truetype/noto/NotoNastaliqUrdu-Regular.ttf", "یہ ایک مثال ہے", "rtl", {"language": "ur"}),
+        ("truetype/noto/NotoSansHebrew-Regular.ttf", "שָׁלוֹם עֲלֵיכֶם", "rtl", {}),
+        ("truetype/noto/NotoSansDevanagari-Regular.ttf", "क्षत्रिय हिन्दी र्कि श्रृंगार", "ltr", {}),
+        (SERIF_CJK, "「縦書き」は、ー（テスト）。", "ttb", {"language": "ja", "direction": "ttb"}),
+        (SERIF_CJK, "横書きの「テスト」です。", "ltr", {"language": "ja"}),
+        (AMIRI, "abc سلام def", [("abc ", "ltr"), ("سلام", "rtl"), (" def", "ltr")], {}),
+        (AMIRI, "سلام 123 عليكم", [(" عليكم", "rtl"), ("123", "ltr"), ("سلام ", "rtl")], {}),
+        (SANS, "abc سلام 12", [("abc ", "ltr"), ("12", "ltr"), ("سلام ", "rtl")], {}),
+    ],
+)
+def test_texts_in_installed_fonts_are_what_harfbuzz_makes_of_their_runs(
+    file: str, text: str, runs: Any, setting: dict[str, Any]
+) -> None:
+    """Runs are written in visual order, by hand, with their direction."""
+    if not (path := Path("/usr/share/fonts", file)).exists():
+        pytest.skip(f"{path.name} is not installed")
+    found = gs.layout(gs.open_font(path), text, **setting)
+    given: dict[str, Any] = {one.tag: bool(one.value) for one in parsed_features(setting.get("features", ""))}
+    given |= {name: value for name, value in setting.items() if name == "language"}
+    in_order = [(text, runs)] if isinstance(runs, str) else runs
+    gids, clusters, origins = shaped(found.fonts[0], in_order, text, **given)
+    assert not found.missing
+    assert found.gid.tolist() == gids
+    assert found.cluster.tolist() == clusters
+    np.testing.assert_allclose(found.origin, origins, atol=1e-9)
 
 
 def test_kerning_and_features(font: gs.Font) -> None:
@@ -416,12 +463,14 @@ def test_latin_is_turned_in_columns(font: gs.Font) -> None:
     assert found.origin[2].tolist() == [-middle, -1000.0 - advance("A") + 80]
     upright = gs.layout(font, "\u3042AV\u3042", direction="ttb", orientation="upright")
     assert not upright.angle.any()
-    np.testing.assert_array_equal(upright.origin, shaped(font, "\u3042AV\u3042", "ttb", "Kana")[2])
+    np.testing.assert_array_equal(
+        upright.origin, shaped(font, [("\u3042AV\u3042", "ttb")], "\u3042AV\u3042", "Kana")[2]
+    )
 
 
 def test_bottom_to_top(font: gs.Font) -> None:
     found = gs.layout(font, "aVA", direction="btt")
-    gids, _, origins = shaped(font, "aVA", "btt", "Latn")
+    gids, _, origins = shaped(font, [("aVA", "btt")], "aVA", "Latn")
     assert found.gid.tolist() == gids
     assert names(found) == ["A", "V", "a"]
     np.testing.assert_array_equal(found.origin, origins)
@@ -642,7 +691,7 @@ def test_a_feature_of_any_of_the_fonts_is_known(font: gs.Font) -> None:
 def test_many_characters_are_shaped_in_parts(font: gs.Font) -> None:
     text = "AV a " * 9_000
     found = gs.layout(font, text)
-    gids, _, origins = shaped(font, text, "ltr", "Latn")
+    gids, _, origins = shaped(font, [(text, "ltr")], text, "Latn")
     assert found.gid.tolist() == gids
     np.testing.assert_array_equal(found.origin, origins)
 
