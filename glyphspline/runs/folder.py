@@ -29,7 +29,6 @@ from ..files import O_BINARY, make_folder, replacing, sizes, writing
 from ..report.data import encoded
 from .schedule import Head, Side
 from .spec import RunSpec, is_folder
-from .summary import NO_FACTS, Facts, Summary
 
 LOCK = ".lock"
 MANIFEST = "manifest.jsonl"
@@ -110,7 +109,7 @@ class Done(NamedTuple):
     """A finished glyph.
 
     Attributes:
-        line: of the journal. facts: for the summary. row: of the gallery's table; "" if not made yet.
+        line: of the journal. row: of the gallery's table; "" if not made yet.
         rows: of the table of contours, an IPC stream; the first glyph of a batch has those of all.
     """
 
@@ -118,7 +117,6 @@ class Done(NamedTuple):
     name: str
     status: str
     line: bytes
-    facts: Facts = NO_FACTS
     row: str = ""
     rows: bytes = b""
 
@@ -127,7 +125,6 @@ def done(
     task: Task,
     entry: Mapping[str, Any],
     sizes: Sequence[int] = (),
-    facts: Facts = NO_FACTS,
     row: Callable[[Mapping[str, Any]], str] | None = None,
     encode: Callable[[Any], str] = encoded,
 ) -> Done:
@@ -138,7 +135,7 @@ def done(
     """
     whole = {"glyph": task.name, "gid": task.gid, "unicodes": [f"U+{code:04X}" for code in task.unicodes], **entry}
     line = f"{','.join(map(str, sizes))}\t{encode(whole)}\n".encode()
-    return Done(task.gid, task.name, entry["status"], line, facts, row(whole) if row else "")
+    return Done(task.gid, task.name, entry["status"], line, row(whole) if row else "")
 
 
 @dataclass
@@ -147,14 +144,13 @@ class Record:
 
     Attributes:
         where: glyph index to the file and the offset of its line. failed: indices of glyphs that failed.
-        counts: summary of an earlier run's lines. new: glyphs of this run, without their lines.
+        rows: of the gallery's table, for glyphs of this run.
         sizes: of the files of each glyph of the manifest, in the journal's format.
     """
 
     where: dict[int, tuple[str, int]] = field(default_factory=dict)
     failed: set[int] = field(default_factory=set)
-    counts: Summary = field(default_factory=Summary)
-    new: dict[int, Done] = field(default_factory=dict)
+    rows: dict[int, str] = field(default_factory=dict)
     sizes: dict[int, bytes] = field(default_factory=dict)
 
     def finished(self) -> set[int]:
@@ -182,7 +178,6 @@ def read_record(out: Path, rows: Container[int] | None = None) -> Record:
             if rows is not None and entry.get("status") == "ok" and gid not in rows:
                 continue
             record.where[gid] = (name, offset)
-            record.counts.add(entry)
             (record.failed.add if entry["status"] == "failed" else record.failed.discard)(gid)
     return record
 
@@ -258,7 +253,7 @@ def journal(out: Path, record: Record) -> Iterator[Callable[[list[Done]], None]]
         at = os.fstat(file.fileno()).st_size
         for glyph in done:
             record.where[glyph.gid] = (JOURNAL, at)
-            record.new[glyph.gid] = glyph._replace(line=b"", rows=b"")
+            record.rows[glyph.gid] = glyph.row
             at += len(glyph.line)
         write(b"".join([glyph.line for glyph in done]))
 

@@ -6,9 +6,8 @@ import heapq
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..fitting.results import MEASURES, MeasureColumns
 from ..readers.pens import NO_AREA
 from ..types import counted
 
@@ -22,61 +21,12 @@ NAMED = 5
 """Glyphs outside the tolerance, or with other crossings or areas, that are named; of others there is the number."""
 
 
-class Facts(NamedTuple):
-    """What the summary takes from a glyph.
-
-    Attributes:
-        not_converged, outside: whether a contour did not converge, whether one is outside the tolerance.
-        deviation: the largest of its contours; None if none was measured.
-        crossings, collapsed, kept: whether a contour crosses where its source does not, has lost its area, or is the
-            source's own.
-        contours, splines: number of its contours that were fitted, and of those that are one closed spline.
-        notes: of a glyph that came out empty: what was left out.
-    """
-
-    not_converged: bool = False
-    outside: bool = False
-    deviation: float | None = None
-    crossings: bool = False
-    collapsed: bool = False
-    kept: bool = False
-    contours: int = 0
-    splines: int = 0
-    notes: tuple[str, ...] = ()
-
-
-NO_FACTS = Facts()
-
 CHANGED = {
     "new_crossings": "cross where the source does not",
     "collapsed": "have a contour that lost its area",
     "source_kept": "have a contour kept as the source has it, because every fit crosses or loses its area",
 }
 """What the summary says of glyphs whose contours enclose something else."""
-
-
-def facts_of(measures: MeasureColumns, first: int = 0, last: int | None = None) -> Facts:
-    """The facts of a glyph whose contours are those from ``first`` up to ``last``."""
-    names = (
-        "converged", "within_tolerance", "deviation", "new_crossings", "collapsed", "source_kept", "segments",
-        "numbers", "iterations",
-    )  # fmt: skip
-    converged, within, deviations, crossings, collapsed, kept, *sizes = (
-        measures.get(name, ())[first:last] for name in names
-    )
-    deviation = max((value for value in deviations if value is not None), default=None)
-    return Facts(
-        False in converged, False in within, deviation, any(crossings), any(collapsed), any(kept), len(sizes[0]),
-        # A closed spline stores a point a segment; arcs between corners store two more. Lines alone iterate nothing.
-        sum(numbers == 2 * segments and passes is not None for segments, numbers, passes in zip(*sizes, strict=False)),
-    )  # fmt: skip
-
-
-def facts_of_entry(entry: Mapping[str, Any]) -> Facts:
-    """The facts of a glyph from its line of the manifest."""
-    contours = entry["contours"] or ()
-    facts = facts_of({name: [contour.get(name) for contour in contours] for name in MEASURES})
-    return facts._replace(notes=tuple(entry.get("notes") or ())) if entry["status"] == "empty" else facts
 
 
 @dataclass
@@ -117,26 +67,29 @@ class Summary:
 
     def add(self, entry: Mapping[str, Any]) -> None:
         """Count one line of the manifest."""
-        self.count(entry["glyph"], entry["status"], entry["error"], facts_of_entry(entry))
-
-    def count(self, glyph: str, status: str, error: str | None, facts: Facts) -> None:
-        """Count one glyph."""
+        glyph, status, contours = entry["glyph"], entry["status"], entry["contours"] or ()
         self.statuses[status] += 1
         if status == "failed" and len(self.failures) < SHOWN:
-            self.failures.append((glyph, error or ""))
-        self.not_converged += facts.not_converged
-        self.contours += facts.contours
-        self.splines += facts.splines
-        those = facts.outside, facts.crossings, facts.collapsed, facts.kept
-        for name, is_one in zip(("outside_tolerance", *CHANGED), those, strict=True):
+            self.failures.append((glyph, entry["error"] or ""))
+        self.not_converged += any(contour.get("converged") is False for contour in contours)
+        self.contours += len(contours)
+        # A closed spline stores a point a segment; arcs between corners store two more. Lines alone iterate nothing.
+        self.splines += sum(
+            contour.get("iterations") is not None and contour.get("numbers") == 2 * contour["segments"]
+            for contour in contours
+        )
+        outside = any(contour.get("within_tolerance") is False for contour in contours)
+        changed = {name: any(contour.get(name) for contour in contours) for name in CHANGED}
+        for name, is_one in {"outside_tolerance": outside, **changed}.items():
             if is_one:
                 setattr(self, name, getattr(self, name) + 1)
                 named = self.named.setdefault(name, [])
                 named += [glyph] if len(named) < NAMED else []
-        if (notes := [note for note in facts.notes if NO_AREA not in note]) and len(self.left_out) < NAMED:
+        notes = [note for note in entry.get("notes") or () if status == "empty" and NO_AREA not in note]
+        if notes and len(self.left_out) < NAMED:
             self.left_out.append((glyph, ", ".join(notes)))
-        if facts.deviation is not None:
-            keep_largest(self.worst, (facts.deviation, glyph))
+        if entry.get("deviation") is not None:
+            keep_largest(self.worst, (entry["deviation"], glyph))
 
     def time(self, seconds: float, glyph: str) -> None:
         """Count a glyph converted in this run, and its time."""

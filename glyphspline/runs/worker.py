@@ -29,7 +29,6 @@ from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
 from .spec import MAPS, PARQUET, POLYGON, RESULTS, Limits, suffix_of
-from .summary import NO_FACTS, Facts, facts_of
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
@@ -101,7 +100,7 @@ class Glyph(NamedTuple):
 
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
-        measures: of the contours; None if nothing is fitted. facts: for the summary.
+        measures: of the contours; None if nothing is fitted.
     """
 
     result: GlyphResult
@@ -109,7 +108,6 @@ class Glyph(NamedTuple):
     source: PathData | None
     polygons: PolygonData | None
     measures: list[dict[str, Any]] | None
-    facts: Facts
 
 
 def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
@@ -121,11 +119,10 @@ def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
     paths = curves_data(arrays.curves, spec.options.precision, offsets)
     nothing = [None] * len(results)
     if not spec.is_fitted:
-        return list(map(Glyph, results, paths, paths, nothing, nothing, [NO_FACTS] * len(results)))
+        return list(map(Glyph, results, paths, paths, nothing, nothing))
     sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
     polygons = polygon_data(results) if GALLERY in spec.formats else nothing
-    facts = [facts_of(arrays.measures, a, b) for a, b in pairwise(offsets.tolist())]
-    return list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets), facts))
+    return list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets)))
 
 
 def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[dict[str, Any]]]:
@@ -151,12 +148,12 @@ def write_files(job: Output, task: Task, glyph: Glyph) -> Done:
     files = {} if empty else {name: f"{name}/{task.stem}{suffix_of(name)}" for name in formats}
     sizes = [write_whole(f"{job.out}/{path}", written(name, job, glyph, files)) for name, path in files.items()]
     notes = tuple(dict.fromkeys([*result.outline.notes, *result.notes]))
+    deviations = [value for contour in glyph.measures or () if (value := contour["deviation"]) is not None]
     entry = {
         "advance": plain(result.outline.advance), "status": "empty" if empty else "ok", "files": files,
-        "deviation": plain(glyph.facts.deviation), "contours": glyph.measures, "notes": notes, "error": None,
+        "deviation": max(deviations, default=None), "contours": glyph.measures, "notes": notes, "error": None,
     }  # fmt: skip
-    facts = glyph.facts._replace(notes=notes) if empty else glyph.facts
-    return done(task, entry, sizes, facts, row_of if GALLERY in formats else None)
+    return done(task, entry, sizes, row_of if GALLERY in formats else None)
 
 
 def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str | bytes:

@@ -25,7 +25,7 @@ from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
 from glyphspline.runs.folder import locked
 from glyphspline.runs.spec import RunSpec
-from glyphspline.runs.summary import Facts, Summary
+from glyphspline.runs.summary import Summary
 from glyphspline.writers.settings import Appearance, Maps, Settings
 from tests.places import ROOT
 from tests.runs.test_batch import content
@@ -293,15 +293,17 @@ def test_the_summary_as_json_is_alone_on_standard_output(tmp_path: Path) -> None
 def test_what_is_not_within_the_tolerance_is_named(tmp_path: Path) -> None:
     summary = Summary(aim="1 units", seconds=0.25, done=9)
     for k in range(9):
-        summary.count(f"g{k}", "ok", None, Facts(outside=k > 1, deviation=k / 4, crossings=k == 3))
+        contour = {"within_tolerance": k <= 1, "new_crossings": k == 3}
+        summary.add({"glyph": f"g{k}", "status": "ok", "deviation": k / 4, "contours": [contour]})
     assert summary.headline() == "9 glyphs in 0.2 s, 7 not within 1 units"
     assert list(summary.lines()) == [
+        "contours that are one closed spline without a corner: 0 of 9",
         "not within 1 units: g2, g3, g4, g5, g6 and 2 more",
         "cross where the source does not: g3",
     ]
     summary = Summary(aim="1.02 units", seconds=0.4, done=2)
     for name in "龍好":
-        summary.count(name, "ok", None, Facts(deviation=1.0))
+        summary.add({"glyph": name, "status": "ok", "deviation": 1.0, "contours": None})
     assert summary.headline() == "2 glyphs in 0.4 s, all within 1.02 units"
     assert list(summary.lines()) == []
 

@@ -29,7 +29,7 @@ from glyphspline.runs.folder import JOURNAL, entries_of
 from glyphspline.runs.font_search import find_fonts
 from glyphspline.runs.jobs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import Limits, RunSpec
-from glyphspline.runs.summary import Facts, facts_of
+from glyphspline.runs.summary import Summary
 from glyphspline.runs.worker import contour_entries
 from glyphspline.writers.settings import Appearance, Settings
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
@@ -254,8 +254,6 @@ def test_measures_that_are_not_finite_or_not_known_are_null() -> None:
     assert (good["vertices"], good["residual"], good["converged"], good["rate_bound"]) == (3, 0.001, True, 1.5)
     assert (bad["iterations"], bad["residual"], bad["converged"], bad["rate_bound"]) == (None, None, False, None)
     assert (good["deviation"], good["length"], bad["length"]) == (0.1234568, None, None)
-    assert facts_of(columns) == Facts(True, False, 2.0)
-    assert facts_of(columns, 0, 1) == Facts(False, False, 0.123456789)
 
 
 @pytest.mark.parametrize(("options", "splines"), [(Options(), 1), (Options(corners="smooth"), 3)])
@@ -268,8 +266,10 @@ def test_contours_that_are_one_closed_spline_are_counted(
     drawn = Outline("three", contours=contours, metrics=METRICS)
     found = convert_many([drawn], options)[0]
     assert sum([arc.spline.closed for arc in contour.interpolations] == [True] for contour in found.contours) == splines
-    facts = facts_of(found.arrays.measures)
-    assert (facts.contours, facts.splines) == (3, splines)
+    summary = Summary()
+    (entries,) = contour_entries(found.arrays.measures, np.array([0, 3]))
+    summary.add({"glyph": "three", "status": "ok", "contours": entries})
+    assert (summary.contours, summary.splines) == (3, splines)
     new, old = (convert_font(font, ["O"], tmp_path, RunSpec(options, ("svg",)), jobs=0) for _ in range(2))
     assert (old.contours, old.splines) == (new.contours, new.splines)  # of the manifest
     assert f"contours that are one closed spline without a corner: {old.splines} of 2" in old.lines()

@@ -191,7 +191,8 @@ def convert_font(
         if left or not concluded or (gallery and not is_whole(out, len(record.where))):
             conclude(out, record, summary, gallery)
         else:
-            summary = record.counts
+            for entry in entries_of(out):
+                summary.add(entry)
         if left or (rows and rows.added) or not all(path.exists() for path in font_files(source, out, spec)):
             summary.remarks += write_fonts(source, out, spec, rows)
         if spec.is_back:
@@ -302,16 +303,10 @@ def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) ->
     gallery = Gallery(out) if with_gallery else None
     with finish(out, record) as lines:
         for gid, line in lines:
-            if gid in record.new:
-                glyph = record.new[gid]
-                error = json.loads(line)["error"] if glyph.status == "failed" else None
-                summary.count(glyph.name, glyph.status, error, glyph.facts)
-                row = glyph.row
-            else:
-                summary.add(json.loads(line))
-                row = ""
+            entry = json.loads(line)
+            summary.add(entry)
             if gallery:
-                gallery.add(row or row_of(json.loads(line)))
+                gallery.add(record.rows.get(gid) or row_of(entry))
         if gallery:
             gallery.close(read_run(out) or {})
 
