@@ -21,9 +21,9 @@ from ..runs.engine import Item, Job, Observer, reason, run
 from ..runs.folder import locked
 from ..runs.font_search import find_fonts
 from ..runs.jobs.convert import ConvertJob
+from ..runs.rows import UNFINISHED, Made, Unfinished, remove_unfinished, streamed
 from ..runs.schedule import Place, kinds_for, sources, workers
 from ..runs.spec import Limits, differences
-from ..runs.unfinished import UNFINISHED, Made, Unfinished, streamed
 from .card import Summary, card, fonts_file
 from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
@@ -163,7 +163,8 @@ def _prepare(out: str, plan: Plan, restart: bool) -> None:
         if shards or remote.exists(f"{out}/{CARD}") or remote.exists(f"{out}/{FONTS}"):
             raise OutputError("holds files that are of no data set: give another folder", font=out)
     elif restart:
-        for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, UNFINISHED, RECORD):
+        remove_unfinished(Path(out))  # of a store there is no such folder
+        for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, RECORD):
             if remote.exists(f"{out}/{name}"):
                 remote.remove(f"{out}/{name}")
     elif changed := differences(old, json.loads(record_text(plan))):
@@ -238,8 +239,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
             add_shapes(paths[shard], shapes)
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)
-    if remote.exists(f"{out}/{UNFINISHED}"):
-        remote.remove(f"{out}/{UNFINISHED}")
+    remove_unfinished(Path(out))
     sizes = {shard: remote.size(path) for shard, path in paths.items()}
     summary = Summary.of(plan, totals, sizes)
     remote.put(f"{out}/{FONTS}", fonts_file(plan, totals))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..extras import need
 from ..runs import remote
-from ..runs.unfinished import Made, table_in
+from ..runs.rows import Made, table_in
 from ..types import BoolArray, IntArray
 from ..writers.parquet import writing_of
 

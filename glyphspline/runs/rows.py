@@ -1,23 +1,133 @@
-"""The rows of a run's table of contours: kept while the run goes on, and written in glyph index order at its end."""
+"""Rows of tables in the making, kept chunk by chunk, so that a killed run does not make them again.
+
+A run's table of contours is written from them in glyph index order at its end.
+"""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from itertools import groupby
+from itertools import count, groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import OutputError, words_of
 from ..extras import need
-from ..files import replacing
+from ..files import replacing, sizes, write_whole, writing
 from ..writers.parquet import schema, write_rows
-from .unfinished import UNFINISHED, Made, Unfinished, table_in
+
+UNFINISHED = ".unfinished"
+"""Name of the folder of chunks in a run's folder; it is there only until the table is whole."""
 
 PIECES = 8
 """Pieces of rows held in memory: chunks of several workers or runs alternate."""
+
+
+class Made(NamedTuple):
+    """The rows of some glyphs.
+
+    Attributes:
+        rows: an Arrow table as an IPC stream. glyphs: number of glyphs in it.
+        failed: name of each glyph that has no rows, and why.
+    """
+
+    rows: bytes
+    glyphs: int
+    failed: list[tuple[str, str]]
+
+
+def streamed(table: Any) -> bytes:
+    """An Arrow table as an IPC stream."""
+    pa = need("parquet")
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, table.schema) as writer:
+        writer.write_table(table.combine_chunks())
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def table_in(rows: bytes) -> Any:
+    """The Arrow table of an IPC stream."""
+    return need("parquet").ipc.open_stream(rows).read_all()
+
+
+class Unfinished:
+    """A folder of the chunks of one table, a Parquet file with check sums each, named by its number.
+
+    A chunk that is damaged or of another table, and all after it, count as not there and are removed.
+
+    Args:
+        folder: it is made with the first chunk. mark: of the table.
+
+    Attributes:
+        chunks: number of chunks that it held when it was opened.
+    """
+
+    def __init__(self, folder: Path, mark: str) -> None:
+        self._folder, self._mark = folder, mark.encode()
+        if folder.is_symlink() or folder.is_file():  # a link could lead out of the run's folder
+            with writing(folder):
+                folder.unlink()
+        self._next = self.chunks = next(number for number in count() if not self.chunk(number))
+        for name in sizes(folder):
+            if not (name.isdecimal() and int(name) < self.chunks):
+                with writing(folder):
+                    (folder / name).unlink()
+
+    def chunk(self, number: int) -> list[Made]:
+        """The parts of a chunk, also of one added since; none if it is not there."""
+        pa = need("parquet")
+        from pyarrow import parquet
+
+        try:
+            table = parquet.read_table(
+                self._folder / str(number), page_checksum_verification=True, partitioning=None, memory_map=False
+            )
+        except (OSError, pa.ArrowException):
+            return []
+        if (table.schema.metadata or {}).get(b"mark") != self._mark:
+            return []
+        return [
+            Made(rows, glyphs, [(name, why) for name, why in failed])
+            for rows, glyphs, failed in zip(*table.to_pydict().values(), strict=True)
+        ]
+
+    def __iter__(self) -> Iterator[list[Made]]:
+        """The parts of each chunk that the folder held when it was opened."""
+        return map(self.chunk, range(self.chunks))
+
+    def add(self, parts: Sequence[Made]) -> int:
+        """Add the parts of the next chunk; returns its number.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        pa = need("parquet")
+        from pyarrow import parquet
+
+        types = [pa.large_binary(), pa.int64(), pa.list_(pa.list_(pa.string()))]
+        layout = pa.schema(zip(Made._fields, types, strict=True), metadata={"mark": self._mark})
+        sink = pa.BufferOutputStream()
+        parquet.write_table(
+            pa.table(list(zip(*parts, strict=True)), layout), sink, compression="zstd", use_dictionary=False,
+            write_statistics=False, write_page_checksum=True,
+        )  # fmt: skip
+        with writing(self._folder):
+            self._folder.mkdir(exist_ok=True)
+        write_whole(f"{self._folder}/{self._next}", sink.getvalue().to_pybytes())
+        self._next += 1
+        return self._next - 1
+
+    def remove(self) -> None:
+        """Remove the folder."""
+        remove_unfinished(self._folder.parent)
+
+
+def remove_unfinished(out: Path) -> None:
+    """Remove the chunks of an unfinished table from a run's folder."""
+    shutil.rmtree(out / UNFINISHED, ignore_errors=True)
 
 
 class Rows:

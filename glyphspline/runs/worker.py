@@ -90,7 +90,7 @@ def rows_of(job: Output, results: list[GlyphResult]) -> bytes:
     if PARQUET not in job.spec.whole or not any(result.contours for result in results):
         return b""
     from ..writers.parquet import rows  # imports pyarrow
-    from .unfinished import streamed
+    from .rows import streamed
 
     return streamed(rows(job.font, results))
 

@@ -38,8 +38,8 @@ from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
+from glyphspline.runs.rows import Made
 from glyphspline.runs.spec import Limits
-from glyphspline.runs.unfinished import Made
 from tests.places import FONTS
 
 PLAIN = DatasetSpec(options=None, points=8)
@@ -156,14 +156,17 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
     with pytest.raises(StoppedError):
         gs.dataset(FONTS, out, spec, jobs=0, observer=until)
     kept, made = out / ".unfinished", sum(counts)
+    last = max(kept.iterdir(), key=lambda file: int(file.name))
     assert not list(out.glob("data/*.parquet"))
     if damage == "link":
-        (tmp_path / "victim").write_bytes(kept.read_bytes())
-        kept.unlink()
+        kept.rename(tmp_path / "victim")
         kept.symlink_to(tmp_path / "victim")
     elif damage:
-        data = kept.read_bytes()
-        kept.write_bytes(data[:-1] if damage == "cut" else data[:-1] + bytes([data[-1] ^ 1]))
+        data = last.read_bytes()
+        middle = len(data) // 2
+        last.write_bytes(
+            data[:-1] if damage == "cut" else data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
+        )
     counts.clear()
     gs.dataset(FONTS, out, spec, jobs=0)
     again = sum(counts) - (whole - made)

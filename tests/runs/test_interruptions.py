@@ -114,7 +114,7 @@ def test_rows_are_made_once_and_a_table_that_is_lost_or_broken_is_made_again(
 ) -> None:
     with pytest.raises(KeyboardInterrupt):
         convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0, observer=stop_at(3 * CHUNK))
-    kept = tmp_path / ".unfinished"
+    kept = tmp_path / ".unfinished" / "2"
     kept.write_bytes(kept.read_bytes()[:-1])
     assert convert_font(font, font.glyph_names, tmp_path, SPEC, jobs=0).done == MANY - 2 * CHUNK
     (table,) = tmp_path.glob("*.parquet")

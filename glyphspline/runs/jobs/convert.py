@@ -43,6 +43,7 @@ from ..folder import (
     remove_written,
 )
 from ..result_text import stored
+from ..rows import Rows, remove_unfinished
 from ..schedule import Side, kinds_for, readers, side_of, workers
 from ..spec import (
     MAPS,
@@ -58,14 +59,12 @@ from ..spec import (
     write_run,
 )
 from ..summary import NAMED, Summary
-from ..unfinished import UNFINISHED
 
 if TYPE_CHECKING:
     from ...curves.curvature import Comb
     from ...readers.designspace import Designspace
     from ...readers.ufo import Ufo
     from ...writers.back.back import New
-    from ..rows import Rows
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -167,8 +166,6 @@ def convert_font(
         record = prepare(source, glyphs, out, spec, restart)
         rows = None
         if table := table_of(source, out, spec):
-            from ..rows import Rows  # imports pyarrow
-
             rows = Rows(table, source.sha256)
             record = read_record(out, rows)
         finished = record.finished()
@@ -227,8 +224,8 @@ def prepare(
     old = None if restart else read_run(out)
     if old is None:
         if table := table_of(source, out, spec):
-            for path in (table, table.with_name(UNFINISHED)):
-                path.unlink(missing_ok=True)
+            table.unlink(missing_ok=True)
+            remove_unfinished(out)
         remove_written(out)
         remove_gallery(out)
         for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
