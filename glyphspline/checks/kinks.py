@@ -12,17 +12,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from typing import Protocol, overload
+from typing import NamedTuple, Protocol, overload
 
 import numpy as np
 
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.masters import DesignAxis, Masters
+from ..outlines.outline import Outline
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
 from .finding import Measured
 from .kinds import KINK
-from .turns import joint_controls, largest_jumps, largest_turns, turns_of
+from .turns import LEAST, joint_controls, largest_jumps, largest_turns, turns_of
 
 PROFILE = 96
 """Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
@@ -351,6 +352,87 @@ def grid_of(axis: DesignAxis) -> FloatArray:
     low, high = axis.normalised(axis.minimum), axis.normalised(axis.maximum)
     bends = [after for _, after in axis.mapping if low <= after <= high]
     return np.unique([*(axis.normalised(value) for value in users), *bends])
+
+
+class AlongAxis(NamedTuple):
+    """Curvature of one glyph along one axis: how far smooth joints turn, and how much energy arcs have.
+
+    Attributes:
+        masters: the glyph. location: user-space values of the other axes. axis: which axis.
+        found: its smooth joints. worst: the one that turns most along the axis; None if no joint is smooth.
+        values: (v,) user-space values of the axis, ascending: even steps, and where joints turn most.
+        turns: (v,) the largest turn of a smooth joint there, in degrees.
+        energies: (v,) bending energy of the arcs there, in 1/em; infinite at a cusp.
+    """
+
+    masters: Masters
+    location: Mapping[str, float]
+    axis: DesignAxis
+    found: AxisKinks
+    worst: Kink | None
+    values: FloatArray
+    turns: FloatArray
+    energies: FloatArray
+
+    def instance(self, value: float) -> Outline:
+        """The glyph at a user-space value of the axis."""
+        return self.masters.instance({**self.location, self.axis.tag: value})
+
+
+def along_axis(
+    masters: Masters, tag: str, location: Mapping[str, float] | None = None, *, corner_angle: float = CORNER_ANGLE
+) -> AlongAxis:
+    """Measure a glyph along an axis. Nothing is fitted.
+
+    Args:
+        masters: the glyph. tag: of the axis. location: user-space values of the other axes; without it, their defaults.
+        corner_angle: degrees of turn from which a joint is a corner.
+
+    Raises:
+        GlyphsplineError: there is no such axis.
+    """
+    from ..curves.integrals import integrals  # imports the compiler
+
+    location = location or {}
+    chosen = [k for k, axis in enumerate(masters.axes) if axis.tag == tag]
+    if not chosen:
+        raise GlyphsplineError(f"no axis {tag!r}", glyph=masters.name)
+    (found,) = kinks_along([masters], masters.axes, location, chosen, corner_angle)
+    values, turns = found.profile.T
+    at = np.array([masters.normalised({**location, tag: float(value)}) for value in values])
+    weights = masters.weights_at(at)
+    energies = np.zeros(len(at))
+    for contour in masters.contours:
+        arcs = contour.cubics()[:, contour.degrees > 1]
+        for k, cubics in enumerate(np.tensordot(weights, arcs, axes=1)):
+            lasts = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) > LEAST  # it may have a length elsewhere only
+            energies[k] += integrals(cubics[lasts])[1]
+    energies *= masters.metrics.units_per_em
+    return AlongAxis(masters, location, found.axis, found, next(iter(found), None), values, turns, energies)
+
+
+def places_along(along: AlongAxis, count: int) -> list[float]:
+    """Values of the axis at which to look: its masters, where the glyph's worst joint turns most, and between.
+
+    Args:
+        along: of the source. count: of values; of more masters, some are left out evenly.
+
+    Returns:
+        User-space values, ascending.
+    """
+    worst = along.worst
+    values = sorted({*along.found.positions, along.axis.minimum, along.axis.maximum})
+    if worst is not None and worst.turn > 0:
+        values = sorted({*values, worst.location[worst.axis]})
+    if len(values) > count:
+        return [values[round(k)] for k in np.linspace(0, len(values) - 1, count)]
+    while 1 < len(values) < count:
+        gaps = np.diff(values)
+        k = int(gaps.argmax())
+        if not gaps[k] > 0:
+            break
+        values.insert(k + 1, (values[k] + values[k + 1]) / 2)
+    return values
 
 
 def _smooth_joints(masters: Masters, corner_angle: float) -> tuple[FloatArray, IntArray]:

@@ -165,7 +165,7 @@ def info(
     ] = False,
 ) -> None:
     """Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."""
-    from ..readers.facts import file_facts
+    from ..readers.open import file_facts
 
     facts = file_facts(font, instance.face_index, instance.place)
     if deep:

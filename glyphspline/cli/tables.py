@@ -51,7 +51,7 @@ def named(glyphs: Sequence[str], what: str, shown: int) -> Iterator[str]:
 
 
 def font_lines(facts: Mapping[str, Any]) -> Iterator[str]:
-    """The facts that :func:`glyphspline.readers.facts.file_facts` gives, line by line."""
+    """The facts that :func:`glyphspline.readers.open.file_facts` gives, line by line."""
     yield f"{facts['file']}: {facts['format']}, {counted(facts['faces'], 'face')}"
     for font in facts["fonts"]:
         yield f"face {font['face_index']}: {font['family']} {font['style']}"

@@ -31,28 +31,17 @@ from ..outlines.outline import Outline
 from ..types import FloatArray
 from .pens import MAX_COMPONENTS, ContourPen, enter_component
 from .source import Head, Location, Source, parsed
-from .ufo import Ufo
+from .ufo import Drawing, Ufo
 
 
-@dataclass(frozen=True)
-class Drawing:
-    """Where a glyph is drawn: a UFO, a layer of it (None: its default), and the normalised place of the master."""
-
-    ufo: Path
-    layer: str | None
-    place: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class _Master:
-    """A source of a designspace: its name, where it is by axis tag, normalised, its glyphs, and its UFO and layer."""
+@dataclass(frozen=True, kw_only=True)
+class _Master(Drawing):
+    """A source of a designspace: its name, its glyphs, and where it is by axis tag, normalised."""
 
     name: str
-    at: dict[str, float]
     glyphs: GlyphSet
     muted: frozenset[str]
-    ufo: Path
-    layer: str | None
+    at: dict[str, float]
 
 
 class Designspace(Source):
@@ -95,12 +84,14 @@ class Designspace(Source):
             name = source.styleName or source.name or Path(source.path).stem
             glyphs = ufo.default_layer if source.layerName is None else ufo.layer(source.layerName)
             name = name if source.layerName is None else f"{name}, layer {source.layerName}"
+            place = tuple(round(x * 16384) / 16384 + 0.0 for x in at.values())
             muted = frozenset(source.mutedGlyphNames)
-            self._masters_of_all.append(_Master(name, at, glyphs, muted, ufo.path, source.layerName))
+            master = _Master(ufo.path, source.layerName, place, name=name, glyphs=glyphs, muted=muted, at=at)
+            self._masters_of_all.append(master)
         self._ufos, at_default = tuple(ufos.values()), ufos[default.path]
         self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
         self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
-        self._components: dict[str, Masters] = {}
+        self._components: dict[str, tuple[Masters, list[int | None]]] = {}
 
     @cached_property
     def sha256(self) -> str:
@@ -120,15 +111,17 @@ class Designspace(Source):
         return replace(instance, contours=pen.contours, notes=notes, snapped=pen.snapped)
 
     def _masters(self, head: Head) -> Masters:
-        return replace(self._mixed(head.name, []), name=head.name, gid=head.gid, unicodes=head.unicodes)
+        return replace(self._mixed(head.name, [])[0], name=head.name, gid=head.gid, unicodes=head.unicodes)
 
-    def _mixed(self, name: str, above: list[str | None]) -> Masters:
-        """A glyph in its masters and in those of its components."""
+    def _drawn_in(self, name: str) -> list[_Master]:
+        return [each for each in self._masters_of_all if name in each.glyphs and name not in each.muted]
+
+    def _mixed(self, name: str, above: list[str | None]) -> tuple[Masters, list[int | None]]:
+        """A glyph in its masters and in those of its components; the contours that are its own: :class:`ContourPen`."""
         nesting = enter_component(above, name)
         if name in self._components:
             return self._components[name]
-        drawn = [(master, *_drawing(master, name)) for master in self._masters_of_all if name in master.glyphs]
-        drawn = [item for item in drawn if name not in item[0].muted]
+        drawn = [(master, *_drawing(master, name)) for master in self._drawn_in(name)]
         try:
             model = VariationModel([item[0].at for item in drawn], axisOrder=[axis.tag for axis in self.axes])
         except VariationModelError as error:
@@ -141,7 +134,7 @@ class Designspace(Source):
         names = [part.base for part in drawn[0][1] if part.base is not None]
         if len(names) > MAX_COMPONENTS:
             raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
-        children = {base: self._mixed(base, nesting) for base in dict.fromkeys(names)}
+        children = {base: self._mixed(base, nesting)[0] for base in dict.fromkeys(names)}
         regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
         found = replace(own, regions=self._stacked(distinct_regions(regions)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
@@ -169,41 +162,22 @@ class Designspace(Source):
             notes=(*pen.notes, *notes), repeats=pen.repeated,
         )  # fmt: skip
         if above:  # components are asked for again
-            self._components[name] = found
-        return found
+            self._components[name] = found, pen.own
+        return found, pen.own
 
     @property
     def folders(self) -> list[Path]:
         """Its UFOs."""
         return [ufo.path for ufo in self._ufos]
 
-    def drawings(self, name: str) -> list[Drawing]:
+    def drawings(self, name: str) -> Sequence[_Master]:
         """Where a glyph is drawn itself, the default master first."""
-        found = [
-            Drawing(each.ufo, each.layer, tuple(round(each.at[axis.tag] * 16384) / 16384 + 0.0 for axis in self.axes))
-            for each in self._masters_of_all
-            if name in each.glyphs and name not in each.muted
-        ]
-        return sorted(found, key=lambda each: any(each.place))
+        return sorted(self._drawn_in(name), key=lambda each: any(each.place))
 
     def own_contours(self, name: str) -> list[int | None]:
         """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
-        drawn = [_drawing(each, name)[0] for each in self._masters_of_all if name in each.glyphs]
-        found: list[int | None] = []
-        count = 0
-        for number, part in enumerate(drawn[0]):
-            if part.base is not None:
-                count += len(self._mixed(part.base, [name]).contours)
-                continue
-            pen, at = ContourPen(masters=len(drawn)), 0
-            points = np.array([parts[number].points for parts in drawn], dtype=np.float64)
-            for operation, size in part.operations:
-                getattr(pen, operation)(*[points[:, n].T for n in range(at, at + size)])
-                at += size
-            pen.finish()
-            found.append(count if pen.stacks else None)
-            count += len(pen.stacks)
-        return found
+        own: list[int | None] = self.drawings(name)[0].glyphs[name].numbered(self._mixed(name, [])[1])
+        return own
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
         return tuple(support.get(axis.tag, (0.0, 0.0, 0.0)) for axis in self.axes)

@@ -1,18 +1,20 @@
-"""Opens a source of any kind; the content of the path decides which reader is used."""
+"""Opens a source of any kind; the content of the path decides which reader is used. And the facts of a file as data."""
 
 from __future__ import annotations
 
 import re
 import sys
 import tempfile
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..errors import FontError
+from ..outlines.masters import DesignAxis
 from .opentype.containers import FORMATS
-from .opentype.font import Font, open_font
-from .source import Location, opening
+from .opentype.font import Font, open_faces, open_font
+from .source import Location, Source, opening
 
 if TYPE_CHECKING:
     from .designspace import Designspace, GlyphsFile
@@ -118,3 +120,43 @@ def forget_standard_input() -> None:
     """Remove the copy of standard input, for exits that skip atexit handlers."""
     while _kept:
         _kept.pop().cleanup()
+
+
+def file_facts(path: str | Path, face_index: int | None = None, location: Location = None) -> dict[str, Any]:
+    """The file's format, and the facts of each face or of the one requested. No glyph is read.
+
+    Raises:
+        FontError: as in :func:`open_source`.
+    """
+    faces: list[Source]
+    if is_font(path):
+        faces = [*open_faces(_place(path), face_index, location)]
+    else:
+        faces = [open_source(path, face_index or 0, location)]
+    return {
+        "file": str(path),
+        "format": faces[0].format,
+        "faces": faces[0].num_faces,
+        "fonts": [face_facts(face) for face in faces],
+    }
+
+
+def face_facts(face: Source) -> dict[str, Any]:
+    """The facts of one face: names, metrics, axes, instances, and the numbers of glyphs and characters."""
+    glyphs, characters = face.counts()
+    return {
+        "face_index": face.face_index,
+        "family": face.family,
+        "style": face.style,
+        **asdict(face.metrics),
+        "axes": [axis_facts(axis) for axis in face.axes],
+        "instances": {name: dict(place) for name, place in face.instances.items()},
+        "location": dict(face.location),
+        "glyphs": glyphs,
+        "characters": characters,
+    }
+
+
+def axis_facts(axis: DesignAxis) -> dict[str, Any]:
+    """An axis in user space."""
+    return {name: value for name, value in asdict(axis).items() if name != "mapping"}

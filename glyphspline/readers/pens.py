@@ -59,6 +59,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
 
     Attributes:
         stacks: the contours so far. left_out: numbers of those left out. drawn: the count of both.
+        own: of each contour that is drawn itself, not by a component, the number in ``stacks``; None: left out.
         repeats: of each contour; see :class:`.Contours`.
         snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
     """
@@ -72,6 +73,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         self.stacks: list[MasterContour] = []
         self.repeats: list[IntArray] = []
         self.left_out: list[int] = []
+        self.own: list[int | None] = []
         self.drawn = 0
         self.snapped = 0.0
         self._masters, self._coincident = masters, coincident
@@ -133,7 +135,10 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
                 points[:, n, 0], points[:, n, 1] = x, y
         degrees = np.array([*self._degrees, 1], dtype=np.int64)
         self._points, self._degrees = [], []
+        kept = len(self.stacks)
         self._keep(points, degrees, np.zeros_like(degrees), True)
+        if len(self._nesting) == 1:
+            self.own.append(kept if len(self.stacks) > kept else None)
 
     _closePath = _endPath = finish
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,6 +22,15 @@ from .pens import ContourPen
 from .source import Head, Source, first_claims, parsed, reason
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Where a glyph is drawn: a UFO, a layer of it (None: its default), and the normalised place of the master."""
+
+    ufo: Path
+    layer: str | None = None
+    place: tuple[float, ...] = ()
 
 
 class Ufo(Source):
@@ -74,27 +84,23 @@ class Ufo(Source):
         return digest.hexdigest()
 
     def _outline(self, head: Head) -> Outline:
-        pen, glyph = ContourPen(self.default_layer, head.name), self.default_layer[head.name]
+        pen, glyph = self._drawn(head.name)
+        return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
+
+    def _drawn(self, name: str) -> tuple[ContourPen, _Glyph]:
+        pen, glyph = ContourPen(self.default_layer, name), self.default_layer[name]
         glyph.draw(pen)
         pen.finish()
-        return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
+        return pen, glyph
+
+    def drawings(self, name: str) -> list[Drawing]:
+        """Where a glyph is drawn itself."""
+        return [Drawing(self.path)]
 
     def own_contours(self, name: str) -> list[int | None]:
         """The number in :meth:`outline` of each contour that a glyph draws itself; None: left out there."""
-        found: list[int | None] = []
-        count, calls = 0, list[Any]()
-        for call in self.default_layer[name].value:
-            calls.append(call)
-            if call[0] not in ("endPath", "addComponent"):
-                continue
-            pen, part = ContourPen(self.default_layer, name), RecordingPointPen()
-            part.value, calls = calls, []
-            part.replay(PointToSegmentPen(pen))
-            pen.finish()
-            if call[0] == "endPath":
-                found.append(count if pen.stacks else None)
-            count += len(pen.stacks)
-        return found
+        pen, glyph = self._drawn(name)
+        return glyph.numbered(pen.own)
 
     def layer(self, name: str) -> GlyphSet:
         """The glyphs of another layer. Their files are not checked for entities; see :func:`.source.parsed`.
@@ -144,6 +150,12 @@ class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
     def draw(self, pen: Any) -> None:
         """Draw with a segment pen."""
         self.replay(PointToSegmentPen(pen))
+
+    def numbered(self, own: Iterable[int | None]) -> list[int | None]:
+        """``own``, which has an item for each contour with points, as a list that has None for each without, too."""
+        calls, drawn = [name for name, *_ in self.value], iter(own)
+        ends = [k for k, name in enumerate(calls) if name == "endPath"]
+        return [None if calls[k - 1] == "beginPath" else next(drawn) for k in ends]
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -27,7 +27,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from .. import compiled
 from ..errors import GlyphsplineError
 from ..fitting.options import PRESETS, Options
-from ..readers.facts import axis_facts
+from ..readers.open import axis_facts
 from ..report.gallery import measures
 from ..writers.svg.comb import palette
 from ..writers.svg.document import to_svg

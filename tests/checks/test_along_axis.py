@@ -12,7 +12,7 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.checks.along_axis import along_axis, places_along
+from glyphspline.checks.kinks import along_axis, places_along
 from glyphspline.cli import app
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.writers.figures.axis_pages import (

@@ -15,7 +15,7 @@ from fontTools.ttLib.tables.DefaultTable import DefaultTable
 
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.readers import Font, open_font
-from glyphspline.readers.facts import file_facts
+from glyphspline.readers.open import file_facts
 from glyphspline.readers.pens import MAX_SEGMENTS, ContourPen
 from tests.places import FONTS
 

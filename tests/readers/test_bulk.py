@@ -25,7 +25,7 @@ from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
-from glyphspline.readers.opentype.routes import FontTools
+from glyphspline.readers.opentype.routes import HarfBuzz
 from glyphspline.readers.source import Head
 from tests.places import FACES, FONTS
 from tests.readers.test_broken_fonts import with_components
@@ -216,9 +216,9 @@ def test_one_rule_says_which_contours_are_flat(tmp_path: Path, monkeypatch: pyte
 def test_flat_contours_are_those_that_fonttools_draws_flat(tmp_path: Path) -> None:
     with_anchors(tmp_path / "anchors.ttf")
     font = open_font(tmp_path / "anchors.ttf")
-    other = FontTools((tmp_path / "anchors.ttf").read_bytes(), 0, {})
+    other = HarfBuzz(tmp_path / "anchors.ttf", 0, {})
     for outline in font.outlines(list(ANCHORED)):
-        pen, advance = other.draw(outline.name)
+        pen, advance = other.by_fonttools(outline.name)
         assert (outline.notes, outline.advance) == (pen.notes, advance)
         assert len(outline.contours) == len(pen.contours)
         for own, its in zip(outline.contours, pen.contours, strict=True):

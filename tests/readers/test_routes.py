@@ -14,8 +14,7 @@ from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS, GlyphComponent
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
-from glyphspline.readers.opentype.containers import unpacked
-from glyphspline.readers.opentype.routes import FontTools
+from glyphspline.readers.opentype.routes import HarfBuzz
 from glyphspline.types import FloatArray
 from tests.places import FACES, FONTS
 
@@ -31,9 +30,8 @@ def from_leftmost(contour: Contour) -> FloatArray:
 @pytest.mark.parametrize(("file", "face_index", "location"), FACES)
 def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, location: dict[str, float]) -> None:
     font = open_font(FONTS / file, face_index, location)
-    fonttools = FontTools(unpacked((FONTS / file).read_bytes()), face_index, font._hb.normalized)
     for outline in font.outlines(font.glyph_names):
-        other, advance = fonttools.draw(outline.name)
+        other, advance = font._hb.by_fonttools(outline.name)
         assert outline.advance == advance
         assert outline.notes == other.notes
         assert len(outline.contours) == len(other.contours)
@@ -93,7 +91,7 @@ def test_a_composite_moves_as_the_component_whose_metrics_it_has(tmp_path: Path)
     font.save(tmp_path / "metrics.ttf")
     outline = open_font(tmp_path / "metrics.ttf").outline("both")
     assert outline.contours[0].points[:, 0].min() == 117
-    other, _ = FontTools((tmp_path / "metrics.ttf").read_bytes(), 0, {}).draw("both")
+    other, _ = HarfBuzz(tmp_path / "metrics.ttf", 0, {}).by_fonttools("both")
     np.testing.assert_array_equal(other.contours[0].points, outline.contours[0].points)
 
 

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from glyphspline.cli import app
 from glyphspline.errors import FontError
 from glyphspline.readers import Font, open_source
-from glyphspline.readers.facts import file_facts
+from glyphspline.readers.open import file_facts
 from glyphspline.runs.jobs.deep_facts import add_glyph_facts
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS

@@ -330,7 +330,7 @@ class BulkReader:
                 self._hb.font.draw_glyph_with_pen(head.gid, pen)
                 pen.finish()
             if expected == UNUSUAL or (expected >= 0 and pen.drawn != expected):
-                pen, advance = self._hb.fonttools.draw(head.name)
+                pen, advance = self._hb.by_fonttools(head.name)
             return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
 
         return attempt(self._path, head.name, read)

@@ -53,51 +53,34 @@ class HarfBuzz:
             self.normalized = dict(zip(tags, self.font.get_var_coords_normalized(), strict=False))
         tags = self.face.table_tags
         self.has_records = "glyf" in tags and "loca" in tags and "VARC" not in tags
-
-    @cached_property
-    def fonttools(self) -> FontTools:
-        """The other way to the same glyphs."""
-        return FontTools(self._plain or self._path.read_bytes(), self._face_index, self.normalized)
-
-
-class FontTools:
-    """Outlines at a location in normalised coordinates.
-
-    Args:
-        data: the file's bytes without compression. face_index: which face of a collection.
-        normalized: axis tag to normalised coordinate; empty at the default.
-    """
-
-    def __init__(self, data: bytes, face_index: int, normalized: Mapping[str, float]) -> None:
-        self._data, self._face_index, self._normalized = data, face_index, normalized
         self._failure: Exception | None = None
 
     @cached_property
     def _tables(self) -> TTFont:
-        return TTFont(BytesIO(self._data), fontNumber=self._face_index, lazy=True)
+        return TTFont(BytesIO(self._plain or self._path.read_bytes()), fontNumber=self._face_index, lazy=True)
 
     @cached_property
     def _glyphs(self) -> Any:
-        """The glyph set, made when HarfBuzz fails on a glyph: it takes as long as opening a CJK face.
+        """fontTools' glyph set, made when HarfBuzz fails on a glyph: it takes as long as opening a CJK face.
 
         Tables that fail as a whole fail once: a count in a hostile one can ask for gigabytes. The error drops its
         traceback, whose frames would keep them.
         """
         if self._failure is None:
             try:
-                return self._tables.getGlyphSet(location=dict(self._normalized) or None, normalized=True)
+                return self._tables.getGlyphSet(location=self.normalized or None, normalized=True)
             except Exception as error:
                 self._failure = error
         raise self._failure.with_traceback(None) from None
 
-    def draw(self, name: str) -> tuple[ContourPen, float]:
-        """Draw the contours of a glyph; also its advance. fontTools' exceptions pass through.
+    def by_fonttools(self, name: str) -> tuple[ContourPen, float]:
+        """Draw the contours of a glyph by fontTools; also its advance. fontTools' exceptions pass through.
 
         After one the tables are opened again: fontTools keeps tables and glyphs that are read in part, and the next
         reading of the same glyph would not find the fault.
         """
         try:
-            if self._normalized:
+            if self.normalized:
                 check_variations(self._tables, name)
             pen = ContourPen(self._glyphs, name)
             glyph = self._glyphs[name]
@@ -114,7 +97,7 @@ class FontTools:
 
         Where it has the metrics of a component, it moves as that one does, as in rasterisers.
         """
-        glyf = self._tables["glyf"] if "glyf" in self._tables and not self._normalized else None
+        glyf = self._tables["glyf"] if "glyf" in self._tables and not self.normalized else None
         if glyf is None or not glyf[name].isComposite():
             return 0.0
         nesting: list[str | None] = [name]

@@ -59,7 +59,7 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
 
 
 def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, observer: Observer | None = None) -> None:
-    """Add to each face of :func:`..readers.facts.file_facts` what :func:`glyph_facts` finds.
+    """Add to each face of :func:`..readers.open.file_facts` what :func:`glyph_facts` finds.
 
     Args:
         path: the file. facts: are added to. executor: of the calls.

@@ -77,12 +77,11 @@ class MendJob(Job[Head, list[Mended]]):
 def _fixed(source: Any, masters: Masters) -> dict[int, str]:
     """The contours of a glyph that may not change, and why."""
     own = {index for index in source.own_contours(masters.name) if index is not None}
-    count = len(masters.contours)
-    if isinstance(source, Designspace):
-        from ...writers.ufo_folder import places_of
+    from ...writers.ufo_folder import places_of
 
-        if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
-            return dict.fromkeys(range(count), "has masters in which only its components are drawn")
+    count = len(masters.contours)
+    if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
+        return dict.fromkeys(range(count), "has masters in which only its components are drawn")
     return {number: OF_COMPONENT for number in range(count) if number not in own}
 
 

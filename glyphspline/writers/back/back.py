@@ -24,8 +24,8 @@ from ...fitting.results import GlyphResult
 from ...outlines.masters import Masters
 from ...outlines.outline import Contour
 from ...readers import Source
-from ...readers.designspace import Designspace, Drawing, GlyphsFile
-from ...readers.ufo import Ufo
+from ...readers.designspace import Designspace, GlyphsFile
+from ...readers.ufo import Drawing, Ufo
 from ..font.master_deltas import Redrawn
 from ..ufo_folder import places_of, replacing, stored_curves
 from .glif import Glif
@@ -83,7 +83,7 @@ def of_results(source: Ufo, results: Iterable[GlyphResult]) -> Iterable[New]:
     """The new contours of a UFO's glyphs."""
     for result in results:
         contours = [[curve] for curve in stored_curves(result)]
-        yield New(result.outline.name, contours, [Drawing(source.path, None, ())])
+        yield New(result.outline.name, contours, source.drawings(result.outline.name))
 
 
 def of_masters(source: Designspace, redrawn: Mapping[str, Redrawn]) -> Iterable[New]:
@@ -97,11 +97,8 @@ def of_masters(source: Designspace, redrawn: Mapping[str, Redrawn]) -> Iterable[
 
 def moved_points(source: Ufo | Designspace, old: Masters, new: Masters) -> New:
     """The contours of a glyph of which points moved, in all masters."""
-    drawings = [Drawing(source.path, None, ())]
-    chosen = [0]
-    if isinstance(source, Designspace):
-        places, drawings = places_of(new), source.drawings(new.name)
-        chosen = [places.index(each.place) for each in drawings]
+    places, drawings = places_of(new), source.drawings(new.name)
+    chosen = [places.index(each.place) for each in drawings]
     both = [[[Contour(c.points[k], c.degrees) for k in chosen] for c in each.contours] for each in (new, old)]
     return New(new.name, both[0], drawings, both[1])
 

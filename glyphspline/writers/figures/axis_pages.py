@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...checks.along_axis import AlongAxis, along_axis, places_along
-from ...checks.kinks import AxisKinks, Kink, KinkReport, joint_turns
+from ...checks.kinks import AlongAxis, AxisKinks, Kink, KinkReport, along_axis, joint_turns, places_along
 from ...checks.kinks import Source as VariableSource
 from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
