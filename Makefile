@@ -67,7 +67,7 @@ check-starts: .venv/.ready
 
 # Damaged fonts and drawings through the commands, each in limits of time and memory: MINUTES of it, ten if not given.
 fuzz: .venv/.test .venv/.warm
-	$(BIN)/python -m scripts.fuzz --minutes $(or $(MINUTES),10)
+	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),10)
 
 bench: .venv/.bench .venv/.warm
 	$(BIN)/python -m scripts.benchmark
@@ -79,8 +79,8 @@ docs: .venv/.docs
 # The wheel and the sdist in clean environments: one of this Python. ALL=1: every Python that is found, each extra.
 # Then a wheel with compiled code, of what `make test` has compiled: nothing is compiled by its commands.
 test-package: .venv/.warm
-	$(PYTHON) scripts/test_package.py $(if $(ALL),--all)
-	$(PYTHON) scripts/test_wheel.py
+	$(PYTHON) tests/package/environments.py $(if $(ALL),--all)
+	$(PYTHON) tests/package/compiled_wheel.py
 
 # Into dist: the pure wheel, and one with compiled code for this system and Python, for every processor of its kind.
 wheel: .venv/.ready

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.interpolation.reference import footpoint, prepare
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, SEED, Run, bare, curve_points, draw_closed, random_polygons, verdict
+from .local import LocalMethod
 from .study import MAX_ITERATIONS, TOLERANCE
 
 PAPER_HALF_WIDTH = 0.466178
@@ -69,16 +69,7 @@ def theorem_1(run: Run) -> None:
 
 def _uniform_vertex(polygon: FloatArray, k: int) -> FloatArray:
     """Factors of Algorithm 1 on uniform knots, whatever the chords."""
-    problem = prepare(polygon, 1, knots="uniform")
-    P, errors = polygon.copy(), []
-    for _ in range(100):
-        curve = problem.spline(P)
-        e = polygon[k] - curve(footpoint(curve, polygon[k], problem.intervals.bounds[k], float(problem.centres[k])))
-        errors.append(float(np.hypot(*e)))
-        if errors[-1] < 1e-6:
-            break
-        P[k] += e
-    return step_factors(np.array(errors))
+    return step_factors(np.array(LocalMethod(polygon, 1, "uniform").run([[k]], 1e-6, 99)[1]))
 
 
 def step_factors(residuals: FloatArray) -> FloatArray:

@@ -56,7 +56,7 @@ def look_at_glyphs(font: Source, options: Options) -> None:
 
 
 def test_damaged_sources_through_commands_with_limits_and_what_was_found_once(tmp_path: Path) -> None:
-    call = [sys.executable, "-m", "scripts.fuzz", "--commands", "30", "--seed", "1", "--out", str(tmp_path)]
+    call = [sys.executable, "-m", "tests.fuzz", "--commands", "30", "--seed", "1", "--out", str(tmp_path)]
     done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr[-2000:]
     assert done.stdout.endswith(" 0 kinds of faults\n")

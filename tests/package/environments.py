@@ -18,7 +18,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 VERSIONS = tuple(f"3.{minor}" for minor in (11, 12, 13, 14))
 EXTRAS = ("overlaps", "parquet", "cad", "sources", "cluster", "remote", "fontspector", "view", "notebook")
 INSTALL = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile")

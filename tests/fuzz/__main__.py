@@ -1,8 +1,8 @@
 """Damaged fonts, UFOs and drawings through info, convert, check, diff and text: ``make fuzz MINUTES=10``.
 
-``python -m scripts.fuzz [--minutes 10] [--commands N] [--seed 0] [--out outputs/fuzz]``
+``python -m tests.fuzz [--minutes 10] [--commands N] [--seed 0] [--out outputs/fuzz]``
 
-``tests/fuzz/mutants.py`` has the sources and the damage. Each command runs in a process of its own, forked from this
+``mutants.py`` has the sources and the damage. Each command runs in a process of its own, forked from this
 one, with limits of processor time and memory. A mutant with which lines of the package or of fontTools run that ran
 with none before is damaged further. A seed gives the same mutants, as long as no limit of time is reached.
 
@@ -12,7 +12,7 @@ ones; and another drawing of a glyph than the sound source gives, where only ano
 end the last fonts go through worker processes together.
 
 The first fault of each kind is printed, reduced to the fewest edits and written to ``faults.json`` in the output
-folder. Those that ``tests/fuzz/found.json`` keeps are tried first. The exit status is 1 if there are any.
+folder. Those that ``found.json`` keeps are tried first. The exit status is 1 if there are any.
 
 Atheris does not serve here: Numba does not compile what it instruments, and it does not see into HarfBuzz.
 """
@@ -38,10 +38,10 @@ from typing import Any
 
 from fontTools.ttLib import TTFont
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from scripts.survey import parser
-from tests.fuzz.enclosed import Lines, Outcome, ran, warm
-from tests.fuzz.mutants import Edit, Files, Mutant, edits_of, given, made, mutant, reduced, sources
+
+from .enclosed import Lines, Outcome, ran, warm
+from .mutants import Edit, Files, Mutant, edits_of, given, made, mutant, reduced, sources
 
 CALLS = {
     "read": "info FONT --deep --json",
@@ -60,7 +60,7 @@ MASTERS = {"variable.ttf": "ttf", "variable-cff2.otf": "otf", "space": "ufo"}
 """Sources that have several, and a format for them."""
 
 WRITTEN = {"out", "page.html", "text.svg"}
-FOUND = Path(__file__).parents[1] / "tests/fuzz/found.json"
+FOUND = Path(__file__).with_name("found.json")
 
 EXPECTED = re.compile(r"(cannot be drawn|cannot be read|a broken \w+|fontTools): .*")
 UNEXPECTED = re.compile(r"(Traceback|\b[A-Z]\w*(Error|Exception|Warning|Interrupt)\b).*", re.DOTALL)

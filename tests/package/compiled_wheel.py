@@ -21,9 +21,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from scripts.test_package import INSTALL, ROOT, copy_tree, interpreter, run
+from tests.package.environments import INSTALL, ROOT, copy_tree, interpreter, run
 
 FONTS = ROOT / "fonts_test"
 NOBODY = 65534
