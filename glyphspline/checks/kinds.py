@@ -58,8 +58,11 @@ KINDS = (
     Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
 )
 
-MENDED = ("kink",)
-"""Names of the kinds that :func:`glyphspline.mend` mends."""
+MENDED = ("kink", "handles", "extremum", "unlevel", "slanted", "repeated", "straight", "short", "direction")
+"""Names of the kinds that :func:`glyphspline.mend` mends, in this order."""
+
+MENDED_UNASKED = ("kink",)
+"""Those of them that it mends unless others are asked for: none of the others is a fault for certain."""
 
 ABOVE_ZERO = Rule("above 0 and up to a million", lambda value: is_positive(value, 1e6))
 

@@ -1,4 +1,4 @@
-"""The command ``mend``: kinks of sources are mended, and what moved goes back into them."""
+"""The command ``mend``: findings of sources are mended, and what moved goes back into them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..checks.kinds import MENDED
+from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED
 from ..errors import OptionError
 from ..fields import WRITTEN, About
 from ..runs.spec import RunSpec
@@ -44,8 +44,8 @@ def mend(
     ] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
     kinds: Annotated[
-        str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}.", opt.FOUND, "KIND,…")
-    ] = ",".join(MENDED),
+        str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}, or all.", opt.FOUND, "KIND,…")
+    ] = ",".join(MENDED_UNASKED),
     tolerance: Annotated[
         float | None,
         About("Let outlines move by this, in font units. Without it, 1/1000 em.", opt.FOUND, metavar="UNITS"),
@@ -54,11 +54,11 @@ def mend(
         str | None, About("Take these thresholds of check: kink=1.", opt.FOUND, "NAME=VALUE,…")
     ] = None,
 ) -> bool:
-    """Mend kinks in sources: handles, then nodes, move as little as it takes. No point comes or goes.
+    """Mend what check finds in sources: points move as little as it takes, in all masters. None comes.
 
-    All glyphs are mended unless some are asked for, in all their masters, so that joints meant to be smooth kink
-    nowhere along an axis. Those that would move outlines by more than the tolerance, or bring a new finding of any
-    kind, are left and named, and end the command with status 1.
+    Kinks are mended unless other kinds are asked for, so that joints meant to be smooth kink nowhere along an axis.
+    Points go only where short, straight and repeated are asked for. What would move outlines by more than the
+    tolerance, or bring a new finding of any kind, is left and named, and ends the command with status 1.
     """
     from ..readers import open_source
     from ..readers.designspace import Designspace
@@ -71,6 +71,7 @@ def mend(
     if out is not None and len({path.name for path in sources}) < len(sources):
         raise OptionError("--out takes no two sources of one name")
     limits = thresholds_of(thresholds, None)
+    chosen_kinds = MENDED if kinds == "all" else opt.items_of(kinds)
     found: list[MendedSource] = []
     undone = False
     with workers(run.jobs, kinds=["checks"], expected=1) as pool:
@@ -87,7 +88,7 @@ def mend(
             copy = None if out is None else copy_of(source, out)
             with progress(run.quiet) as observer:
                 found.append(mend_source(
-                    source, names, kinds=opt.items_of(kinds), tolerance=tolerance, thresholds=limits, copy=copy,
+                    source, names, kinds=chosen_kinds, tolerance=tolerance, thresholds=limits, copy=copy,
                     layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
                 ))  # fmt: skip
     if run.as_json:
@@ -112,16 +113,25 @@ def copy_of(source: Ufo | Designspace, out: Path) -> Path:
 
 
 def table(changes: Sequence[Change]) -> str:
-    """What moved, a joint a line."""
+    """What moved, a finding a line."""
     rows = [
         [
-            change.glyph, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point), f"{change.before:.2f}°",
-            f"{change.after:.2f}°", f"{change.moved:.3g}", f"{rounded_up(change.distance or 0.0, 3):g}",
+            change.glyph, change.kind, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point), value(change),
+            "" if change.after is None else f"{change.after:.2f}°",
+            f"{change.moved:.3g}" + f", {change.gone} gone" * bool(change.gone),
+            f"{rounded_up(change.distance or 0.0, 3):g}",
         ]
         for change in changes
     ]  # fmt: skip
-    headings = ("glyph", "contour", "at", "turned by", "turns by", "points moved", "curves moved")
-    return plain(headings, rows, numbers=headings[1:])
+    headings = ("glyph", "kind", "contour", "at", "before", "after", "points moved", "curves moved")
+    return plain(headings, rows, numbers=headings[2:])
+
+
+def value(change: Change) -> str:
+    """How much was found, with its unit."""
+    from ..checks.finding import with_unit
+
+    return with_unit(change.before, next(kind.unit for kind in KINDS if kind.name == change.kind))
 
 
 def lines(found: MendedSource, dry: bool) -> Iterator[str]:
@@ -130,14 +140,14 @@ def lines(found: MendedSource, dry: bool) -> Iterator[str]:
     verb = "would change" if dry else "changed"
     yield (
         f"{found.source}: {counted(len(found.changed), 'glyph')} of {found.glyphs} {verb}, "
-        f"{counted(len(found.changes), 'kink')} before, {len(left)} after"
+        f"{counted(len(found.changes), 'finding')} before, {len(left)} after"
     )
     if mended:
         yield f"the largest move of a point is {mended[0].moved:.3g} units"
     for change in left[:LEFT]:
         needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
-        place = "contour {}, {:.0f} {:.0f}, turns by {:.1f}°".format(change.contour, *change.point, change.before)
-        yield f"left: {change.glyph}, {place}, and {change.why}{needs}"
+        place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
+        yield f"left: {change.glyph}, {place}, {change.kind} of {value(change)}: {change.why}{needs}"
     if len(left) > LEFT:
         yield f"left: {len(left) - LEFT} more, which --json lists"
     for name, why in found.failed[:LEFT]:

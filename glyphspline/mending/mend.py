@@ -8,19 +8,22 @@ go, or change their order (:mod:`.fewer`), one finding after the other.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, overload
 
 import numpy as np
 
-from ..checks.kinds import KINDS, MENDED, THRESHOLDS, Thresholds
+from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED, THRESHOLDS, Thresholds
 from ..errors import OptionError, is_positive, require
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
+from .fewer import EDITED, Edited
 from .joints import controls_of, moves, obstacle, points_of
-from .state import Design, State, distances
+from .shapes import shape_moves, starts_of
+from .state import Design, Key, State, distances
 
 PER_EM = 1e-3
 """The tolerance as a share of the em, unless another is given."""
@@ -37,11 +40,13 @@ class Change:
     """What became of a finding.
 
     Attributes:
-        glyph, gid: which glyph. kind: of the finding. contour, segment: number of the contour, and of the segment that
-            begins at the joint. point: the joint in the default master, as it was.
-        before: the largest turn at any location, in degrees. after: the same when mended; None if it is left.
-        moved: the largest move of a point in any master; 0.0 if it is left.
+        glyph, gid: which glyph. kind: of the finding. contour, segment: as ``check`` numbers them.
+        point: where the segment begins in the default master, as it was.
+        before: the finding's largest value at any location, in its unit. after: of a kink, the largest turn when it is
+            mended; None of other kinds, of which nothing is left, and if it is left.
+        moved: the largest move of a point in any master; 0.0 if it is left, or if points only went.
         moves: master, number of the point in the contour, old and new place of every point that moved.
+        gone: number of points that went.
         distance: certified bound of how far the curves beside it moved, at any location; None if it is left.
         why: the reason why it is left, or None. needs: the distance that it would take, if only the tolerance is
             against it.
@@ -57,6 +62,7 @@ class Change:
     after: float | None = None
     moved: float = 0.0
     moves: tuple[tuple[int, int, tuple[float, float], tuple[float, float]], ...] = ()
+    gone: int = 0
     distance: float | None = None
     why: str | None = None
     needs: float | None = None
@@ -78,7 +84,7 @@ def mend(
     outer: int = ...,
 ) -> tuple[Masters, list[Change]]: ...  # fmt: skip
 def mend(
-    glyph: Outline | Masters, kinds: Collection[str] = MENDED, tolerance: float | None = None, *,
+    glyph: Outline | Masters, kinds: Collection[str] = MENDED_UNASKED, tolerance: float | None = None, *,
     thresholds: Thresholds = THRESHOLDS, outer: int = 0,
 ) -> tuple[Outline | Masters, list[Change]]:  # fmt: skip
     """Move handles, then nodes, as little as it takes so that joints meant to be smooth no longer kink.
@@ -124,76 +130,200 @@ def check_kinds(kinds: Collection[str]) -> None:
 
 def mended(
     masters: Masters, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
-    fixed: Mapping[int, str] | None = None,
+    fixed: Mapping[int, str] | None = None, stored: Callable[[Masters], Masters] | None = None,
+    points_stay: str | None = None,
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
-    """As :func:`mend`; ``fixed``: contours that may not change, and why."""
+    """As :func:`mend`.
+
+    Args:
+        fixed: contours that may not change, and why. stored: what a file makes of a glyph, whose numbers are coarser.
+        points_stay: why no points may go or change their order, if they may not.
+    """
     tolerance = PER_EM * masters.metrics.units_per_em if tolerance is None else tolerance
-    before = State.of(masters, thresholds, outer)
-    kinks = {} if "kink" not in kinds else before.kinks
-    if not kinks:
+    state = State.of(masters, thresholds, outer)
+    if not any(state.values[kind] for kind in kinds):
         return masters, []
-    design = Design.of(masters, tolerance, thresholds.kink)
-    joints = []
-    for (contour, segment), turn in kinks.items():
-        of_contour = masters.contours[contour]
-        _, points = points_of(of_contour, segment)
-        change = Change(
-            masters.name, masters.gid, "kink", contour, segment, (float(points[0, 1, 0]), float(points[0, 1, 1])), turn
-        )
-        joints.append(_Joint.of(change, of_contour, design, (fixed or {}).get(contour)))
-    while True:
-        trial = _with(masters, joints)
-        if not any(joint.is_moved for joint in joints):
-            return masters, [joint.left() for joint in joints]
-        after = State.of(trial, thresholds, outer)
-        if not _advance(joints, before, after, _beyond(masters, trial, joints, design)):
-            return trial, [joint.result() for joint in joints]
+    glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds.kink), thresholds, outer, fixed or {}, stored)
+    new, changes = masters, []
+    for kind in MENDED:
+        if kind in kinds and state.values[kind] and kind not in EDITED:
+            new, state, own = glyph.moved(new, state, kind)
+            changes += own
+    edited = [kind for kind in EDITED if kind in kinds and state.values[kind]]
+    if edited:
+        new, own = glyph.edited(new, state, edited, points_stay)
+        changes += own
+    return new, changes
+
+
+@dataclass(frozen=True)
+class _Glyph:
+    """A glyph as it was, and what holds for all its findings; see :func:`mended`."""
+
+    masters: Masters
+    design: Design
+    thresholds: Thresholds
+    outer: int
+    fixed: Mapping[int, str]
+    stored: Callable[[Masters], Masters] | None
+
+    def change(self, kind: str, place: tuple[int, int], value: float) -> Change:
+        """A finding that is still there."""
+        c, segment = place
+        contour = self.masters.contours[c]
+        x, y = contour.points[0, starts_of(contour)[segment]].tolist()
+        return Change(self.masters.name, self.masters.gid, kind, c, segment, (x, y), value)
+
+    def moved(self, now: Masters, before: State, kind: str) -> tuple[Masters, State, list[Change]]:
+        """Mend the findings of a kind by moves: the glyph, what is found in it then, and what became of them."""
+        faults = []
+        for place, value in before.values[kind].items():
+            old, own = self.masters.contours[place[0]], now.contours[place[0]]
+            faults.append(_Fault.of(self.change(kind, place, value), old, own, self.design, self.fixed.get(place[0])))
+        while True:
+            if not any(fault.is_moved for fault in faults):
+                return now, before, [fault.left() for fault in faults]
+            trial = _with(now, faults)
+            if self.stored is not None:
+                trial = self.stored(trial)
+            after = State.of(trial, self.thresholds, self.outer)
+            beyond = _beyond(self.masters, trial, faults, self.design)
+            if not _advance(faults, before, after, beyond, kind):
+                return trial, after, [fault.result() for fault in faults]
+
+    def edited(
+        self, now: Masters, before: State, kinds: Sequence[str], points_stay: str | None
+    ) -> tuple[Masters, list[Change]]:
+        """Mend findings for which points go, one after the other."""
+        contours = [Edited.of(*each) for each in zip(now.contours, now.repeats_of, strict=True)]
+        changes, most = [], before.found.total()
+        for kind in kinds:
+            for (c, segment), value in before.values[kind].items():
+                change = self.change(kind, (c, segment), value)
+                why = self.fixed.get(c) or points_stay
+                at = contours[c].number(segment)
+                if why or at is None:
+                    changes.append(replace(change, why=why or "went with its neighbour"))
+                    continue
+                found, left = self._tried(now, before, change, contours, EDITED[kind](contours[c], at), most)
+                changes.append(left)
+                if found is not None:
+                    contours[c], most = found, most - 1
+        if all(left.why for left in changes):
+            return now, changes
+        return _edited(now, contours), changes
+
+    def _tried(
+        self,
+        now: Masters,
+        before: State,
+        change: Change,
+        contours: Sequence[Edited],
+        tries: Iterator[Edited],
+        most: int,
+    ) -> tuple[Edited | None, Change]:
+        """The contour nearest to what it was, of those that leave fewer findings than ``most`` and no new one."""
+        c = change.contour
+        old = self.masters.contours[c]
+        near, why, needs = [], None, None
+        for one in tries:
+            was = old.reversed() if one.reversed else old
+            bound = float(distances(was, one.contour, self.design, one.anchors(len(old))).max())
+            if bound <= self.design.tolerance:
+                near.append((bound, one))
+            elif needs is None or bound < needs:
+                why, needs = "is beyond the tolerance", bound
+        for bound, one in sorted(near, key=lambda each: each[0]):
+            others = [*contours[:c], one, *contours[c + 1 :]]
+            after = State.of(_edited(now, others), self.thresholds, self.outer)
+            new = _renumbered(after.found, others, True) - _renumbered(before.found, others, False)
+            if not new and after.found.total() < most:
+                return one, replace(change, distance=bound, gone=contours[c].num_points - one.num_points)
+            names = [KINDS[what].name for what, *_ in new]
+            why, needs = f"would bring a new finding: {names[0]}" if names else "is still found", None
+        return None, replace(change, why=why or "is mended by no move", needs=needs)
+
+
+def _edited(masters: Masters, contours: Sequence[Edited]) -> Masters:
+    """A glyph with edited contours."""
+    repeats = np.concatenate([np.zeros(0, dtype=np.int64), *(each.repeats for each in contours)])
+    return replace(masters, contours=[each.contour for each in contours], repeats=repeats if repeats.any() else None)
+
+
+def _renumbered(found: Counter[Key], contours: Sequence[Edited], are_new: bool) -> Counter[Key]:
+    """Findings with the numbers that segments had before; those of segments that went are their successors'."""
+    renumbered: Counter[Key] = Counter()
+    for (what, c, segment, other), count in found.items():
+        own = contours[c]
+        if own.reversed:
+            segment = -1
+        elif segment >= 0 and are_new:
+            segment = int(own.segments[segment])
+        elif segment >= 0:
+            behind = own.segments[own.segments >= segment]
+            segment = int((behind if len(behind) else own.segments).min())
+        renumbered[what, c, segment, other] += count
+    return renumbered
 
 
 class _Try(NamedTuple):
-    """New places (K, 3, 2) of the points at a joint, the distance that curves move, and the joint's largest turn."""
+    """New places (K, P, 2) of points (P,), the distance that curves move, and the largest turn of a joint, or None."""
 
+    numbers: IntArray
     places: FloatArray
     distance: float
-    turn: float
+    turn: float | None
 
 
 @dataclass
-class _Joint:
-    """A joint that kinks, the moves that are left to try, and why others failed."""
+class _Fault:
+    """A finding, the moves that are left to try, and why others failed; ``old``: its contour before them."""
 
     change: Change
-    segments: int
-    numbers: IntArray
-    old: FloatArray
+    old: MasterContour
     tries: list[_Try]
     why: str | None
     needs: float | None = None
 
     @classmethod
-    def of(cls, change: Change, contour: MasterContour, design: Design, fixed: str | None) -> _Joint:
-        """Find the moves of a joint that are within the tolerance and mend it; in masters nodes come last."""
-        numbers, old = points_of(contour, change.segment)
-        joint = cls(change, len(contour), numbers, old, [], fixed or obstacle(contour, change.segment))
-        if joint.why:
-            return joint
-        every = {new.tobytes(): new for new in moves(contour, change.segment, design.step)}
+    def of(
+        cls, change: Change, origin: MasterContour, contour: MasterContour, design: Design, fixed: str | None
+    ) -> _Fault:
+        """Find the moves that are within the tolerance of the contour ``origin``; in masters nodes come last."""
+        fault = cls(change, contour, [], fixed)
+        if fixed is None and change.kind == "kink":
+            fault._kinks(origin, design)
+        elif fixed is None:
+            for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
+                bound = float(distances(origin, _moved(contour, numbers, places), design).max())
+                fault.tries.append(_Try(numbers, places, bound, None))
+            fault.tries.sort(key=lambda each: each.distance)
+        within = [each for each in fault.tries if each.distance <= design.tolerance]
+        if fault.tries and not within:
+            fault.why, fault.needs = "is beyond the tolerance", min(each.distance for each in fault.tries)
+        fault.tries = within[:TRIES]
+        return fault
+
+    def _kinks(self, origin: MasterContour, design: Design) -> None:
+        """The moves of a joint that mend it."""
+        contour, segment = self.old, self.change.segment
+        self.why = obstacle(contour, segment)
+        every = {} if self.why else {new.tobytes(): new for new in moves(contour, segment, design.step)}
         if not every:
-            return joint
+            return
+        numbers, old = points_of(contour, segment)
         new = np.stack([*every.values()])
-        turns = design.largest_turns(controls_of(contour, change.segment, new))
+        turns = design.largest_turns(controls_of(contour, segment, new))
         for places, turn in zip(new, turns.tolist(), strict=True):
-            if turn <= max(design.kink, GOOD * change.before):
-                bound = float(distances(contour, _moved(contour, numbers, places), design).max())
-                joint.tries.append(_Try(places, bound, turn))
-        within = [each for each in joint.tries if each.distance <= design.tolerance]
-        if joint.tries and not within:
-            joint.why, joint.needs = "is beyond the tolerance", min(each.distance for each in joint.tries)
+            if turn <= max(design.kink, GOOD * self.change.before):
+                bound = float(distances(origin, _moved(contour, numbers, places), design).max())
+                self.tries.append(_Try(numbers, places, bound, turn))
         several = len(old) > 1
-        node = [bool((each.places[:, 1] != old[:, 1]).any()) for each in within]
-        order = sorted(range(len(within)), key=lambda k: (within[k].turn >= design.kink, several and node[k]))
-        joint.tries = [within[k] for k in order[:TRIES]]
-        return joint
+        node = [bool((each.places[:, 1] != old[:, 1]).any()) for each in self.tries]
+        order = sorted(
+            range(len(node)), key=lambda k: ((self.tries[k].turn or 0.0) >= design.kink, several and node[k])
+        )
+        self.tries = [self.tries[k] for k in order]
 
     @property
     def is_moved(self) -> bool:
@@ -201,10 +331,11 @@ class _Joint:
         return bool(self.tries)
 
     def touches(self, contour: int, segment: int) -> bool:
-        """Whether a finding there may come of this joint: at it, at a neighbour, or of the whole contour."""
+        """Whether a finding there may come of these moves: at its place, at a neighbour, or of the whole contour."""
         if contour != self.change.contour:
             return False
-        return segment < 0 or (segment - self.change.segment + 2) % self.segments <= 3 or self.segments <= 4
+        reach = 3 if self.change.kind == "kink" else 4
+        return segment < 0 or (segment - self.change.segment + 2) % len(self.old) <= reach
 
     def next(self, why: str) -> None:
         """Give up the first move."""
@@ -212,45 +343,48 @@ class _Joint:
         self.why = self.why or why
 
     def left(self) -> Change:
-        """The joint as it was, with the reason."""
+        """The finding as it was, with the reason."""
         return replace(self.change, why=self.why or "is mended by no move", needs=self.needs)
 
     def result(self) -> Change:
-        """What became of the joint."""
+        """What became of the finding."""
         if not self.is_moved:
             return self.left()
-        new, bound, turn = self.tries[0]
+        numbers, new, bound, turn = self.tries[0]
+        old = self.old.points[:, numbers]
         moved = [
-            (k, int(self.numbers[p]), (float(x), float(y)), (float(u), float(v)))
-            for k, (before, behind) in enumerate(zip(self.old, new, strict=True))
+            (k, int(numbers[p]), (float(x), float(y)), (float(u), float(v)))
+            for k, (before, behind) in enumerate(zip(old, new, strict=True))
             for p, ((x, y), (u, v)) in enumerate(zip(before, behind, strict=True))
             if (x, y) != (u, v)
         ]
         return replace(
             self.change, after=turn,
-            moved=float(np.hypot(*(new - self.old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
+            moved=float(np.hypot(*(new - old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
         )  # fmt: skip
 
 
-def _advance(joints: Sequence[_Joint], before: State, after: State, beyond: Collection[tuple[int, int]]) -> bool:
-    """Give up moves that kink, bring new findings or are too far together; returns whether there were any."""
+def _advance(
+    faults: Sequence[_Fault], before: State, after: State, beyond: Collection[tuple[int, int]], kind: str
+) -> bool:
+    """Give up moves that mend nothing, bring new findings or are too far together; returns whether there were any."""
     given_up = False
-    moved = [joint for joint in joints if joint.is_moved]
-    for joint in moved:
-        place = joint.change.contour, joint.change.segment
-        if place in after.kinks:
-            joint.next("still kinks")
+    moved = [fault for fault in faults if fault.is_moved]
+    for fault in moved:
+        place = fault.change.contour, fault.change.segment
+        if place in after.values[kind]:
+            fault.next("still kinks" if kind == "kink" else "is still found")
             given_up = True
         elif place in beyond:
-            joint.next("is beyond the tolerance together with its neighbour")
+            fault.next("is beyond the tolerance together with its neighbour")
             given_up = True
     new = after.found - before.found
     for what, contour, segment, _ in new:
         why = f"would bring a new finding: {KINDS[what].name}"
-        touched = [joint for joint in moved if joint.is_moved and joint.touches(contour, segment)]
-        touched = touched or [joint for joint in moved if joint.is_moved]
-        for joint in touched:
-            joint.next(why)
+        touched = [fault for fault in moved if fault.is_moved and fault.touches(contour, segment)]
+        touched = touched or [fault for fault in moved if fault.is_moved]
+        for fault in touched:
+            fault.next(why)
             given_up = True
     return given_up
 
@@ -269,24 +403,25 @@ def _moved(contour: MasterContour, numbers: IntArray, new: FloatArray) -> Master
     return MasterContour(points, contour.degrees)
 
 
-def _with(masters: Masters, joints: Sequence[_Joint]) -> Masters:
-    """The glyph with the first move of every joint."""
+def _with(masters: Masters, faults: Sequence[_Fault]) -> Masters:
+    """The glyph with the first move of every finding."""
     contours = list(masters.contours)
-    for joint in joints:
-        if joint.is_moved:
-            own = contours[joint.change.contour]
-            contours[joint.change.contour] = _moved(own, joint.numbers, joint.tries[0].places)
+    for fault in faults:
+        if fault.is_moved:
+            own = contours[fault.change.contour]
+            contours[fault.change.contour] = _moved(own, fault.tries[0].numbers, fault.tries[0].places)
     return replace(masters, contours=contours)
 
 
-def _beyond(old: Masters, new: Masters, joints: Sequence[_Joint], design: Design) -> set[tuple[int, int]]:
-    """Joints at a segment that moved by more than the tolerance, as both of its ends did."""
+def _beyond(old: Masters, new: Masters, faults: Sequence[_Fault], design: Design) -> set[tuple[int, int]]:
+    """Findings at a segment that is farther away than the tolerance: of those around it the one that moves most."""
     found = set()
-    for contour in sorted({joint.change.contour for joint in joints if joint.is_moved}):
+    moved = [fault for fault in faults if fault.is_moved]
+    for contour in sorted({fault.change.contour for fault in moved}):
         bounds = distances(old.contours[contour], new.contours[contour], design)
         for segment in np.flatnonzero(~(bounds <= design.tolerance)).tolist():
-            ends = {segment, (segment + 1) % len(bounds)}
-            own = [j for j in joints if j.is_moved and j.change.contour == contour and j.change.segment in ends]
-            if own:
-                found.add((contour, max(own, key=lambda joint: joint.tries[0].distance).change.segment))
+            ends = {(segment + k) % len(bounds) for k in (-1, 0, 1)}
+            of_contour = [fault for fault in moved if fault.change.contour == contour]
+            own = [fault for fault in of_contour if fault.change.segment in ends] or of_contour
+            found.add((contour, max(own, key=lambda fault: fault.tries[0].distance).change.segment))
     return found

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..checks.check import measured
 from ..checks.finding import Measured
-from ..checks.kinds import KINK, Thresholds
+from ..checks.kinds import KINDS, Thresholds
 from ..checks.on_axes import OF_CONTOURS, on_axes
 from ..checks.turns import largest_turns, turns_of
 from ..curves.pairing import SHARPNESS, pair_instances
@@ -24,19 +24,19 @@ DIGITS = 3
 """Decimals of coordinates at most."""
 
 
+Key = tuple[int, int, int, int]
+"""Kind, contour, segment and other contour of a finding; those of whole contours have no segment, -1."""
+
+
 class State:
-    """What is found in a glyph: the number of findings by what they are, and the turns of kinks by their places."""
+    """What is found in a glyph: the number of findings by what they are, and their values by kind and place."""
 
     def __init__(self, rows: Measured) -> None:
         self.found = Counter(_keys(rows))
-        self.kinks = {
-            (c, s): value
-            for c, s, what, value in zip(
-                rows.contours.tolist(), rows.segments.tolist(), rows.kinds.tolist(), rows.numbers[:, 1].tolist(),
-                strict=True,
-            )
-            if what == KINK
-        }  # fmt: skip
+        self.values: dict[str, dict[tuple[int, int], float]] = {kind.name: {} for kind in KINDS}
+        columns = rows.kinds, rows.contours, rows.segments, rows.numbers[:, 1]
+        for what, c, s, value in zip(*(column.tolist() for column in columns), strict=True):
+            self.values[KINDS[what].name].setdefault((c, s), value)
 
     @classmethod
     def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> State:
@@ -49,8 +49,8 @@ class State:
         return cls(rows)
 
 
-def _keys(rows: Measured) -> list[tuple[int, int, int, int]]:
-    """Kind, contour, segment and other contour of each row; those of whole contours have no segment."""
+def _keys(rows: Measured) -> list[Key]:
+    """What each row is."""
     segments = np.where(np.isin(rows.kinds, OF_CONTOURS), -1, rows.segments)
     return [*zip(*(x.tolist() for x in (rows.kinds, rows.contours, segments, rows.numbers[:, 3])), strict=True)]
 
@@ -94,16 +94,22 @@ class Design(NamedTuple):
         return found
 
 
-def distances(old: MasterContour, new: MasterContour, design: Design) -> FloatArray:
-    """(m,) certified bounds of how far each segment moved, at any location."""
-    m, count = len(old), len(design.corners)
+def distances(old: MasterContour, new: MasterContour, design: Design, anchors: FloatArray | None = None) -> FloatArray:
+    """(m,) certified bounds of how far each segment of the new contour is from the old one, at any location.
+
+    Args:
+        anchors: (m + 1, 2) where the new segments begin on the new and on the old contour; by default the two have the
+            same segments.
+    """
+    m, count = len(new), len(design.corners)
     one, other = (np.tensordot(design.corners, contour.cubics(), axes=1) for contour in (old, new))  # (V, m, 4, 2)
-    changed = (one != other).any(axis=(0, 2, 3))
-    bounds, gaps = np.where(changed, np.nan, 0.0), np.zeros(m)
-    offsets, places = offsets_of([m]), np.arange(m + 1.0)
-    rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(m * count, 4, 2)) for each in (other, one)]
+    bounds, gaps = np.full(m, np.nan), np.zeros(m)
+    if anchors is None:
+        anchors = np.repeat(np.arange(m + 1.0)[:, None], 2, axis=1)
+        bounds[(one == other).all(axis=(0, 2, 3))] = 0.0
+    rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(-1, 4, 2)) for each in (other, one)]
     pair_instances(
-        count, rows[0], offsets, rows[1], offsets, np.column_stack([places, places]), offsets_of([m + 1]),
+        count, rows[0], offsets_of([m]), rows[1], offsets_of([len(old)]), anchors, offsets_of([m + 1]),
         np.empty((0, 4)), SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
     )  # fmt: skip
     return bounds

@@ -195,7 +195,7 @@ def test_a_dry_run_writes_nothing_and_a_copy_leaves_the_source(tmp_path: Path) -
     before = contents(tmp_path)
     run = CliRunner().invoke(app, ["mend", str(path), "--dry-run", "-j", "1", "--tolerance", "5"])
     assert run.exit_code == 0
-    assert "1 glyph of 3 would change, 1 kink before, 0 after" in run.output
+    assert "1 glyph of 3 would change, 1 finding before, 0 after" in run.output
     assert contents(tmp_path) == before
     run = CliRunner().invoke(app, ["mend", str(path), "--out", str(tmp_path / "out"), "-j", "1", "--tolerance", "5"])
     assert run.exit_code == 0, run.output
@@ -224,3 +224,104 @@ def test_a_glyphs_file_is_mended(layer: str | None, tmp_path: Path) -> None:
     else:
         assert left
         assert layer in path.read_text()
+
+
+def test_points_go_from_a_ufo_and_all_else_stays(tmp_path: Path) -> None:
+    ufoLib2 = pytest.importorskip("ufoLib2")
+    font = ufoLib2.Font()
+    font.info.unitsPerEm = 1000
+    glyph = font.newGlyph("n")
+    glyph.unicodes = [ord("n")]
+    for shape in (
+        [(0, 0), (0, 500), (0, 500), (298, 500), (300, 499), (300, 0)],
+        [(50, 50), (50, 300), (250, 300), (250, 51)],
+    ):
+        pen = glyph.getPen()
+        pen.moveTo(shape[0])
+        for point in shape[1:]:
+            pen.lineTo(point)
+        pen.closePath()
+    glyph.contours[0].points[1].name = "corner"
+    font.save(tmp_path / "a.ufo")
+    before = (tmp_path / "a.ufo/glyphs/n.glif").read_text()
+    run = CliRunner().invoke(
+        app, ["mend", str(tmp_path / "a.ufo"), "--in-place", "--kinds", "all", "--tolerance", "3", "-j", "1", "--json"]
+    )
+    assert run.exit_code == 0, run.output
+    (facts,) = json.loads(run.stdout)
+    assert {one["kind"]: one["gone"] for one in facts["changes"]} == {
+        "repeated": 1, "short": 1, "direction": 0, "slanted": 0
+    }  # fmt: skip
+    after = (tmp_path / "a.ufo/glyphs/n.glif").read_text()
+    assert after.count("<point") == before.count("<point") - 2
+    assert after.count('name="corner"') == 1
+    outline = open_source(tmp_path / "a.ufo").outline("n")
+    assert not [one for one in gs.check(outline) if one.kind != "direction"]
+    found = [contour.points.tolist() for contour in outline.contours]
+    assert sorted(found[0]) == [[0, 0], [0, 500], [300, 0], [300, 500]]
+
+
+@pytest.mark.parametrize(
+    ("fault", "kinds"),
+    [
+        ("slanted", "slanted"), ("straight", "straight"), ("extreme point 2 units off level", "unlevel kink"),
+        ("short segment", "short"), ("almost closed", "short"), ("direction", "direction"),
+    ],
+)  # fmt: skip
+def test_other_faults_come_back_to_the_clean_outline(fault: str, kinds: str) -> None:
+    font = gs.open_font(Path(get_data_path(), "fonts", "ttf", "cmr10.ttf"))
+    rng = np.random.default_rng(3)
+    near = meant = 0
+    for name in font.select(text="abcdefghkmnpqrstBCDEFGHPRS2345689"):
+        clean = cubics_of(font.outline(name))
+        em = clean.metrics.units_per_em
+        made = planted([list(c.segments()) for c in clean.contours], em, gs.check(clean), fault, rng)
+        if made is None or meant == 12:
+            continue
+        outline = replace(clean, contours=[Contour.from_segments(segments) for segments in made[0]])
+        mended, changes = gs.mend(outline, kinds.split(), 4 * em / 1000)
+        own = [one for one in changes if one.contour == made[1].contour]
+        if not own:
+            continue
+        meant += 1
+        near += gs.compare(clean, mended).bound <= 2 * em / 1000 and all(one.is_mended for one in own)
+        assert not Counter(one.kind for one in gs.check(mended)) - Counter(one.kind for one in gs.check(outline))
+        assert gs.compare(outline, mended).seen <= 4 * em / 1000
+        assert len(mended.arrays.points) <= len(outline.arrays.points)
+        for one in changes:
+            assert one.is_mended or one.gone == one.moved == 0
+    assert meant >= 5
+    assert near >= 0.8 * meant
+
+
+def test_long_handles_are_cut_to_where_they_meet_in_all_masters() -> None:
+    regular = [(0, 0), (0, 350), (90, 300), (400, 300), (400, 0)]
+    bold = [(0, 0), (0, 340), (80, 300), (400, 300), (400, 0)]
+    points = np.array([regular, bold], dtype=np.float64)
+    masters = gs.Masters(
+        "a", axes=(WEIGHT,), regions=np.array([[[0.0, 1.0, 1.0]]]),
+        contours=[MasterContour(points, np.array([3, 1, 1]))], advances=np.zeros(2),
+    )  # fmt: skip
+    _, (left,) = gs.mend(masters, ["handles"], 1.0)
+    assert left.needs is not None
+    assert left.needs > 1
+    mended, (change,) = gs.mend(masters, ["handles"], 18.0)
+    assert change.is_mended
+    assert change.distance is not None
+    assert change.distance <= 18
+    assert (mended.contours[0].points[:, 1, 1] <= 302).all()
+    assert (mended.contours[0].points[:, 1, 0] == 0).all()
+
+
+def test_short_segments_go_in_all_masters_and_numbers_are_those_of_check() -> None:
+    regular = [(0, 0), (0, 300), (1, 301), (300, 301), (300, 2), (299, 0)]
+    bold = [(0, 0), (0, 400), (1, 401), (300, 401), (300, 2), (299, 0)]
+    points = np.array([regular, bold], dtype=np.float64)
+    masters = gs.Masters(
+        "a", axes=(WEIGHT,), regions=np.array([[[0.0, 1.0, 1.0]]]),
+        contours=[MasterContour(points, np.ones(6, dtype=np.int64))], advances=np.zeros(2),
+    )  # fmt: skip
+    mended, changes = gs.mend(masters, ["short"], 3.0)
+    assert {(one.segment, one.is_mended, one.gone) for one in changes} == {(1, True, 1), (4, True, 1)}
+    assert mended.contours[0].points.shape == (2, 4, 2)
+    assert not [one for k in (0, 1) for one in gs.check(mended.master(k)) if one.kind in ("short", "slanted")]

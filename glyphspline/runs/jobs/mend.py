@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...checks.kinds import MENDED, THRESHOLDS, Thresholds
+from ...checks.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
 from ...files import writing
+from ...mending.fewer import EDITED
 from ...mending.mend import Change, check_kinds, mended
 from ...mending.state import DIGITS
 from ...readers.designspace import Designspace
@@ -124,7 +125,7 @@ def mend_source(
     source: Ufo | Designspace,
     names: Sequence[str],
     *,
-    kinds: Sequence[str] = MENDED,
+    kinds: Sequence[str] = MENDED_UNASKED,
     tolerance: float | None = None,
     thresholds: Thresholds = THRESHOLDS,
     copy: Path | None = None,
@@ -159,7 +160,8 @@ def mend_source(
                     found.failed.append((name, one.error))
                 found.changes += one.changes
                 if one.old is not None and one.new is not None:
-                    new.append(moved_points(source, one.old, one.new))
+                    redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
+                    new.append(moved_points(source, one.old, one.new, redrawn))
     with writing(copy or source.path):
         written = write_back(source, new, DIGITS, copy=copy, layer=layer, dry=dry)
     found.changed = written.names

@@ -11,7 +11,7 @@ import os
 import plistlib
 import shutil
 import uuid
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -59,13 +59,15 @@ class Written:
 class New:
     """A glyph's new contours: ``contours[c][k]`` is contour c where ``drawings[k]`` says.
 
-    With ``old``, the contours as they were, nothing but coordinates changes: the new ones have the same points.
+    With ``old``, the contours as they were, nothing but coordinates changes: the new ones have the same points, but for
+    the contours ``redrawn``, of which points went or changed their order.
     """
 
     name: str
     contours: Sequence[Sequence[Contour]]
     drawings: Sequence[Drawing]
     old: Sequence[Sequence[Contour]] | None = None
+    redrawn: Collection[int] = ()
 
 
 def editable(source: Source) -> Ufo | Designspace:
@@ -95,12 +97,12 @@ def of_masters(source: Designspace, redrawn: Mapping[str, Redrawn]) -> Iterable[
         yield New(name, [[Contour(c.points[k], c.degrees) for k in chosen] for c in new.contours], drawings)
 
 
-def moved_points(source: Ufo | Designspace, old: Masters, new: Masters) -> New:
-    """The contours of a glyph of which points moved, in all masters."""
+def moved_points(source: Ufo | Designspace, old: Masters, new: Masters, redrawn: Collection[int]) -> New:
+    """The contours of a glyph of which points moved, in all masters; ``redrawn``: see :class:`New`."""
     places, drawings = places_of(new), source.drawings(new.name)
     chosen = [places.index(each.place) for each in drawings]
     both = [[[Contour(c.points[k], c.degrees) for k in chosen] for c in each.contours] for each in (new, old)]
-    return New(new.name, both[0], drawings, both[1])
+    return New(new.name, both[0], drawings, both[1], redrawn)
 
 
 def write_back(
@@ -182,8 +184,8 @@ def _changes(
         if index is None:
             continue
         nodes, contours = [contours[number] for contours in old], new.contours[index]
-        if new.old is None:
-            made = replaced(nodes, contours, held, digits)
+        if new.old is None or index in new.redrawn:
+            made = replaced(nodes, contours, held, digits, keeps_flags=new.old is not None)
         else:
             made = moved(nodes, new.old[index], contours, held, digits)
         if isinstance(made, str):

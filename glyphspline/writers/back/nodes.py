@@ -36,13 +36,17 @@ class Node(NamedTuple):
 
 
 def replaced(
-    old: Sequence[Sequence[Node]], new: Sequence[Contour], held: Sequence[frozenset[Position]], digits: int
+    old: Sequence[Sequence[Node]],
+    new: Sequence[Contour],
+    held: Sequence[frozenset[Position]],
+    digits: int,
+    keeps_flags: bool = False,
 ) -> list[list[Node]] | str | None:
     """The nodes of a contour in each master; a reason why it stays as it is; or None where nothing changes.
 
     Args:
         old: its nodes, by master. new: its new curves, rounded here to ``digits`` decimals.
-        held: places at which a point has to stay, by master.
+        held: places at which a point has to stay, by master. keeps_flags: points that stay are smooth if they were.
     """
     if any(node.kind == "move" for nodes in old for node in nodes):
         return "is open"
@@ -54,6 +58,10 @@ def replaced(
     shift = 0 if first is None else int(np.hypot(*(starts - first).T).argmin())
     # The flag of a point is one for all masters, as it is in editors: smooth where it is in each.
     smooth = np.all([smooth_ends(contour) for contour in rounded], axis=0)
+    if keeps_flags:
+        flags = {node.at: node.smooth for node in old[0] if node.kind}
+        places = rounded[0].points[rounded[0].offsets].tolist()
+        smooth = [flags.get((x, y), bool(flag)) for (x, y), flag in zip(places, smooth, strict=True)]
     made = [_nodes(contour, smooth, shift) for contour in rounded]
     before = [_from_the_curve(nodes) for nodes in old]
     if [[node[:2] for node in nodes] for nodes in made] == [[node[:2] for node in nodes] for nodes in before]:
@@ -61,7 +69,7 @@ def replaced(
     found = []
     for nodes, its, places in zip(made, before, held, strict=True):
         there = {node.at: node for node in its if node.kind}
-        extras = {at: node.extra for at, node in there.items()}
+        extras = {node.at: node.extra for node in its if node.kind and node.extra}
         found.append([n._replace(extra=extras.get(n.at, "")) if n.kind else n for n in nodes])
         on_curve = {node.at for node in nodes if node.kind}
         for node in its:

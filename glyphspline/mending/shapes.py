@@ -1,0 +1,155 @@
+"""The smallest moves of points that mend lines off level, extreme points off level, missing extrema and long handles.
+
+Each works on one finding, in all K masters alike: a move is the numbers (P,) of points in the contour and their new
+places (K, P, 2), on a grid. None adds a point or takes one away. Whether a move mends the finding, how far it moves the
+curves, and what else is found then is measured afterwards; here are only those worth a try, the least first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import product
+
+import numpy as np
+
+from ..outlines.masters import MasterContour
+from ..types import FloatArray, IntArray
+
+Move = tuple[IntArray, FloatArray]
+
+NEARLY = np.tan(np.radians(1.0))
+"""Slope up to which a line is level in another master, too; one that is steeper anywhere is meant, and stays."""
+
+SHARES = (0.5, 0.0, 1.0)
+"""Where between its ends a line off level comes to lie: midway, or at one of them."""
+
+WITHIN = (1.0, 0.97, 0.93, 0.85)
+"""Shares of the length at which handles meet, to which longer ones are cut: on the grid, one may still be too long."""
+
+OUT = (1.0, 0.5, 0.0)
+"""How far a point goes out to the extremum beside it: all of the way, half of it, or only its handles are levelled."""
+
+LEVEL = 0.36
+"""Slope up to which a handle is turned level to end a curve at its extremum."""
+
+
+def starts_of(contour: MasterContour) -> IntArray:
+    """(m,) number of the point where each segment begins."""
+    starts: IntArray = np.cumsum(contour.degrees) - contour.degrees
+    return starts
+
+
+def shape_moves(kind: str, contour: MasterContour, segment: int, step: float) -> Iterator[Move]:
+    """Moves for a finding of ``MOVED`` at a segment, or at the joint where it begins; on a grid of ``step``."""
+    for numbers, places in MOVED[kind](contour, segment):
+        rounded = np.round(places / step) * step
+        kept = places == contour.points[:, numbers]
+        yield numbers, np.where(kept, places, rounded)
+
+
+def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
+    """A line made level: its ends, with or without the handles there."""
+    count, m = contour.points.shape[1], len(contour)
+    a = int(starts_of(contour)[segment])
+    b = (a + 1) % count
+    way = contour.points[:, b] - contour.points[:, a]
+    axis = int(np.abs(way).max(axis=0).argmin())
+    if (np.abs(way[:, axis]) > NEARLY * np.abs(way[:, 1 - axis])).any():
+        return
+    handles = [(a, (a - 1) % count)] * bool(contour.degrees[segment - 1] > 1)
+    handles += [(b, (b + 1) % count)] * bool(contour.degrees[(segment + 1) % m] > 1)
+    for share, carried in product(SHARES, (True, False) if handles else (False,)):
+        level = contour.points[:, a, axis] + share * way[:, axis]
+        level = np.where(way[:, axis] == 0, level, np.round(level))
+        numbers = [a, b, *(end for _, end in handles)] if carried else [a, b]
+        places = contour.points[:, numbers].copy()
+        for k, number in enumerate(numbers):
+            own = number if k < 2 else handles[k - 2][0]
+            places[:, k, axis] += level - contour.points[:, own, axis]
+        yield np.array(numbers), places
+
+
+def level_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
+    """The handles at an extreme point made level: at its height, or the point goes to the mean of theirs."""
+    yield from _levelled(contour, segment, None, np.zeros(len(contour.points)))
+
+
+def _levelled(
+    contour: MasterContour, segment: int, axis: int | None, out: FloatArray, both: bool = True
+) -> Iterator[Move]:
+    """The handles at a joint put at the height of its point, which moves ``out`` (K,); ``axis``: of the height."""
+    count = contour.points.shape[1]
+    node = int(starts_of(contour)[segment])
+    curved = contour.degrees[[segment - 1, segment]] > 1
+    numbers = [node, *((node + side) % count for side, own in ((-1, curved[0]), (1, curved[1])) if own)]
+    points = contour.points[:, numbers]
+    if axis is None:
+        axis = int(np.abs(points[:, 1:] - points[:, :1]).max(axis=(0, 1)).argmin())
+    ways = np.abs(points[:, 1:] - points[:, :1])
+    if (ways[:, :, axis] > LEVEL * ways[:, :, 1 - axis]).any():
+        return
+    heights = [points[:, 0, axis] + out]
+    if both and len(numbers) > 2:
+        heights.append(np.round(points[:, 1:, axis].mean(axis=1)))
+    for height in heights:
+        places = points.copy()
+        places[:, :, axis] = height[:, None]
+        yield np.array(numbers), places
+
+
+def extremum_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
+    """The end of a curve that passes it moved out to the extremum, and its handles made level there."""
+    cubics = contour.cubics()[:, segment]  # (K, 4, 2)
+    at = np.linspace(0.0, 1.0, 65)[1:-1, None, None]
+    along = (1 - at) ** 3 * cubics[:, 0] + 3 * at * (1 - at) ** 2 * cubics[:, 1]
+    along = along + 3 * at**2 * (1 - at) * cubics[:, 2] + at**3 * cubics[:, 3]  # (63, K, 2)
+    ends = cubics[:, [0, 3]]
+    above, below = along.max(axis=0) - ends.max(axis=1), ends.min(axis=1) - along.min(axis=0)  # (K, 2)
+    for axis in np.argsort(-np.maximum(above, below).max(axis=0)).tolist():
+        sign = 1.0 if above[:, axis].max() >= below[:, axis].max() else -1.0
+        beyond = (above if sign > 0 else below)[:, axis]
+        if beyond.max() <= 0:
+            continue
+        height = sign * ends[:, :, axis]
+        end = int(height[:, 1].sum() > height[:, 0].sum())  # the one nearer to the extremum
+        joint = (segment + end) % len(contour)
+        for share in OUT:
+            out = sign * share * (height.max(axis=1) + np.maximum(beyond, 0) - height[:, end])
+            yield from _levelled(contour, joint, axis, out, False)
+        own = int(starts_of(contour)[joint])
+        handle = (own + (1 if end == 0 else -1)) % contour.points.shape[1]
+        places = contour.points[:, [handle]].copy()
+        places[:, 0, axis] = contour.points[:, own, axis]
+        yield np.array([handle]), places
+
+
+def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
+    """Handles cut to where both meet, or to where they pass the other end; in masters where they do not they stay."""
+    if contour.degrees[segment] != 3:
+        return
+    count = contour.points.shape[1]
+    numbers = (starts_of(contour)[segment] + np.arange(4)) % count
+    points = contour.points[:, numbers]
+    u, v, chord = points[:, 1] - points[:, 0], points[:, 2] - points[:, 3], points[:, 3] - points[:, 0]
+    shares = np.ones((len(points), 2))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cross = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        meets = np.stack([chord[:, 0] * v[:, 1] - chord[:, 1] * v[:, 0], chord[:, 0] * u[:, 1] - chord[:, 1] * u[:, 0]])
+        meets = (meets / cross).T
+        size = (chord * chord).sum(axis=1)
+        ends = np.stack([size / (u * chord).sum(axis=1), -size / (v * chord).sum(axis=1)], axis=1)
+    both = np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1)
+    shares[both] = np.minimum(shares[both], meets[both])
+    shares = np.where((ends > 0) & (ends < shares), ends, shares)
+    if (shares >= 1).all():
+        return
+    for within in WITHIN:
+        own = np.where(shares < 1, within * shares, 1.0)
+        places = np.stack([points[:, 0] + own[:, :1] * u, points[:, 3] + own[:, 1:] * v], axis=1)
+        yield numbers[1:3], places
+
+
+MOVED: dict[str, Callable[[MasterContour, int], Iterator[Move]]] = {
+    "handles": handle_moves, "extremum": extremum_moves, "unlevel": level_moves, "slanted": line_moves,
+}  # fmt: skip
+"""How findings of a kind are mended by moves of points."""
