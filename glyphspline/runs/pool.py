@@ -38,6 +38,9 @@ STARTS, STARTING = 4, 1800.0
 """Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it.
 Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
 
+CODE = os.path.realpath(__file__)
+"""This file, which workers have to import too: those of another copy of the package would do other things."""
+
 Call = tuple[Future[Any], bytes]
 """The future of a call, and its function and arguments, pickled."""
 
@@ -51,7 +54,7 @@ class TimeLimitError(GlyphsplineError):
 
 
 class WorkerStartError(GlyphsplineError):
-    """Several processes in a row died before their first call; others would too."""
+    """Several processes in a row died before their first call, or have other code; others would too."""
 
 
 def pool_size(pool: Executor) -> int:
@@ -151,7 +154,7 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
     gc.enable()  # it may be off in the process from which this one is forked
     with suppress(EOFError, OSError):
-        calls.send(None)
+        calls.send(CODE)
         while True:
             function, arguments = calls.recv()
             sign_of_life()
@@ -321,6 +324,8 @@ class WorkerPool(Executor):
             self._replace(worker, WorkerLostError("the worker process died"))
             return
         if not worker.ready:
+            if answer != CODE:
+                raise WorkerStartError(f"workers run other code, {answer}, not {CODE}: set PYTHONPATH to its folder")
             worker.ready, self._died = True, 0
             self._starting = not all(other.ready for other in self._workers)
             return

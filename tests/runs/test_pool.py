@@ -211,3 +211,24 @@ def is_there(process: int) -> bool:
     """Whether it runs; one that has ended may wait for somebody to ask how."""
     asked = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True, check=False)
     return asked.stdout.strip()[:1] not in ("", "Z")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes that are spawned get the parent's path")
+def test_workers_with_other_code_are_an_error(tmp_path: Path) -> None:
+    package = tmp_path / "elsewhere" / "glyphspline"
+    for file in ("__init__.py", "_version.py", "errors.py", "runs/__init__.py", "runs/pool.py"):
+        (package / file).parent.mkdir(parents=True, exist_ok=True)
+        (package / file).write_bytes((ROOT / "glyphspline" / file).read_bytes())
+    program = (
+        f"import sys; sys.path.insert(0, {str(package.parent)!r})\n"
+        "from glyphspline.runs.pool import WorkerPool, WorkerStartError\n"
+        'code = \'__import__("sys").modules["glyphspline.runs.pool"].__file__\'\n'
+        "with WorkerPool(1, 600.0) as pool:\n"
+        "    try: print('worker', pool.submit(eval, code).result())\n"
+        "    except WorkerStartError as error: print(error)\n"
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment)
+    own = f"{package}/runs/pool.py"  # later versions of Python hand the parent's path on
+    assert ran.stdout in (f"worker {own}\n", f"workers run other code, {ROOT}/glyphspline/runs/pool.py, not {own}: "
+                          "set PYTHONPATH to its folder\n"), ran.stderr  # fmt: skip
