@@ -18,6 +18,7 @@ from typing import Any
 from .checks.finding import Finding, severity
 from .errors import GlyphsplineError
 from .extras import need
+from .types import shortened
 
 PROFILE = "glyphspline"
 CHECK = "glyphspline/outlines"
@@ -102,8 +103,7 @@ def found_in(font: Path) -> tuple[list[Finding], list[tuple[str, str]]]:
 
 def listed(heading: str, items: list[str]) -> str:
     """A heading, the first items of a list, and how many are left out, in Markdown."""
-    more = [f"* and {len(items) - LISTED} more"] * (len(items) > LISTED)
-    return "\n".join([heading, "", *(f"* {item}" for item in items[:LISTED]), *more])
+    return "\n".join([heading, "", *(f"* {item}" for item in shortened(items, LISTED))])
 
 
 def problem(finding: Finding) -> dict[str, Any]:

@@ -31,6 +31,17 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
+def listed(names: Sequence[str], count: int) -> str:
+    """The names, and how many more there are of ``count``."""
+    more = f" and {count - len(names)} more" if count > len(names) else ""
+    return ", ".join(names) + more
+
+
+def shortened(lines: Sequence[str], most: int, more: str = "and {} more") -> list[str]:
+    """At most so many lines, and one with the number of the others."""
+    return [*lines[:most], *([more.format(len(lines) - most)] if len(lines) > most else [])]
+
+
 def rounded_up(value: float, digits: int) -> float:
     """Round up to ``digits`` significant digits, as proven bounds are written."""
     text = f"{value:.{digits}g}"

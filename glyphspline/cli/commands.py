@@ -17,6 +17,7 @@ from ..fields import WRITTEN, About
 from ..files import make_folder, write_whole
 from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
+from ..types import listed, shortened
 from ..writers.settings import BOTH, Maps
 from . import arguments as opt
 from . import interruption
@@ -234,8 +235,7 @@ def atlas(
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
     from ..readers import open_source
-    from ..runs.jobs.atlas import make_atlas, make_axis_atlas
-    from ..runs.summary import listed
+    from ..runs.jobs.atlas import make_atlas
 
     if out.suffix.lower() not in (".pdf", ""):
         stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
@@ -250,14 +250,13 @@ def atlas(
         stop("none of the glyphs asked for is in the font")
     chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
-        if axis is not None:
-            made = make_axis_atlas(source, names, out, options, axis, maps=maps, jobs=run.jobs, observer=observer)
-        else:
-            made = make_atlas(source, names, out, options, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer)
+        made = make_atlas(
+            source, names, out, options, axis, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer
+        )
     if not run.quiet:
         failed = made.failed
         say(f"{made.pages} pages written to {out}" + (f"; {len(failed)} glyphs failed" if failed else ""))
-        for line in [*failed[:10], *([f"and {len(failed) - 10} more"] if len(failed) > 10 else [])]:
+        for line in shortened(failed, 10):
             say(f"failed: {line}")
         if made.outside:
             say(f"not within the tolerance: {listed(made.outside[:10], len(made.outside))}")

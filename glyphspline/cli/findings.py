@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from ..checks.finding import place_on_axes
 from ..checks.kinds import KINDS, Level
-from ..types import counted
+from ..types import counted, shortened
 from .messages import printable
 from .tables import plain
 
@@ -83,9 +83,7 @@ def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> It
         yield f"not counted, as the baseline has them: {known}"
     failed, unread = failures(faces)
     for lines, noun in ((failed, "glyphs"), (unread, "fonts")):
-        yield from [f"not checked: {line}" for line in lines[:3]]
-        if len(lines) > 3:
-            yield f"not checked: and {len(lines) - 3} {noun} more"
+        yield from (f"not checked: {line}" for line in shortened(lines, 3, f"and {{}} {noun} more"))
 
 
 def failures(faces: Sequence[Face]) -> tuple[list[str], list[str]]:

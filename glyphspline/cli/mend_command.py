@@ -12,7 +12,7 @@ from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED
 from ..errors import OptionError
 from ..fields import WRITTEN, About
 from ..runs.spec import RunSpec
-from ..types import counted, rounded_up
+from ..types import counted, rounded_up, shortened
 from . import arguments as opt
 from .check_command import thresholds_of
 from .groups import grouped, only
@@ -144,13 +144,13 @@ def lines(found: MendedSource, dry: bool) -> Iterator[str]:
     )
     if mended:
         yield f"the largest move of a point is {mended[0].moved:.3g} units"
-    for change in left[:LEFT]:
-        needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
-        place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
-        yield f"left: {change.glyph}, {place}, {change.kind} of {value(change)}: {change.why}{needs}"
-    if len(left) > LEFT:
-        yield f"left: {len(left) - LEFT} more, which --json lists"
-    for name, why in found.failed[:LEFT]:
-        yield f"failed: {name}: {why}"
-    if len(found.failed) > LEFT:
-        yield f"failed: {len(found.failed) - LEFT} more"
+    failed = [f"{name}: {why}" for name, why in found.failed]
+    yield from (f"left: {line}" for line in shortened([*map(reason, left)], LEFT, "{} more, which --json lists"))
+    yield from (f"failed: {line}" for line in shortened(failed, LEFT, "{} more"))
+
+
+def reason(change: Change) -> str:
+    """Where a finding is that is left, and why."""
+    needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
+    place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
+    return f"{change.glyph}, {place}, {change.kind} of {value(change)}: {change.why}{needs}"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..types import listed
 from . import arguments as opt
 from .messages import json_lines, print_json, progress, say, stop
 from .tables import FontRun, with_character
@@ -96,8 +97,6 @@ def convert_face(source: Source, name: str, call: Conversion, executor: Executor
 
 def say_missing(missing: Sequence[str], before: str = "") -> None:
     """Name what is asked for and not in a font, by the phrases of :class:`.Selection`."""
-    from ..runs.summary import listed
-
     if missing:
         say(f"{before}not in the font: {listed([with_character(one) for one in missing[:10]], len(missing))}")
 

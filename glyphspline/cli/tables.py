@@ -9,7 +9,7 @@ from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..types import counted, rounded_up
+from ..types import counted, listed, rounded_up
 from .messages import printable
 
 if TYPE_CHECKING:
@@ -46,8 +46,7 @@ def plain(
 def named(glyphs: Sequence[str], what: str, shown: int) -> Iterator[str]:
     """The number of glyphs and the names of the first; nothing if there are none."""
     if glyphs:
-        more = ", …" if len(glyphs) > shown else ""
-        yield f"{counted(len(glyphs), 'glyph')}{what}: {', '.join(glyphs[:shown])}{more}"
+        yield f"{counted(len(glyphs), 'glyph')}{what}: {listed(glyphs[:shown], len(glyphs))}"
 
 
 def font_lines(facts: Mapping[str, Any]) -> Iterator[str]:

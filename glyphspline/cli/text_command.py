@@ -15,7 +15,7 @@ from ..errors import GlyphsplineError, OptionError
 from ..fields import WRITTEN, About
 from ..files import write_made
 from ..fitting.options import Options
-from ..types import INCHES
+from ..types import INCHES, listed, shortened
 from ..writers.settings import Maps, Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
@@ -101,9 +101,7 @@ def text(
         *pulled_apart(layout),
         *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note),
     ]
-    if len(remarks) > SHOWN:
-        remarks[SHOWN:] = [f"and {len(remarks) - SHOWN} remarks more"]
-    for line in () if run.quiet else remarks:
+    for line in () if run.quiet else shortened(remarks, SHOWN, "and {} remarks more"):
         say(line)
     return bool(layout.missing or not drawn.complete)
 
@@ -247,9 +245,8 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
 def missing(layout: Layout) -> Iterator[str]:
     """The remark on characters that no font has."""
     if layout.missing:
-        named = ", ".join([f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]])
-        more = f" and {len(layout.missing) - SHOWN} more" if len(layout.missing) > SHOWN else ""
-        yield f"no glyph for {named}{more}: .notdef stands there"
+        named = [f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]]
+        yield f"no glyph for {listed(named, len(layout.missing))}: .notdef stands there"
 
 
 def pulled_apart(layout: Layout) -> Iterator[str]:

@@ -72,6 +72,14 @@ def _reader(place: Place, metrics: FontMetrics | None) -> Read:
     return lambda heads: bulk.outlines(heads, metrics)
 
 
+def heads_of(source: Source) -> dict[str, Head]:
+    """The glyphs of a source by their names, in glyph index order."""
+    codes: dict[str, list[int]] = {name: [] for name in source.glyph_names}
+    for code in sorted(source.cmap):
+        codes[source.cmap[code]].append(code)
+    return {name: (name, gid, tuple(codes[name])) for gid, name in enumerate(source.glyph_names)}
+
+
 class InProcess(Executor):
     """An executor that makes each call at once in this process: for notebooks and for debugging."""
 

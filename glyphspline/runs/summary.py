@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from ..readers.pens import NO_AREA
-from ..types import counted
+from ..types import counted, listed
 
 SHOWN = 10
 """Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
@@ -150,9 +150,3 @@ def keep_largest(items: list[tuple[float, str]], item: tuple[float, str]) -> Non
     """Insert an item into a descending list of at most ``SHOWN`` largest items."""
     if len(items) < SHOWN or item[0] > items[-1][0]:
         items[:] = heapq.nlargest(SHOWN, [*items, item], key=lambda each: each[0])
-
-
-def listed(names: Sequence[str], count: int) -> str:
-    """The names, and how many more there are of ``count``."""
-    more = f" and {count - len(names)} more" if count > len(names) else ""
-    return ", ".join(names) + more

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from ...checks.kinks import tags_of
-from ...errors import GlyphsplineError
 from ...files import make_folder
 from ...fitting.convert_masters import check_options
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult, as_glyph
+from ...outlines.outline import Outline
 from ...readers import Source
 from ...writers.figures.atlas import write_atlas
 from ...writers.figures.axis_pages import write_axis_atlas
@@ -86,78 +86,55 @@ def make_atlas(
     names: Sequence[str],
     path: Path,
     options: Options,
+    axis: str | None = None,
     *,
     profiles: Sequence[str] | None = None,
     maps: Maps = BOTH,
     jobs: int | None = 0,
     observer: Observer | None = None,
 ) -> Atlas:
-    """Write the atlas of some glyphs.
-
-    Args:
-        source: the opened font. names: its glyphs, in order. path: the PDF.
-        options: of the conversion.
-        profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
-        maps: what the pages of combs show.
-        jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
-        observer: called with the number of glyphs done, of all, and of those that failed.
-    """
-    make_folder(path.parent)
-    chosen = set(names if len(names) <= PROFILED else ()) if profiles is None else set(profiles)
-    job, total, notable = AtlasJob(place_of(source), options), len(names), Atlas(0, [], [])
-    em = source.metrics.units_per_em
-    with workers(jobs, kinds=kinds_for(options), expected=total) as pool:
-        sample = names[:: -(-total // SCALE_SAMPLE) or 1]
-        kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
-        scale = maps.scale_for(em) or curvature_scale(g for g in kept.values() if isinstance(g, GlyphResult)) or 1 / em
-        left = [name for name in names if name not in kept]
-        others = run(job, left, pool, ordered=True, observer=observer, before=len(kept), total=total)
-        made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
-        pages = write_atlas(
-            path, _shown(made, notable), scale, heading=f"{source.family} {source.style}", combs=maps.comb,
-            in_corners=maps.corner_teeth,
-            profiled=lambda glyph: glyph.outline.name in chosen,
-        )  # fmt: skip
-    return notable._replace(pages=pages)
-
-
-def make_axis_atlas(
-    source: Source,
-    names: Sequence[str],
-    path: Path,
-    options: Options,
-    axis: str,
-    *,
-    maps: Maps = BOTH,
-    jobs: int | None = 0,
-    observer: Observer | None = None,
-) -> Atlas:
-    """Write the atlas of some glyphs of a variable font along an axis, a page a glyph.
+    """Write the atlas of some glyphs; along an ``axis``, a page a glyph of a variable font.
 
     Args:
         source: the opened font; its location is that of the other axes. names: its glyphs, in order. path: the PDF.
-        options: of the conversion, whose corners are sharp: so masters are converted. axis: tag of the axis.
-        maps: its scale, if it has one. jobs: as of :func:`make_atlas`.
+        options: of the conversion; along an axis corners are sharp: so masters are converted.
+        axis: its tag. profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
+        maps: what the pages of combs show; along an axis only their scale.
+        jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Raises:
         GlyphsplineError: the font is not variable, or has no such axis.
         OptionError: options that masters cannot be converted with.
     """
-    tags_of(source, axis)
+    if axis is not None:
+        tags_of(source, axis)
+        options = replace(options, corners="sharp")
+        check_options(options)
     make_folder(path.parent)
-    options = replace(options, corners="sharp")
-    sources = source.outlines(names[:: -(-len(names) // SCALE_SAMPLE) or 1], errors="return")
-    em, read = source.metrics.units_per_em, [each for each in sources if not isinstance(each, GlyphsplineError)]
-    scale = maps.scale_for(em) or curvature_scale(map(as_glyph, read)) or 1 / em
-    check_options(options)
-    notable = Atlas(0, [], [])
-    with workers(jobs, kinds=kinds_for(options, masters=True), expected=len(names)) as pool:
-        parts = run(AtlasJob(place_of(source), options, masters=True), names, pool, ordered=True, observer=observer)
-        made: Iterator[Any] = (part.result for part in parts)
-        pages = write_axis_atlas(
-            path, _shown(made, notable), axis, source.location, scale, f"{source.family} {source.style}",
-        )  # fmt: skip
+    total, em, heading = len(names), source.metrics.units_per_em, f"{source.family} {source.style}"
+    sample = names[:: -(-total // SCALE_SAMPLE) or 1]
+    job, notable = AtlasJob(place_of(source), options, axis is not None), Atlas(0, [], [])
+    kept: dict[str, Any] = {}
+    with workers(jobs, kinds=kinds_for(options, masters=job.masters), expected=total) as pool:
+        if axis is None:
+            kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
+            surveyed = [glyph for glyph in kept.values() if isinstance(glyph, GlyphResult)]
+        else:
+            surveyed = [as_glyph(o) for o in source.outlines(sample, errors="return") if isinstance(o, Outline)]
+        scale = maps.scale_for(em) or curvature_scale(surveyed) or 1 / em
+        left = [name for name in names if name not in kept]
+        others = run(job, left, pool, ordered=True, observer=observer, before=len(kept), total=total)
+        made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
+        shown = _shown(made, notable)
+        if axis is not None:
+            pages = write_axis_atlas(path, shown, axis, source.location, scale, heading)
+        else:
+            chosen = set(names if total <= PROFILED else ()) if profiles is None else set(profiles)
+            pages = write_atlas(
+                path, shown, scale, heading=heading, combs=maps.comb, in_corners=maps.corner_teeth,
+                profiled=lambda glyph: glyph.outline.name in chosen,
+            )  # fmt: skip
     return notable._replace(pages=pages)
 
 

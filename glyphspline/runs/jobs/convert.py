@@ -6,7 +6,7 @@ import json
 import re
 import shlex
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,7 +22,7 @@ from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
 from ...report.data import row_of
 from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
-from ...types import Names, counted, rounded_up
+from ...types import Names, counted, rounded_up, shortened
 from ...writers.formats import format_named
 from ..engine import Item, Job, Observer, Part, reason, run
 from ..file_names import file_names
@@ -44,7 +44,7 @@ from ..folder import (
 )
 from ..result_text import stored
 from ..rows import Rows, remove_unfinished
-from ..schedule import Side, kinds_for, readers, side_of, workers
+from ..schedule import Side, heads_of, kinds_for, readers, side_of, workers
 from ..spec import (
     MAPS,
     OF_RUNS,
@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from ...readers.designspace import Designspace
     from ...readers.ufo import Ufo
     from ...writers.back.back import New
+    from .masters import MastersSummary
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -163,11 +164,10 @@ def convert_font(
     require_libraries(spec)
     check_back(source, spec)
     with locked(out):
-        record = prepare(source, glyphs, out, spec, restart)
-        rows = None
-        if table := table_of(source, out, spec):
-            rows = Rows(table, source.sha256)
-            record = read_record(out, rows)
+        prepare(source, glyphs, out, spec, restart)
+        table = table_of(source, out, spec)
+        rows = Rows(table, source.sha256) if table else None
+        record = read_record(out, rows)
         finished = record.finished()
         summary = Summary()
         # Workers start while the tasks are listed; none do if all glyphs are finished.
@@ -219,8 +219,8 @@ def prepare(
     restart: bool,
     others: Sequence[Source] = (),
     axis: str | None = None,
-) -> Record:
-    """Make the folders, and read the record of an earlier run; see :func:`.spec.describe`."""
+) -> None:
+    """Make the folders, and remove what is there of a run that does not go on; see :func:`.spec.describe`."""
     old = None if restart else read_run(out)
     if old is None:
         if table := table_of(source, out, spec):
@@ -238,18 +238,12 @@ def prepare(
         make_folder(out / name)
         remove_partials(out / name)
     remove_partials(out)
-    return read_record(out) if old is not None else Record()
 
 
 def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
-    stems = file_names(source.glyph_names, names, source.cmap)
-    unicodes: dict[str, list[int]] = {name: [] for name in glyphs}
-    for code, name in source.cmap.items():
-        if name in unicodes:
-            unicodes[name].append(code)
-    chosen = [(gid, name) for gid, name in enumerate(source.glyph_names) if name in unicodes]
-    return [Task(gid, name, stems[gid], tuple(sorted(unicodes[name]))) for gid, name in chosen]
+    stems, chosen = file_names(source.glyph_names, names, source.cmap), {*glyphs}
+    return [Task(gid, name, stems[gid], codes) for name, gid, codes in heads_of(source).values() if name in chosen]
 
 
 def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:
@@ -295,10 +289,20 @@ def recorded(
             yield part
 
 
-def conclude(out: Path, record: Record, summary: Summary, with_gallery: bool) -> None:
-    """Write the manifest with the gallery's page and tables, and count its glyphs in the summary."""
+def conclude(
+    out: Path,
+    record: Record,
+    summary: Summary | MastersSummary,
+    with_gallery: bool = False,
+    changed: Callable[[bytes], bytes] = bytes,
+) -> None:
+    """Write the manifest with the gallery's page and tables, and count its glyphs in the summary.
+
+    Args:
+        changed: from a line, as it was recorded, to the one that is written.
+    """
     gallery = Gallery(out) if with_gallery else None
-    with finish(out, record) as lines:
+    with finish(out, record, changed) as lines:
         for gid, line in lines:
             entry = json.loads(line)
             summary.add(entry)
@@ -405,11 +409,8 @@ def back_to_source(
         found = write_back(source, glyphs, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
     where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
     remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, nothing else changed"]
-    for name, why in list(found.kept.items())[:NAMED]:
-        remarks.append(f"{name}: {why}, and stays as it was")
-    if len(found.kept) > NAMED:
-        remarks.append(f"{len(found.kept) - NAMED} more glyphs with contours that stay as they were")
-    return remarks
+    kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
+    return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
 
 
 def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult]:

@@ -11,7 +11,7 @@ from ...comparing.difference import PER_EM, Difference
 from ...errors import GlyphsplineError, is_positive, require
 from ...readers import Source
 from ..engine import Item, Job, Observer, reason, run
-from ..schedule import Head, Side, readers, side_of, workers
+from ..schedule import Head, Side, heads_of, readers, side_of, workers
 from ..spec import Limits
 
 if TYPE_CHECKING:
@@ -180,14 +180,6 @@ def pairs_of(
         tuple(name for name in mine if name not in partners and name in wanted_old),
         tuple(name for name in its if name not in taken and name in wanted_new),
     )
-
-
-def heads_of(source: Source) -> dict[str, Head]:
-    """The glyphs of a source by their names, in glyph index order."""
-    codes: dict[str, list[int]] = {name: [] for name in source.glyph_names}
-    for code in sorted(source.cmap):
-        codes[source.cmap[code]].append(code)
-    return {name: (name, gid, tuple(codes[name])) for gid, name in enumerate(source.glyph_names)}
 
 
 def compare_fonts(

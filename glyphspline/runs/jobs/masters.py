@@ -24,16 +24,16 @@ from ...fitting.options import Options
 from ...readers import Font, Source
 from ...readers.designspace import Designspace, GlyphsFile
 from ...readers.single_fonts import axis_of
-from ...types import MadeOnDemand, counted, rounded_up
+from ...types import MadeOnDemand, counted, listed, rounded_up, shortened
 from ...writers.font.font_glyphs import Flavour
 from ...writers.font.master_deltas import Redrawn, StoredGlyph
 from ..engine import Job, Observer, reason
-from ..folder import Done, Record, Task, done, finish, locked, recorded_lines
+from ..folder import Done, Record, Task, done, locked, read_record, recorded_lines
 from ..result_text import stored
 from ..schedule import Place, place_of, sources
 from ..spec import RESULTS, RunSpec, describe, write_run
-from ..summary import CHANGED, NAMED, listed
-from .convert import back_to_source, check_back, font_files, prepare, recorded, tasks_of
+from ..summary import CHANGED, NAMED
+from .convert import back_to_source, check_back, conclude, font_files, prepare, recorded, tasks_of
 
 if TYPE_CHECKING:
     from ...fitting.convert_masters import MastersContourResult
@@ -182,22 +182,17 @@ class MastersSummary:
         yield head if self.bound is None else f"{head}, certified within {rounded_up(self.bound, 3):g} units"
         if self.kept:
             yield f"{counted(self.kept, 'segment')} of them stay as the source has them: no curve for all masters there"
-        if self.outside:
-            yield f"{counted(len(self.outside), 'glyph')} outside the tolerance: {_few(self.outside)}"
-        if self.stopping:
-            yield f"{counted(len(self.stopping), 'glyph')} not proven free of cusps everywhere: {_few(self.stopping)}"
-        for names, words in ((self.crossing, CHANGED["new_crossings"]), (self.collapsed, CHANGED["collapsed"])):
+        for names, words in (
+            (self.outside, "outside the tolerance"),
+            (self.stopping, "not proven free of cusps everywhere"),
+            (self.crossing, CHANGED["new_crossings"]),
+            (self.collapsed, CHANGED["collapsed"]),
+        ):
             if names:
                 yield f"{words}: {listed(names[:NAMED], len(names))}"
-        for name, error in list(self.failed.items())[:NAMED]:
-            yield f"failed: {name}: {error}"
-        if len(self.failed) > NAMED:
-            yield f"failed: {len(self.failed) - NAMED} more, which the manifest lists"
+        failed = [f"{name}: {error}" for name, error in self.failed.items()]
+        yield from (f"failed: {line}" for line in shortened(failed, NAMED, "{} more, which the manifest lists"))
         yield from self.remarks
-
-
-def _few(names: Sequence[str]) -> str:
-    return ", ".join(names[:NAMED]) + (", …" if len(names) > NAMED else "")
 
 
 def convert_font_masters(
@@ -236,7 +231,8 @@ def convert_font_masters(
         wanted = list(glyphs)
     summary = MastersSummary()
     with locked(out):
-        record = prepare(first, glyphs, out, spec, restart, sources[1:], axis)
+        prepare(first, glyphs, out, spec, restart, sources[1:], axis)
+        record = read_record(out)
         write_run(out, describe(first, spec, glyphs, None, sources[1:], axis))
         options = spec.options
         if "ttf" in spec.formats:
@@ -248,9 +244,7 @@ def convert_font_masters(
             pass
         remove_partials(out / RESULTS)
         written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        with finish(out, record, partial(_with_written, *written)) as lines:
-            for _, line in lines:
-                summary.add(json.loads(line))
+        conclude(out, record, summary, changed=partial(_with_written, *written))
     summary.seconds = time.perf_counter() - began
     return summary
 
@@ -383,5 +377,5 @@ def _write_fonts(
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")
         stays |= left
     if stays:
-        summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {_few(list(stays))}; the manifest says why")
+        summary.remarks.append(f"as they were: {listed([*stays][:NAMED], len(stays))}; the manifest says why")
     return stays, stored
