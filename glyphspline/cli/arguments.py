@@ -16,7 +16,7 @@ from ..fields import LOOK, WRITTEN, About, option
 from ..typesetting.setting import Align, Direction, Place, Side
 from .config import names_of, settings
 from .groups import natural, place
-from .status import UNUSABLE
+from .messages import UNUSABLE
 
 if TYPE_CHECKING:
     from ..readers import Selection, Source

@@ -20,12 +20,11 @@ from ..runs.spec import RunSpec
 from ..types import listed, shortened
 from ..writers.settings import BOTH, Maps
 from . import arguments as opt
-from . import interruption
 from .check_command import check
 from .diff_command import diff
 from .groups import grouped, only, place, without
 from .mend_command import mend
-from .messages import listen, print_json, printable, progress, say, stop
+from .messages import RULE, UNDONE, listen, print_json, printable, progress, say, stop, watch_interruption
 from .running import (
     Conversion,
     check_masters,
@@ -36,7 +35,6 @@ from .running import (
     say_missing,
     workplace,
 )
-from .status import RULE, UNDONE
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
 
@@ -383,7 +381,7 @@ def limit_memory() -> None:
 def main() -> None:
     """The command ``glyphspline``."""
     limit_memory()
-    interruption.watch()
+    watch_interruption()
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="replace")
     try:

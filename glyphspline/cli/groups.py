@@ -13,8 +13,7 @@ import typer
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of
 from ..fitting.options import FONTS, FOR_FONTS, PRESETS, Options, Preset
-from .messages import errors, listen
-from .status import UNDONE
+from .messages import UNDONE, errors, listen
 
 Value = TypeVar("Value")
 

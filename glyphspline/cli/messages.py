@@ -1,20 +1,31 @@
-"""What commands write on standard error: lines, warnings of libraries, progress, and expected errors."""
+"""How commands end, and what they write on standard error: lines, warnings of libraries, progress, expected errors."""
 
 from __future__ import annotations
 
 import json
 import logging
 import os
+import signal
+import socket
 import sys
+import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn
 
 import typer
 
-from . import interruption
-from .status import INTERRUPTED, UNUSABLE
+DONE, UNDONE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+
+RULE = (
+    f"Exit status: {DONE} all was done; {UNDONE} something asked for was not: a glyph failed, a character is missing, "
+    f"a result is not within its tolerance, one of several fonts cannot be read, or check -e and diff find what they "
+    f"look for; {UNUSABLE} the call or the font is unusable; {INTERRUPTED} Ctrl-C."
+)
+"""The exit status, one rule for all commands, as the help says it."""
+
+INTERRUPTION = "interrupted; the same command goes on from here"
 
 QUIET = "GLYPHSPLINE_QUIET"
 """Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
@@ -37,7 +48,7 @@ def errors(quiet: bool) -> Iterator[None]:
     except MemoryError:
         stop("not enough memory")
     except KeyboardInterrupt:
-        say(interruption.WORDS)
+        say(INTERRUPTION)
         raise typer.Exit(INTERRUPTED) from None
     finally:
         os.environ.pop(QUIET, None)
@@ -134,3 +145,40 @@ def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
         yield observe
     finally:
         bar.stop()
+
+
+def watch_interruption() -> None:
+    """End this process soon after SIGINT, from a thread that nothing holds up. For the main thread to call.
+
+    Python acts on a signal between two of its own steps, and one step of the compiler may take half a minute.
+    """
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+    threading.Thread(target=_wait, args=(ours, theirs), daemon=True).start()
+
+
+def _wait(ours: socket.socket, theirs: socket.socket) -> None:
+    while ours.recv(1) != bytes([signal.SIGINT]):
+        pass
+    time.sleep(0.6)  # in which a command may end in its own way, with what it has done so far written down
+    end()
+
+
+def end() -> None:
+    """Kill the worker processes, remove the copy of standard input, make the terminal usable, say so and exit."""
+    with suppress(Exception):
+        if "glyphspline.runs.pool" in sys.modules:
+            from ..runs.pool import kill_all
+
+            kill_all()
+        if "glyphspline.readers.open" in sys.modules:
+            from ..readers.open import forget_standard_input
+
+            forget_standard_input()
+    with suppress(Exception):
+        if sys.stderr.isatty():
+            sys.stderr.write("\r\x1b[K\x1b[?25h")  # an empty line, and the cursor, which a progress bar hides
+        sys.stderr.write(f"{INTERRUPTION}\n")
+        sys.stderr.flush()
+    os._exit(INTERRUPTED)

@@ -23,12 +23,13 @@ from ..runs.font_search import find_fonts
 from ..runs.jobs.convert import ConvertJob
 from ..runs.rows import UNFINISHED, Made, Unfinished, remove_unfinished, streamed
 from ..runs.schedule import Place, kinds_for, sources, workers
+from ..runs.shapes import Shapes
 from ..runs.spec import Limits, differences
 from .card import Summary, card, fonts_file
 from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
-from .shards import OfFont, Shapes, add_shapes, finished, write_shard
+from .shards import OfFont, add_shapes, finished, write_shard
 from .spec import DatasetSpec
 
 RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"

@@ -12,6 +12,7 @@ import numpy as np
 from ..extras import need
 from ..runs import remote
 from ..runs.rows import Made, table_in
+from ..runs.shapes import Shapes
 from ..types import BoolArray, IntArray
 from ..writers.parquet import writing_of
 
@@ -51,33 +52,6 @@ class OfFont(NamedTuple):
         return OfFont._make([*sums, (*self.reasons, *other.reasons)[:NAMED]])
 
 
-class Shapes:
-    """The shapes that rows have had so far: 8 bytes each, and twice that while sorted runs are merged."""
-
-    def __init__(self) -> None:
-        self._runs: list[IntArray] = []
-
-    def repeated(self, shapes: IntArray) -> BoolArray:
-        """(n,) whether an earlier row has the shape, of this call or of one before; all are known from now on."""
-        unique, first, which = np.unique(shapes, return_index=True, return_inverse=True)
-        known = np.zeros(len(unique), dtype=np.bool_)
-        for run in self._runs:
-            at = np.minimum(np.searchsorted(run, unique), len(run) - 1)
-            known |= run[at] == unique
-        if not known.all():
-            self._runs.append(unique[~known])
-        while len(self._runs) > 1 and len(self._runs[-2]) <= 2 * len(self._runs[-1]):
-            last, before = self._runs.pop(), self._runs.pop()
-            merged = np.concatenate([before, last])
-            merged.sort(kind="stable")
-            self._runs.append(merged)
-        found: BoolArray = known[which] | (first[which] != np.arange(len(shapes)))
-        return found
-
-    def __len__(self) -> int:
-        return sum(map(len, self._runs))
-
-
 def numbers_of(column: Any) -> tuple[IntArray, BoolArray]:
     """Shapes as 64-bit numbers, and which rows have one: a shape is a hash in hexadecimal."""
     texts = column.to_pylist()
@@ -91,7 +65,7 @@ def marked(table: Any, shapes: Shapes) -> tuple[Any, int]:
     pa = need("parquet")
     numbers, has = numbers_of(table["shape"])
     values = np.zeros(table.num_rows, dtype=np.bool_)
-    values[has] = shapes.repeated(numbers)
+    values[has] = shapes.first(numbers) != np.arange(len(numbers))
     at = table.schema.get_field_index("duplicate")
     return table.set_column(at, table.schema.field(at), pa.array(values)), int(values.sum())
 
@@ -188,4 +162,4 @@ def add_shapes(path: str, shapes: Shapes) -> None:
     with remote.read(path) as file:
         whole = parquet.ParquetFile(file)
         for k in range(whole.num_row_groups):
-            shapes.repeated(numbers_of(whole.read_row_group(k, columns=["shape"])["shape"])[0])
+            shapes.first(numbers_of(whole.read_row_group(k, columns=["shape"])["shape"])[0])

@@ -17,6 +17,7 @@ import os
 import re
 import socket
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,10 +26,14 @@ from typing import Any, BinaryIO, NamedTuple
 from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
-from ..files import O_BINARY, make_folder, replacing, sizes, writing
-from ..report.data import encoded
+from ..files import O_BINARY, make_folder, remove_partials, replacing, sizes, writing
+from ..report.data import encoded, row_of
+from ..report.gallery import Gallery, remove_gallery
+from .engine import Job, Observer, Part, run
+from .rows import Rows, remove_unfinished
 from .schedule import Head, Side
-from .spec import RunSpec, is_folder
+from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
+from .summary import MastersSummary, Summary
 
 LOCK = ".lock"
 MANIFEST = "manifest.jsonl"
@@ -232,36 +237,6 @@ def remove_written(out: Path) -> None:
                     (out / folder / file).unlink(missing_ok=True)
 
 
-@contextmanager
-def journal(out: Path, record: Record) -> Iterator[Callable[[list[Done]], None]]:
-    """The journal, open for appending: yields what adds glyphs to it and to the record once their files are written.
-
-    A symbolic link of its name is not followed.
-    """
-    path = out / JOURNAL
-    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
-    with writing(path):
-        file = open(os.open(path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
-
-    def write(data: bytes) -> None:
-        view = memoryview(data)
-        with writing(path):
-            while view:
-                view = view[file.write(view) :]
-
-    def add(done: list[Done]) -> None:
-        at = os.fstat(file.fileno()).st_size
-        for glyph in done:
-            record.where[glyph.gid] = (JOURNAL, at)
-            record.rows[glyph.gid] = glyph.row
-            at += len(glyph.line)
-        write(b"".join([glyph.line for glyph in done]))
-
-    with file:
-        write(b"\n")  # ends a truncated line
-        yield add
-
-
 def entries_of(out: Path) -> Iterator[dict[str, Any]]:
     """The entries of a finished folder's manifest, in glyph index order.
 
@@ -292,27 +267,101 @@ def recorded_lines(out: Path, record: Record) -> Iterator[tuple[int, bytes | Non
             yield gid, head if tab else record.sizes.get(gid), line
 
 
-@contextmanager
-def finish(
-    out: Path, record: Record, changed: Callable[[bytes], bytes] = bytes
-) -> Iterator[Iterator[tuple[int, bytes]]]:
-    """Write manifest and sizes in glyph index order, yielding each glyph's index and line.
+def prepare(out: Path, spec: RunSpec, run: dict[str, Any], restart: bool, table: Path | None = None) -> None:
+    """Make the folders of a run, and remove what is there of one that does not go on.
+
+    Args:
+        run: the content of ``run.json``. table: of contours, if the run has one.
+
+    Raises:
+        OutputError: a run with other options is there, and ``restart`` is not given.
+    """
+    old = None if restart else read_run(out)
+    if old is None:
+        if table:
+            table.unlink(missing_ok=True)
+            remove_unfinished(out)
+        remove_written(out)
+        remove_gallery(out)
+        for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
+            (out / name).unlink(missing_ok=True)
+    elif changed := differences(old, run):
+        raise OutputError(
+            "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
+        )
+    for name in spec.folders:
+        make_folder(out / name)
+        remove_partials(out / name)
+    remove_partials(out)
+
+
+def recorded(
+    job: Job[Task, list[Done]],
+    tasks: Sequence[Task],
+    pool: Executor,
+    record: Record,
+    out: Path,
+    observer: Observer | None,
+    rows: Rows | None = None,
+) -> Iterator[Part[Task, list[Done]]]:
+    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on.
+
+    Its rows are kept before that. A symbolic link of the journal's name is not followed.
+    """
+    if not tasks:
+        return
+    path, before = out / JOURNAL, len(record.finished())
+    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
+    with writing(path):
+        journal = open(os.open(path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
+
+    def write(data: bytes) -> None:
+        view = memoryview(data)
+        with writing(path):
+            while view:
+                view = view[journal.write(view) :]
+
+    with journal:
+        write(b"\n")  # ends a truncated line
+        for part in run(job, tasks, pool, observer=observer, before=before):
+            for stream in [glyph.rows for glyph in part.result if glyph.rows]:
+                assert rows is not None
+                rows.add(stream)
+            at = os.fstat(journal.fileno()).st_size
+            for glyph in part.result:
+                record.where[glyph.gid] = (JOURNAL, at)
+                record.rows[glyph.gid] = glyph.row
+                at += len(glyph.line)
+            write(b"".join([glyph.line for glyph in part.result]))
+            yield part
+
+
+def conclude(
+    out: Path,
+    record: Record,
+    summary: Summary | MastersSummary,
+    with_gallery: bool = False,
+    changed: Callable[[bytes], bytes] = bytes,
+) -> None:
+    """Write manifest and sizes in glyph index order with the gallery's page and tables, and count glyphs in a summary.
+
+    The manifest gets its name, and the journal is removed, when all the rest is written: otherwise an interruption
+    would leave it missing.
 
     Args:
         changed: from a line, as it was recorded, to the one that is written.
-
-    The manifest gets its name, and the journal is removed, when the block ends without an error. All other files of
-    the end of a run have to be written inside the block; otherwise an interruption would leave them missing.
     """
-
-    def written() -> Iterator[tuple[int, bytes]]:
-        for gid, known, recorded in recorded_lines(out, record):
-            line = changed(recorded)
+    gallery = Gallery(out) if with_gallery else None
+    with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
+        for gid, known, own in recorded_lines(out, record):
+            line = changed(own)
             manifest.write(line)
             if known is not None:
                 lengths.write(b"%d\t%s\n" % (gid, known))
-            yield gid, line
-
-    with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
-        yield written()
+            entry = json.loads(line)
+            summary.add(entry)
+            if gallery:
+                gallery.add(record.rows.get(gid) or row_of(entry))
+        if gallery:
+            gallery.close(read_run(out) or {})
     (out / JOURNAL).unlink(missing_ok=True)

@@ -24,8 +24,9 @@ from glyphspline.fitting.convert_masters import changes_at
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.readers.single_fonts import masters_of_fonts
-from glyphspline.runs.jobs.masters import MastersSummary, redrawn_glyph
+from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.runs.result_text import from_text, to_text
+from glyphspline.runs.summary import MastersSummary
 from glyphspline.types import FloatArray, MadeOnDemand
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font

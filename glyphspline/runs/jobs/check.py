@@ -25,10 +25,11 @@ from ...errors import FontError, GlyphsplineError
 from ...readers import Source
 from ...readers.source import Location
 from ...report.findings_page import home_of
-from ...types import BoolArray, IntArray
+from ...types import IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
 from ..schedule import Head, Side, readers, side_of, sources, workers
+from ..shapes import Shapes
 from ..spec import Limits
 
 if TYPE_CHECKING:
@@ -93,7 +94,8 @@ class CheckJob(Job[Head, Checked]):
         seen = np.bincount(rows.glyphs, np.nan_to_num(rows.numbers[:, 4]), len(contents))
         scores: list[float] = (seen * (1000 / contents[0].metrics.units_per_em)).tolist()
         looked_for = [number for number, kind in enumerate(KINDS) if kind.name in self.kinds]
-        rows = rows.chosen(np.flatnonzero(np.isin(rows.kinds, looked_for)))
+        kept = np.flatnonzero(np.isin(rows.kinds, looked_for))
+        rows = rows.chosen(kept[np.argsort(rows.glyphs[kept], kind="stable")])
         numbers = [tuple(along.numbers_of(g) for along in kinks) for g in range(len(contents))]
         return Checked(rows, numbers, _shapes(contents, rows), scores, kinks if self.joints else ())
 
@@ -232,38 +234,21 @@ def check_font(
         job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps, kinks is not None)
 
     def glyphs() -> Iterator[GlyphFindings]:
-        reported = _Reported()
+        reported = Shapes()
         with workers(0, executor=executor) as pool:
             for part in run(job, tasks, pool, ordered=True, observer=observer):
                 rows, numbers, shapes, scores, along, error = part.result
                 if kinks is not None and along:
                     kinks.append(along)
                 if once:
-                    fresh = reported.fresh(shapes, rows.glyphs) | (rows.kinds == DIRECTION)
-                    rows = rows.chosen(np.flatnonzero(fresh))
+                    first = reported.first(shapes)
+                    fresh = (first >= 0) & (rows.glyphs[first] == rows.glyphs)  # rows are in the order of glyphs
+                    rows = rows.chosen(np.flatnonzero(fresh | (rows.kinds == DIRECTION)))
                 found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
                 for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
                     yield GlyphFindings(name, gid, own, error, of_axes, score)
 
     return glyphs()
-
-
-class _Reported:
-    """Sorted array of the hashes of shapes that were reported; it uses a tenth of the memory of a set."""
-
-    def __init__(self) -> None:
-        self._shapes = np.zeros(0, dtype=np.int64)
-
-    def fresh(self, shapes: IntArray, glyphs: IntArray) -> BoolArray:
-        """(n,) whether the shape of a row's contour occurs in no glyph before the row's glyph; adds them."""
-        unique, rows = np.unique(shapes, return_inverse=True)
-        first = np.full(len(unique), np.iinfo(np.int64).max)
-        np.minimum.at(first, rows, glyphs)
-        at = np.searchsorted(self._shapes, unique)
-        new = np.searchsorted(self._shapes, unique, side="right") == at
-        self._shapes = np.insert(self._shapes, at[new], unique[new])
-        found: BoolArray = new[rows] & (first[rows] == glyphs)
-        return found
 
 
 @dataclass(frozen=True)

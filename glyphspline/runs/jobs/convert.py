@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shlex
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,49 +14,34 @@ from typing import TYPE_CHECKING, Any, Literal
 from ...curves.curvature import shared_scale
 from ...errors import OutputError
 from ...extras import need
-from ...files import make_folder, remove_partials, write_whole, writing
+from ...files import remove_partials, write_whole, writing
 from ...fitting.results import GlyphResult
 from ...readers import Source, open_font
 from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
-from ...report.data import row_of
-from ...report.gallery import Gallery, is_whole, remove_gallery, write_index, write_report
+from ...report.gallery import is_whole, write_index, write_report
 from ...types import Names, counted, rounded_up, shortened
 from ...writers.formats import format_named
-from ..engine import Item, Job, Observer, Part, reason, run
+from ..engine import Item, Job, Observer, reason, run
 from ..file_names import file_names
 from ..folder import (
     JOURNAL,
     MANIFEST,
-    SIZES,
     Done,
     Output,
-    Record,
     Task,
+    conclude,
     done,
     entries_of,
-    finish,
-    journal,
     locked,
+    prepare,
     read_record,
-    remove_written,
+    recorded,
 )
 from ..result_text import stored
-from ..rows import Rows, remove_unfinished
+from ..rows import Rows
 from ..schedule import Side, heads_of, kinds_for, readers, side_of, workers
-from ..spec import (
-    MAPS,
-    OF_RUNS,
-    PARQUET,
-    REQUEST,
-    RESULTS,
-    RUN_FILE,
-    RunSpec,
-    describe,
-    differences,
-    read_run,
-    write_run,
-)
+from ..spec import MAPS, OF_RUNS, PARQUET, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
 from ..summary import NAMED, Summary
 
 if TYPE_CHECKING:
@@ -65,7 +49,6 @@ if TYPE_CHECKING:
     from ...readers.designspace import Designspace
     from ...readers.ufo import Ufo
     from ...writers.back.back import New
-    from .masters import MastersSummary
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -164,8 +147,8 @@ def convert_font(
     require_libraries(spec)
     check_back(source, spec)
     with locked(out):
-        prepare(source, glyphs, out, spec, restart)
         table = table_of(source, out, spec)
+        prepare(out, spec, describe(source, spec, glyphs, None), restart, table)
         rows = Rows(table, source.sha256) if table else None
         record = read_record(out, rows)
         finished = record.finished()
@@ -211,35 +194,6 @@ def require_libraries(spec: RunSpec) -> None:
         need(extra)
 
 
-def prepare(
-    source: Source,
-    glyphs: Sequence[str],
-    out: Path,
-    spec: RunSpec,
-    restart: bool,
-    others: Sequence[Source] = (),
-    axis: str | None = None,
-) -> None:
-    """Make the folders, and remove what is there of a run that does not go on; see :func:`.spec.describe`."""
-    old = None if restart else read_run(out)
-    if old is None:
-        if table := table_of(source, out, spec):
-            table.unlink(missing_ok=True)
-            remove_unfinished(out)
-        remove_written(out)
-        remove_gallery(out)
-        for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
-            (out / name).unlink(missing_ok=True)
-    elif changed := differences(old, describe(source, spec, glyphs, None, others, axis)):
-        raise OutputError(
-            "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
-        )
-    for name in spec.folders:
-        make_folder(out / name)
-        remove_partials(out / name)
-    remove_partials(out)
-
-
 def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
     stems, chosen = file_names(source.glyph_names, names, source.cmap), {*glyphs}
@@ -263,53 +217,6 @@ def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: li
     if old is None or any(old.get(name) != now[name] for name in REQUEST):
         write_run(job.out, now)
     return job
-
-
-def recorded(
-    job: Job[Task, list[Done]],
-    tasks: Sequence[Task],
-    pool: Executor,
-    record: Record,
-    out: Path,
-    observer: Observer | None,
-    rows: Rows | None = None,
-) -> Iterator[Part[Task, list[Done]]]:
-    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on.
-
-    Its rows are kept before that.
-    """
-    if not tasks:
-        return
-    with journal(out, record) as add:
-        for part in run(job, tasks, pool, observer=observer, before=len(record.finished())):
-            for stream in [glyph.rows for glyph in part.result if glyph.rows]:
-                assert rows is not None
-                rows.add(stream)
-            add(part.result)
-            yield part
-
-
-def conclude(
-    out: Path,
-    record: Record,
-    summary: Summary | MastersSummary,
-    with_gallery: bool = False,
-    changed: Callable[[bytes], bytes] = bytes,
-) -> None:
-    """Write the manifest with the gallery's page and tables, and count its glyphs in the summary.
-
-    Args:
-        changed: from a line, as it was recorded, to the one that is written.
-    """
-    gallery = Gallery(out) if with_gallery else None
-    with finish(out, record, changed) as lines:
-        for gid, line in lines:
-            entry = json.loads(line)
-            summary.add(entry)
-            if gallery:
-                gallery.add(record.rows.get(gid) or row_of(entry))
-        if gallery:
-            gallery.close(read_run(out) or {})
 
 
 def write_gallery(folder: Path) -> None:
