@@ -10,8 +10,7 @@ from ..curves.cubics import jet, length
 from ..curves.fairness import MOST, TURN, curvatures, first_of, swings
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray
-from .kinds import LUMP
-from .segments import CONTOUR, DETAIL, NO_HANDLE, OTHER, PLACE, SEEN, VALUE, WHAT
+from .segments import NO_HANDLE
 
 QUARTER = np.pi / 2
 """A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""
@@ -33,7 +32,7 @@ STEPS = 8
 def bend_findings(
     cubics: FloatArray, contours: ContourArrays, least_share: float, least_height: float, corner_angle: float
 ) -> FloatArray:
-    """(n, 7) lumps of contours; see :mod:`.segments`. The second number is how far a lump moves the curve, in units.
+    """(n, 4) lumps of contours: contour, place, share, and how far a lump moves the curve, in units.
 
     A bend goes from an inflection, a corner or a line to the next. The maxima of its absolute curvature are those of
     :func:`..curves.fairness.swings`, with the least share. Contours with quadratics are passed over: each quadratic
@@ -43,7 +42,7 @@ def bend_findings(
         cubics: (m, 4, 2) segments of all contours. contours: their degrees and offsets.
         least_share, least_height: of a lump. corner_angle: in radians.
     """
-    table, count = np.empty((MOST * len(cubics), 7)), 0
+    table, count = np.empty((MOST * len(cubics), 4)), 0
     share, corner = least_share / (1 + least_share), np.cos(corner_angle)
     for c in range(len(contours.offsets) - 1):
         a, b = contours.offsets[c], contours.offsets[c + 1]
@@ -96,7 +95,7 @@ def lumps_of(
     cubics: FloatArray, at: FloatArray, sizes: FloatArray, number: int, begin: float, end: float, sign: float,
     whole: bool, least: float, least_height: float, contour: int, rows: FloatArray,
 ) -> int:  # fmt: skip
-    """Write the lumps of one bend into rows (k, 7) of the table; return their number.
+    """Write the lumps of one bend into rows (k, 4) of the table; return their number.
 
     Of two maxima too close together the lesser is a lump; then the least of all, until there are no more than the bend
     needs. The lesser one is that which exceeds the minima beside it by the smaller share.
@@ -132,10 +131,8 @@ def lumps_of(
             if size <= needed:
                 break
             worst = int(peaks[:size, 1].argmin())
-        row = rows[count]
-        row[WHAT], row[CONTOUR], row[PLACE] = LUMP, contour, peaks[worst, 0] % len(cubics)
-        row[VALUE], row[DETAIL], row[OTHER] = peaks[worst, 1], peaks[worst, 2], -1
-        row[SEEN] = np.nan
+        rows[count, 0], rows[count, 1] = contour, peaks[worst, 0] % len(cubics)
+        rows[count, 2], rows[count, 3] = peaks[worst, 1], peaks[worst, 2]
         count, size = count + 1, size - 1
         for k in range(worst, size):
             peaks[k, 0], peaks[k, 1], peaks[k, 2] = peaks[k + 1, 0], peaks[k + 1, 1], peaks[k + 1, 2]

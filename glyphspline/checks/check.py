@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .finding import Finding, Measured, findings
-from .kinds import JUMP, REPEATED, THRESHOLDS, Thresholds
+from .kinds import JUMP, LUMP, REPEATED, THRESHOLDS, Thresholds
 
 
 def check(outline: Outline, thresholds: Thresholds = THRESHOLDS, *, outer: int = 0) -> list[Finding]:
@@ -34,33 +35,29 @@ def check_many(
     """As :func:`check`, of many outlines of one font at once; the result of one does not depend on the others."""
     if not outlines:
         return []
-    arrays, repeats = [outline.arrays for outline in outlines], [outline.repeats for outline in outlines]
-    rows = measured(arrays, thresholds, outlines[0].metrics.units_per_em, outer, repeats)
+    rows = measured([outline.contours for outline in outlines], thresholds, outlines[0].metrics.units_per_em, outer)
     return findings([(outline.name, outline.gid) for outline in outlines], rows)
 
 
-def measured(
-    outlines: Sequence[ContourArrays], thresholds: Thresholds, units_per_em: float, outer: int = 0,
-    repeats: Sequence[IntArray | None] = (),
-) -> Measured:  # fmt: skip
-    """Measure the contours of glyphs of one em; ``outer`` as in :attr:`.Source.outer`, ``repeats`` as in Contours."""
+def measured(glyphs: Sequence[Any], thresholds: Thresholds, units_per_em: float, outer: int = 0) -> Measured:
+    """Measure :class:`.Contours` of glyphs of one em; ``outer`` as in :attr:`.Source.outer`."""
     from ..curves.bezier import evaluate
     from ..outlines.segments import all_cubics  # imports the compiler
     from .bends import bend_findings
     from .enclosed import enclosed_findings
-    from .segments import CONTOUR, OTHER, PLACE, SEEN, VALUE, WHAT, Segments, joint_findings, segment_findings
+    from .segments import CONTOUR, OTHER, PLACE, SEEN, VALUE, WHAT, Segments, joint_findings, rows, segment_findings
 
     limits = thresholds.limits(units_per_em)
-    contours = joined(outlines)
-    glyphs = offsets_of([outline.num_contours for outline in outlines])
+    contours = joined([glyph.arrays for glyph in glyphs])
+    firsts = offsets_of([len(glyph) for glyph in glyphs])
     cubics = all_cubics(contours)
     segments = Segments.of(cubics, contours)
     table = np.concatenate([
         joint_findings(segments, limits),
         segment_findings(segments, limits),
-        bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle),
-        enclosed_findings(cubics, segments, glyphs, limits, units_per_em / 1000, outer),
-        _repeated(outlines, contours.offsets, repeats),
+        rows(LUMP, *bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle).T),
+        enclosed_findings(cubics, segments, firsts, limits, units_per_em / 1000, outer),
+        _repeated(np.concatenate([glyph.repeats for glyph in glyphs]), contours.offsets),
     ])  # fmt: skip
     jumps = table[:, WHAT] == JUMP
     table[jumps, VALUE] *= units_per_em
@@ -69,29 +66,23 @@ def measured(
     contour = table[:, CONTOUR].astype(np.int64)
     places = np.floor(table[:, PLACE]).astype(np.int64)
     numbers[:, 0] -= places
-    owners = np.searchsorted(glyphs, contour, side="right") - 1
-    numbers[:, OTHER - PLACE] = np.where(table[:, OTHER] < 0, -1, table[:, OTHER] - glyphs[owners])
+    owners = np.searchsorted(firsts, contour, side="right") - 1
+    numbers[:, OTHER - PLACE] = np.where(table[:, OTHER] < 0, -1, table[:, OTHER] - firsts[owners])
     return Measured(
-        owners, contour - glyphs[owners], places, table[:, WHAT].astype(np.int64), numbers,
+        owners, contour - firsts[owners], places, table[:, WHAT].astype(np.int64), numbers,
         evaluate(cubics[contours.offsets[contour] + places], numbers[:, 0]),
         np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
     )  # fmt: skip
 
 
-def _repeated(outlines: Sequence[ContourArrays], offsets: IntArray, repeats: Sequence[IntArray | None]) -> FloatArray:
+def _repeated(repeats: IntArray, offsets: IntArray) -> FloatArray:
     """(n, 7) points that the font has more than once, which readers leave out; see :mod:`.segments`.
 
     Args:
-        offsets: (C + 1,) first segment of each contour of all glyphs, and their number. repeats: of each glyph.
+        repeats: (m,) as in :class:`.Contours`. offsets: (C + 1,) first segment of each contour of all glyphs, and m.
     """
-    if all(own is None for own in repeats):
-        return np.empty((0, 7))
-    every = np.concatenate([
-        np.zeros(len(outline.degrees), dtype=np.int64) if own is None else own
-        for outline, own in zip(outlines, repeats, strict=True)
-    ])  # fmt: skip
-    at = np.flatnonzero(every)
-    rows = np.full((len(at), 7), np.nan)
+    from .segments import rows
+
+    at = np.flatnonzero(repeats)
     contour = np.searchsorted(offsets, at, side="right") - 1
-    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 5] = REPEATED, contour, at - offsets[contour], every[at], -1
-    return rows
+    return rows(REPEATED, contour, at - offsets[contour], repeats[at])

@@ -24,7 +24,7 @@ from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
 from ..types import BoolArray, FloatArray, IntArray
 from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
-from .segments import ROUNDING, Segments
+from .segments import ROUNDING, Segments, rows
 
 SHARP = np.radians(30.0)
 """Angle between the sides of a spike's tip, at most."""
@@ -71,12 +71,9 @@ def _crossed(crossed: FloatArray) -> FloatArray:
     """Overlaps and self-crossings, a row for each pair of contours: from (k, 4) crossings."""
     crossed = crossed[np.lexsort(crossed.T[::-1])]
     pairs, first, counts = np.unique(crossed[:, :2], axis=0, return_index=True, return_counts=True)
-    rows = np.full((len(pairs), 7), np.nan)
     itself = pairs[:, 0] == pairs[:, 1]
-    rows[:, 0] = np.where(itself, CROSSING, OVERLAP)
-    rows[:, 1], rows[:, 2], rows[:, 3] = pairs[:, 0], crossed[first, 2], counts
-    rows[:, 5] = np.where(itself, -1, pairs[:, 1])
-    return rows
+    what, other = np.where(itself, CROSSING, OVERLAP), np.where(itself, -1, pairs[:, 1])
+    return rows(what, pairs[:, 0], crossed[first, 2], counts, other=other)
 
 
 def _doubled(
@@ -91,7 +88,7 @@ def _doubled(
         crosses: (C,) whether a contour crosses another one.
     """
     stretches = touching[touching[:, 4] > touching[:, 2]]
-    rows = []
+    found = []
     for c, d in np.unique(stretches[:, :2].astype(np.int64), axis=0).tolist():
         own = stretches[(stretches[:, :2] == (c, d)).all(axis=1), 2:]
         own = own[np.argsort(own[:, 0], kind="stable")]
@@ -108,8 +105,8 @@ def _doubled(
                 # Share of a contour that lies on another one in the same direction, from which it is a copy.
                 total *= total >= 0.9 * min(integrals(one)[0], integrals(other)[0])
         if total >= least:
-            rows.append((DOUBLED, c, own[0, 0], total, np.nan, -1 if c == d else d, np.nan))
-    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+            found.append((c, own[0, 0], total, np.nan, -1 if c == d else d))
+    return rows(DOUBLED, *np.array(found, dtype=np.float64).reshape(-1, 5).T)
 
 
 def _length_of(chain: FloatArray, stretches: FloatArray) -> float:
@@ -140,15 +137,15 @@ def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float)
     chosen = exact | ((opens <= SHARP) & ~wide)
     tips = reverse[chosen]
     owners = np.searchsorted(offsets, tips, side="right") - 1
-    rows = []
+    found = []
     for tip, c, exactly in zip(tips.tolist(), owners.tolist(), exact[chosen].tolist(), strict=True):
         contour, joint = cubics[offsets[c] : offsets[c + 1]], tip - int(offsets[c])
         run, what = spur_length(contour, joint, apart) if exactly else 0.0, DOUBLED
         if run < limits.doubled:
             run, what = spur_length(contour, joint, limits.spike), SPIKE
         if run >= (limits.doubled if what == DOUBLED else 2 * limits.spike):
-            rows.append((what, c, joint, run, np.nan, -1, np.nan))
-    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+            found.append((what, c, joint, run))
+    return rows(*np.array(found, dtype=np.float64).reshape(-1, 4).T)
 
 
 def _wrong_directions(
@@ -165,10 +162,7 @@ def _wrong_directions(
     wanted = np.full(len(most), way) if way else np.where(most != 0, most, total)
     hidden = (areas != 0) & ~bounds & ~lies
     which = np.flatnonzero(hidden | (outer & (areas * wanted[owners] < 0)))
-    found = np.full((len(which), 7), np.nan)
-    found[:, 0], found[:, 1], found[:, 2] = DIRECTION, which, 0.0
-    found[:, 3], found[:, 5] = np.abs(areas[which]), np.where(hidden[which], around[which], -1)
-    return found
+    return rows(DIRECTION, which, 0.0, np.abs(areas[which]), other=np.where(hidden[which], around[which], -1))
 
 
 @compiled

@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..outlines.contour_arrays import ContourArrays, offsets_of
+from ..outlines.contour_arrays import end_to_end
 from ..outlines.masters import Masters
+from ..outlines.outline import Contours
 from ..types import FloatArray, IntArray
 from .check import measured
 from .finding import Measured
@@ -47,10 +48,7 @@ def on_axes(
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]
     places = [places_of(masters, location, chosen, steps) for masters in glyphs]
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
-    repeats = [
-        own for masters, at in zip(glyphs, places, strict=True) for own in (masters.repeats, *[None] * (len(at) - 1))
-    ]
-    rows = measured(instances, thresholds, em, outer, repeats)
+    rows = measured(instances, thresholds, em, outer)
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
@@ -84,14 +82,11 @@ def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[in
     return found
 
 
-def instances_of(masters: Masters, at: FloatArray) -> list[ContourArrays]:
-    """The glyph at normalised places (V, A)."""
-    contours, weights = masters.contours, masters.weights_at(at)
-    every = np.concatenate([np.empty((len(masters), 0, 2)), *(contour.points for contour in contours)], axis=1)
-    degrees = np.concatenate([np.empty(0, dtype=np.int64), *(contour.degrees for contour in contours)])
-    offsets = offsets_of([len(contour.degrees) for contour in contours])
-    starts = offsets_of([contour.points.shape[1] for contour in contours])
-    return [ContourArrays(points, degrees, offsets, starts) for points in np.tensordot(weights, every, axes=1)]
+def instances_of(masters: Masters, at: FloatArray) -> list[Contours]:
+    """The glyph at normalised places (V, A); the first has all points that the masters have more than once."""
+    every = end_to_end([(contour.points, contour.degrees) for contour in masters.contours])
+    instances = np.tensordot(masters.weights_at(at), every.points.reshape(len(masters), -1, 2), axes=1)
+    return [Contours(every._replace(points=p), None if k else masters.repeats) for k, p in enumerate(instances)]
 
 
 def joints_of(rows: Measured) -> list[tuple[int, int, int]]:

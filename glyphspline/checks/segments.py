@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..compiled import compiled
 from ..outlines.contour_arrays import ContourArrays
@@ -47,6 +48,15 @@ WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER, SEEN = range(7)
 """Columns of the table (n, 7) that passes return: number of the kind; contour; place on it, segment and local
 parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1; how far it is
 seen, see :class:`.Finding`, or NaN."""
+
+
+def rows(
+    what: ArrayLike, contour: ArrayLike, place: ArrayLike, value: ArrayLike, detail: ArrayLike = np.nan,
+    other: ArrayLike = -1,
+) -> FloatArray:  # fmt: skip
+    """(n, 7) rows of the table; see ``WHAT``. A number counts for all rows."""
+    columns = np.broadcast_arrays(what, contour, place, value, detail, other, np.nan)
+    return np.stack([column.astype(np.float64) for column in columns], axis=1)
 
 
 class Segments(NamedTuple):

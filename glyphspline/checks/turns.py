@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..curves.bezier import cross
+from ..curves.bezier import AT_END, cross, roots_inside
 from ..outlines.masters import MasterContour
 from ..types import FloatArray
 
@@ -22,9 +22,6 @@ LEAST = 1e-6
 
 STRAIGHT = 1e-3
 """Curvature, in 1/em, up to which both sides of a joint are straight, and none jumps against the other."""
-
-INSIDE = 1e-9
-"""Share of an interval that separates its inside from a tick, where a handle may have no length."""
 
 SAMPLES = 9
 """Places between two ticks where the jump of curvature is sampled first."""
@@ -81,13 +78,13 @@ def largest_turns(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Float
     da, db = -chosen[1, :, 0] - a, chosen[1, :, 1] - b
     sines = (cross(a, b), cross(a, db) + cross(da, b), cross(da, db))
     cosines = ((a * b).sum(-1), (a * db + da * b).sum(-1), (da * db).sum(-1))
-    roots = _roots(
+    roots = roots_inside(
         sines[2] * cosines[1] - sines[1] * cosines[2],
-        sines[2] * cosines[0] - sines[0] * cosines[2],
+        2 * (sines[2] * cosines[0] - sines[0] * cosines[2]),
         sines[1] * cosines[0] - sines[0] * cosines[1],
     )
-    shares = np.stack([np.full(len(a), INSIDE), np.full(len(a), 1 - INSIDE), *roots], axis=1)
-    shares = np.nan_to_num(shares.clip(INSIDE, 1 - INSIDE), nan=INSIDE)
+    inner = np.broadcast_to([AT_END, 1 - AT_END], roots.shape)  # at a tick itself a handle may have no length
+    shares = np.nan_to_num(np.concatenate([inner, roots], axis=1), nan=AT_END)
     s = shares[..., None]
     inside = np.abs(_angle(a[:, None] + s * da[:, None], b[:, None] + s * db[:, None]))
     at_ticks = np.abs(np.stack([turns_of(start), turns_of(end)], axis=1))
@@ -95,13 +92,6 @@ def largest_turns(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Float
     ways = np.concatenate([np.zeros((len(a), 1)), np.ones((len(a), 1)), shares], axis=1)
     best = (turns + 1e-9 * (np.arange(6) < 2)).argmax(axis=1)[:, None]  # of two alike, the tick
     return np.take_along_axis(turns, best, axis=1)[:, 0], np.take_along_axis(ways, best, axis=1)[:, 0]
-
-
-def _roots(a: FloatArray, half: FloatArray, c: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(N,) the roots of a s² + 2 half s + c; NaN or infinite where there are none."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        q = -(half + np.copysign(np.sqrt(half * half - a * c), half))
-        return q / a, c / q
 
 
 def largest_jumps(start: FloatArray, end: FloatArray, units_per_em: FloatArray) -> tuple[FloatArray, FloatArray]:

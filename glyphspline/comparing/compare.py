@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -48,46 +49,32 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
 def compare_many(old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None) -> list[Difference]:
     """As :func:`compare`, of many pairs at once; the result of a pair does not depend on the others."""
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
-    scales = [a.metrics.units_per_em / b.metrics.units_per_em for a, b in zip(old, new, strict=True)]
-    mine = [outline.arrays for outline in old]
-    its = [scaled(outline.arrays, scale) for outline, scale in zip(new, scales, strict=True)]
-    changed = [k for k, pair in enumerate(zip(mine, its, strict=True)) if not _are_equal(*pair)]
-    found = [_difference(a, b, scale) for a, b, scale in zip(old, new, scales, strict=True)]
+    found, moved, changed = list[Difference](), list[ContourArrays](), list[int]()
+    for k, (a, b) in enumerate(zip(old, new, strict=True)):
+        scale = a.metrics.units_per_em / b.metrics.units_per_em
+        mine, its = a.arrays, b.arrays
+        its = its if scale == 1 else its._replace(points=its.points * scale)
+        identical = all(u.tobytes() == v.tobytes() or np.array_equal(u, v) for u, v in zip(mine, its, strict=True))
+        codes = tuple(sorted({*a.unicodes, *b.unicodes}))
+        found.append(Difference(
+            a.name, a.gid, b.name, b.gid, codes, identical, 0.0, 0.0, None, a.advance, b.advance * scale, scale
+        ))  # fmt: skip
+        if not identical:
+            moved.append(its)
+            changed.append(k)
     if changed:
         one, other = ([outlines[k] for k in changed] for outlines in (old, new))
-        those = _changed(one, other, [its[k] for k in changed], [scales[k] for k in changed], tolerance)
-        for k, difference in zip(changed, those, strict=True):
-            found[k] = difference
+        facts = _changed(one, other, moved, [found[k].scale for k in changed], tolerance)
+        for k, of_pair in zip(changed, facts, strict=True):
+            found[k] = replace(found[k], **of_pair)
     return found
-
-
-def scaled(contours: ContourArrays, scale: float) -> ContourArrays:
-    """Contours whose points are multiplied by a number."""
-    return contours if scale == 1 else contours._replace(points=contours.points * scale)
-
-
-def _are_equal(one: ContourArrays, other: ContourArrays) -> bool:
-    """Whether contours are the same numbers in the same order."""
-    return all(a.tobytes() == b.tobytes() or np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-
-
-def _difference(
-    old: Outline, new: Outline, scale: float, identical: bool = True, bound: float = 0.0, seen: float = 0.0,
-    worst: Apart | None = None, *gone_and_new: Any,
-) -> Difference:  # fmt: skip
-    """The difference of two outlines, with what both of them say themselves."""
-    codes = old.unicodes if old.unicodes == new.unicodes else tuple(sorted({*old.unicodes, *new.unicodes}))
-    return Difference(
-        old.name, old.gid, new.name, new.gid, codes, identical, bound, seen, worst, old.advance, new.advance * scale,
-        scale, *gone_and_new,
-    )  # fmt: skip
 
 
 def _changed(
     old: Sequence[Outline], new: Sequence[Outline], moved: Sequence[ContourArrays], scales: Sequence[float],
     tolerance: float | None,
-) -> Iterator[Difference]:  # fmt: skip
-    """The differences of outlines whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
+) -> Iterator[dict[str, Any]]:  # fmt: skip
+    """How outlines differ whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
     from .outline_distance import outline_distances
 
@@ -108,9 +95,10 @@ def _changed(
         reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, MOVED * em))
         turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
         worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
-        yield _difference(
-            old[g], new[g], scales[g], False, bound, seen, worst, gone, came, turns_gone, turns_new
-        )  # fmt: skip
+        yield {
+            "bound": bound, "seen": seen, "worst": worst, "contours_gone": gone, "contours_new": came,
+            "kinks_gone": turns_gone, "kinks_new": turns_new,
+        }  # fmt: skip
 
 
 def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:

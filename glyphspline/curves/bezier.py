@@ -6,6 +6,9 @@ import numpy as np
 
 from ..types import FloatArray
 
+AT_END = 1e-9
+"""Parameter distance within which a root is an end of its piece, but for rounding."""
+
 
 def evaluate(pieces: FloatArray, x: FloatArray) -> FloatArray:
     """Evaluate each piece at its own local parameter, by de Casteljau: (m, degree + 1, k) and (m,) give (m, k)."""
@@ -30,6 +33,19 @@ def split(pieces: FloatArray, x: float | FloatArray = 0.5) -> tuple[FloatArray, 
         left.append(pieces[..., 0, :])
         right.append(pieces[..., -1, :])
     return np.stack(left, axis=-2), np.stack(right[::-1], axis=-2)
+
+
+def roots_inside(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """(..., 2) the roots of a t² + b t + c inside (0, 1), ascending; NaN for those that there are not, and double ones.
+
+    Such a root of a derivative is an inflection, not an extremum. Within ``AT_END`` of an end a root is that end.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(b * b - 4 * a * c)
+        q = -0.5 * (b + np.where(b >= 0, root, -root))
+        roots = np.stack([c / q, q / a], axis=-1)  # one is infinite where the equation is linear
+    roots[~((root > 0)[..., None] & (roots > AT_END) & (roots < 1 - AT_END))] = np.nan
+    return np.sort(roots, axis=-1)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

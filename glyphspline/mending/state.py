@@ -43,8 +43,7 @@ class State:
         """Check a glyph: where it is, or in its masters and along all its axes."""
         if not masters.axes:
             em = masters.metrics.units_per_em
-            rows = measured([masters.master(0).arrays], thresholds, em, outer, [masters.repeats])
-            return cls(rows)
+            return cls(measured([masters.master(0).contours], thresholds, em, outer))
         rows, _ = on_axes([masters], {}, [axis.tag for axis in masters.axes], STEPS, thresholds, outer)
         return cls(rows)
 

@@ -71,6 +71,15 @@ def cubic_contours(cubics: FloatArray, offsets: IntArray) -> ContourArrays:
     return ContourArrays(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3), offsets, 3 * offsets)
 
 
+def end_to_end(contours: Sequence[tuple[FloatArray, IntArray]]) -> ContourArrays:
+    """Contours from the points (..., N, 2) and degrees of each; ``points`` of several masters are end to end in all."""
+    if not contours:
+        return NO_CONTOURS
+    points, degrees = zip(*contours, strict=True)
+    offsets, starts = offsets_of([len(each) for each in degrees]), offsets_of([each.shape[-2] for each in points])
+    return ContourArrays(np.concatenate(points, axis=-2), np.concatenate(degrees), offsets, starts)
+
+
 def offsets_of(lengths: Sequence[int] | IntArray) -> IntArray:
     """(C + 1,) first index of each of C parts end to end, and their total length."""
     offsets = np.zeros(len(lengths) + 1, dtype=np.int64)

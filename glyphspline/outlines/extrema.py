@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..curves.bezier import evaluate, split
+from ..curves.bezier import evaluate, roots_inside, split
 from ..types import FloatArray
 from .outline import Contour
 
@@ -17,9 +17,6 @@ tolerance, the fit's and not the letter's; with a point at each, straight stems 
 SHORTEST = 2e-3
 """Of the em: chord of the shortest piece that a split may leave. A third of it, a handle, still rounds to a whole
 unit of 1/1000 em; off tight turns the nearer joint misses the extremum by far less."""
-
-AT_END = 1e-9
-"""A root of the derivative within this parameter distance of an end of its segment is that end, but for rounding."""
 
 
 def with_extrema(contour: Contour, em: float) -> Contour:
@@ -69,8 +66,9 @@ def extremal_places(values: FloatArray, height: float) -> list[float]:
     """
     steps = np.diff(values, axis=1)
     turning = np.flatnonzero(~((steps >= 0).all(axis=1) | (steps <= 0).all(axis=1)))
-    roots = stationary(steps[turning])
-    inner = (roots > AT_END) & (roots < 1 - AT_END)
+    first, second, third = steps[turning].T
+    roots = roots_inside(first - 2 * second + third, 2 * (second - first), first)
+    inner = ~np.isnan(roots)
     of, t = np.repeat(turning, inner.sum(axis=1)), roots[inner]
     places = np.concatenate([np.arange(float(len(values))), of + t])
     heights = np.concatenate([values[:, 0], evaluate(values[of, :, None], t)[:, 0]])
@@ -95,17 +93,3 @@ def peaks(values: Sequence[float], height: float) -> list[int]:
             chosen.append(best)
             best, sign = i, -sign
     return chosen
-
-
-def stationary(steps: FloatArray) -> FloatArray:
-    """(r, 2) the parameters where cubics turn in one coordinate, from (r, 3) steps between Bézier points.
-
-    NaN where there are fewer. At a double root a curve has an inflection, not an extremum.
-    """
-    c, b, a = steps[:, 0], 2 * (steps[:, 1] - steps[:, 0]), steps[:, 0] - 2 * steps[:, 1] + steps[:, 2]
-    linear = np.abs(a) <= 1e-12 * (np.abs(b) + np.abs(c))  # a quadratic as a cubic, but for rounding errors
-    with np.errstate(divide="ignore", invalid="ignore"):
-        discriminant = b * b - 4 * a * c
-        q = -0.5 * (b + np.copysign(np.sqrt(np.where(discriminant > 0, discriminant, np.nan)), b))
-        found = np.stack([np.where(linear, -c / b, q / a), np.where(linear, np.nan, c / q)], axis=1)
-    return np.sort(found, axis=1)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..curves.bezier import evaluate
 from ..types import FloatArray, IntArray, Views, counted
-from .contour_arrays import NO_CONTOURS, ContourArrays, offsets_of
+from .contour_arrays import ContourArrays, end_to_end
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,26 +104,20 @@ class Contours(Views[Contour]):
 
     Attributes:
         arrays: the contours end to end. repeats: (m,) how many more times the font has the point where each segment
-            begins: readers leave out segments of no length. None if it has no point twice, or is no font.
+            begins: readers leave out segments of no length.
     """
 
     __slots__ = ("arrays", "repeats")
 
     def __init__(self, contours: Iterable[Contour] | ContourArrays = (), repeats: IntArray | None = None) -> None:
-        self.repeats = repeats
         if isinstance(contours, ContourArrays):
             self.arrays = contours
             super().__init__(contours.num_contours, lambda: _views(contours))
-            return
-        given = tuple(contours)
-        if given:
-            points = np.concatenate([contour.points for contour in given])
-            degrees = np.concatenate([contour.degrees for contour in given])
-            offsets = offsets_of([len(contour.degrees) for contour in given])
-            self.arrays = ContourArrays(points, degrees, offsets, offsets_of([len(c.points) for c in given]))
         else:
-            self.arrays = NO_CONTOURS
-        super().__init__(len(given), lambda: given)
+            given = tuple(contours)
+            self.arrays = end_to_end([(contour.points, contour.degrees) for contour in given])
+            super().__init__(len(given), lambda: given)
+        self.repeats = np.zeros(len(self.arrays.degrees), dtype=np.int64) if repeats is None else repeats
 
 
 def _views(contours: ContourArrays) -> list[Contour]:
@@ -182,7 +176,7 @@ class Outline:
         return self.contours.arrays
 
     @property
-    def repeats(self) -> IntArray | None:
+    def repeats(self) -> IntArray:
         """Of points that the font has more than once; see :class:`Contours`."""
         assert isinstance(self.contours, Contours)
         return self.contours.repeats

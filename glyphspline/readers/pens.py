@@ -89,10 +89,9 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         return Contours([Contour.trusted(stack.points[0], stack.degrees) for stack in self.stacks], self.repeated)
 
     @property
-    def repeated(self) -> IntArray | None:
-        """The repeats of all contours, or None if there are none."""
-        repeats = np.concatenate(self.repeats) if self.repeats else np.zeros(0, dtype=np.int64)
-        return repeats if repeats.any() else None
+    def repeated(self) -> IntArray:
+        """The repeats of all contours."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *self.repeats])
 
     @property
     def notes(self) -> tuple[str, ...]:

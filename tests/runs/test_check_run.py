@@ -119,10 +119,10 @@ def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) ->
     font, real = gs.open_source(KOUZAN), check.measured
     most = max(font.outlines(font.glyph_names), key=lambda outline: len(outline.arrays.degrees))
 
-    def fails(outlines: Any, *others: Any) -> Any:
-        if any(len(arrays.degrees) == len(most.arrays.degrees) for arrays in outlines):
+    def fails(glyphs: Any, *others: Any) -> Any:
+        if any(len(each.repeats) == len(most.repeats) for each in glyphs):
             raise ZeroDivisionError("of all things")
-        return real(outlines, *others)
+        return real(glyphs, *others)
 
     whole = found(KOUZAN, once=False)
     monkeypatch.setattr(check, "measured", fails)

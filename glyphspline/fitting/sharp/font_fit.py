@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...checks.kinds import JUMP, KINK, THRESHOLDS
-from ...checks.segments import CONTOUR, PLACE, SEEN, WHAT, Segments, joint_findings, segment_findings
+from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
 from ...compiled import compiled
 from ...curves.cubics import turns
 from ...curves.nearest import near_places
@@ -161,15 +161,13 @@ def _findings(contours: ContourArrays, em: float) -> FloatArray:
 
 def _turning(contours: ContourArrays) -> FloatArray:
     """(n, 7) joints of curves that turn, also where a check takes that for rounding's."""
-    rows = []
+    found = []
     for c in range(contours.num_contours):
         part = contours.part(c, c + 1)
         line = part.degrees == 1
         joints = np.flatnonzero((np.abs(turns(all_cubics(part), NO_HANDLE)) > KINKED) & ~(line & np.roll(line, 1)))
-        own = np.zeros((len(joints), SEEN + 1))
-        own[:, WHAT], own[:, CONTOUR], own[:, PLACE] = KINK, c, joints
-        rows.append(own)
-    return np.concatenate(rows)
+        found.append(rows(KINK, c, joints, 0.0))
+    return np.concatenate(found)
 
 
 def _new_findings(

@@ -270,17 +270,16 @@ class BulkReader:
                 points, degrees, offsets, starts, repeats, left_out, before, unusual, snapped = _contours(
                     self._buffer, places, expected
                 )
-            repeated = repeats.any()
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
             for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
                     found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
-                its = repeats[m:n] if repeated and repeats[m:n].any() else None
+                contours, notes = Contours(own, repeats[m:n]), notes_of(left_out[a:b].tolist()) if b > a else ()
                 made = Outline.trusted(
-                    name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=Contours(own, its),
-                    metrics=metrics, notes=notes_of(left_out[a:b].tolist()) if b > a else (), snapped=moved,
+                    name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=contours,
+                    metrics=metrics, notes=notes, snapped=moved,
                 )  # fmt: skip
                 found.append(made)
         return found

@@ -103,8 +103,8 @@ class CheckJob(Job[Head, Checked]):
         """Findings of every kind, and all smooth joints along each axis."""
         from ...checks.check import measured
 
-        arrays, repeats = [outline.arrays for outline in glyphs], [outline.repeats for outline in glyphs]
-        return measured(arrays, self.thresholds, glyphs[0].metrics.units_per_em, self.outer, repeats), ()
+        em = glyphs[0].metrics.units_per_em
+        return measured([outline.contours for outline in glyphs], self.thresholds, em, self.outer), ()
 
     def failed(self, task: Head, error: Exception) -> Checked:
         """Why a glyph could not be checked."""

@@ -97,7 +97,7 @@ def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
     return {
         "contours": sum(len(outline.contours) for outline in outlines),
         "segments": sum(len(outline.arrays.degrees) for outline in outlines),
-        "doubled_points": sum(int(outline.repeats.sum()) for outline in outlines if outline.repeats is not None),
+        "doubled_points": sum(int(outline.repeats.sum()) for outline in outlines),
         "leftover_points": leftovers(outlines),
         "contours_left_out": sum(left_out),
         "broken_glyphs": len(broken),
