@@ -22,11 +22,12 @@ from .tables import plain
 
 if TYPE_CHECKING:
     from ..mending.mend import Change
+    from ..readers import Font
     from ..readers.designspace import Designspace
     from ..readers.ufo import Ufo
     from ..runs.jobs.mend import MendedSource
 
-SOURCES_HELP = "UFOs, designspaces and Glyphs files."
+SOURCES_HELP = "UFOs, designspaces, Glyphs files, and fonts: TTF and OTF, static or variable, WOFF and WOFF2."
 LEFT = 5
 """Findings that are left and named."""
 
@@ -60,7 +61,7 @@ def mend(
     Points go only where short, straight and repeated are asked for. What would move outlines by more than the
     tolerance, or bring a new finding of any kind, is left and named, and ends the command with status 1.
     """
-    from ..readers import open_source
+    from ..readers import Font, open_source
     from ..readers.designspace import Designspace
     from ..readers.ufo import Ufo
     from ..runs.jobs.mend import mend_source
@@ -77,8 +78,8 @@ def mend(
     with workers(run.jobs, kinds=["checks"], expected=1) as pool:
         for path in sources:
             source = open_source(path)
-            if not isinstance(source, Ufo | Designspace):
-                stop(f"{path}: only UFOs, designspaces and Glyphs files are mended")
+            if not isinstance(source, Ufo | Designspace | Font):
+                stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
             names: Sequence[str] = source.glyph_names
             if subset.is_given:
                 chosen = subset.of(source)
@@ -102,7 +103,7 @@ def mend(
     return undone or any(one.left or one.failed for one in found)
 
 
-def copy_of(source: Ufo | Designspace, out: Path) -> Path:
+def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
     """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
     from ..files import make_folder
     from ..readers.designspace import Designspace, GlyphsFile

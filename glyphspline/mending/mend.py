@@ -9,7 +9,7 @@ go, or change their order (:mod:`.fewer`), one finding after the other.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, overload
 
@@ -23,7 +23,7 @@ from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
 from .joints import controls_of, moves, obstacle, points_of
 from .shapes import shape_moves, starts_of
-from .state import Design, Key, State, distances
+from .state import Design, Into, Key, State, distances
 
 PER_EM = 1e-3
 """The tolerance as a share of the em, unless another is given."""
@@ -33,6 +33,9 @@ GOOD = 0.25
 
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
+
+
+ANYWHERE = Into()
 
 
 @dataclass(frozen=True)
@@ -130,20 +133,14 @@ def check_kinds(kinds: Collection[str]) -> None:
 
 def mended(
     masters: Masters, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
-    fixed: Mapping[int, str] | None = None, stored: Callable[[Masters], Masters] | None = None,
-    points_stay: str | None = None,
+    into: Into = ANYWHERE,
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
-    """As :func:`mend`.
-
-    Args:
-        fixed: contours that may not change, and why. stored: what a file makes of a glyph, whose numbers are coarser.
-        points_stay: why no points may go or change their order, if they may not.
-    """
+    """As :func:`mend`; ``into``: what it goes back into."""
     tolerance = PER_EM * masters.metrics.units_per_em if tolerance is None else tolerance
     state = State.of(masters, thresholds, outer)
     if not any(state.values[kind] for kind in kinds):
         return masters, []
-    glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds.kink), thresholds, outer, fixed or {}, stored)
+    glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds.kink, into.step), thresholds, outer, into)
     new, changes = masters, []
     for kind in MENDED:
         if kind in kinds and state.values[kind] and kind not in EDITED:
@@ -151,7 +148,7 @@ def mended(
             changes += own
     edited = [kind for kind in EDITED if kind in kinds and state.values[kind]]
     if edited:
-        new, own = glyph.edited(new, state, edited, points_stay)
+        new, own = glyph.edited(new, state, edited)
         changes += own
     return new, changes
 
@@ -164,8 +161,7 @@ class _Glyph:
     design: Design
     thresholds: Thresholds
     outer: int
-    fixed: Mapping[int, str]
-    stored: Callable[[Masters], Masters] | None
+    into: Into
 
     def change(self, kind: str, place: tuple[int, int], value: float) -> Change:
         """A finding that is still there."""
@@ -179,28 +175,28 @@ class _Glyph:
         faults = []
         for place, value in before.values[kind].items():
             old, own = self.masters.contours[place[0]], now.contours[place[0]]
-            faults.append(_Fault.of(self.change(kind, place, value), old, own, self.design, self.fixed.get(place[0])))
+            faults.append(
+                _Fault.of(self.change(kind, place, value), old, own, self.design, self.into.fixed.get(place[0]))
+            )
         while True:
             if not any(fault.is_moved for fault in faults):
                 return now, before, [fault.left() for fault in faults]
             trial = _with(now, faults)
-            if self.stored is not None:
-                trial = self.stored(trial)
+            if self.into.stored is not None:
+                trial = self.into.stored(trial)
             after = State.of(trial, self.thresholds, self.outer)
             beyond = _beyond(self.masters, trial, faults, self.design)
             if not _advance(faults, before, after, beyond, kind):
                 return trial, after, [fault.result() for fault in faults]
 
-    def edited(
-        self, now: Masters, before: State, kinds: Sequence[str], points_stay: str | None
-    ) -> tuple[Masters, list[Change]]:
+    def edited(self, now: Masters, before: State, kinds: Sequence[str]) -> tuple[Masters, list[Change]]:
         """Mend findings for which points go, one after the other."""
         contours = [Edited.of(*each) for each in zip(now.contours, now.repeats_of, strict=True)]
         changes, most = [], before.found.total()
         for kind in kinds:
             for (c, segment), value in before.values[kind].items():
                 change = self.change(kind, (c, segment), value)
-                why = self.fixed.get(c) or points_stay
+                why = self.into.fixed.get(c) or self.into.points_stay
                 at = contours[c].number(segment)
                 if why or at is None:
                     changes.append(replace(change, why=why or "went with its neighbour"))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +56,22 @@ def _keys(rows: Measured) -> list[Key]:
     return [*zip(*(x.tolist() for x in (rows.kinds, rows.contours, segments, rows.numbers[:, 3])), strict=True)]
 
 
+@dataclass(frozen=True)
+class Into:
+    """What the file that a glyph goes back into allows.
+
+    Attributes:
+        fixed: contours that may not change, and why. points_stay: why no points may go or change their order.
+        stored: what the file makes of a glyph: it rounds coordinates. step: to which multiple of a unit; None if that
+            is to be seen from the points.
+    """
+
+    fixed: Mapping[int, str] = field(default_factory=dict)
+    points_stay: str | None = None
+    stored: Callable[[Masters], Masters] | None = None
+    step: float | None = None
+
+
 class Design(NamedTuple):
     """What holds for all joints of a glyph.
 
@@ -70,8 +88,8 @@ class Design(NamedTuple):
     kink: float
 
     @classmethod
-    def of(cls, masters: Masters, tolerance: float, kink: float) -> Design:
-        """Look at a glyph's axes and points."""
+    def of(cls, masters: Masters, tolerance: float, kink: float, step: float | None) -> Design:
+        """Look at a glyph's axes, and at its points where ``step`` is not known."""
         ticks = []
         for axis in range(len(masters.axes)):
             values = masters.ticks(axis)
@@ -81,7 +99,7 @@ class Design(NamedTuple):
         corners = masters.weights_at(masters.grid()) if masters.axes else np.ones((1, 1))
         every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
         digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
-        return cls(corners, ticks, float(10.0 ** -next(digits, DIGITS)), tolerance, kink)
+        return cls(corners, ticks, step or float(10.0 ** -next(digits, DIGITS)), tolerance, kink)
 
     def largest_turns(self, controls: FloatArray) -> FloatArray:
         """(n,) degrees by which joints (K, n, 2, 4, 2) turn at most, in the masters and along each axis: exact."""

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...checks.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
+from ...errors import OutputError
 from ...files import writing
 from ...mending.fewer import EDITED
 from ...mending.mend import Change, check_kinds, mended
-from ...mending.state import DIGITS
+from ...mending.state import DIGITS, Into
+from ...readers import Font
 from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo
 from ..engine import Item, Job, Observer, reason, run
@@ -24,6 +26,10 @@ if TYPE_CHECKING:
 
 OF_COMPONENT = "is of a component"
 """Why contours are left that another glyph draws; there they are mended."""
+
+
+FONT_KEEPS = "needs points to go or to change their order, and hints and variations of a font count them"
+"""Why such findings are left in fonts."""
 
 
 class Mended(NamedTuple):
@@ -56,7 +62,7 @@ class MendJob(Job[Head, list[Mended]]):
             try:
                 masters = source.masters(name)
                 count = sum(len(contour) for contour in masters.contours)
-                found.append(Limits().error_of(count) or Item((masters, _fixed(source, masters))))
+                found.append(Limits().error_of(count) or Item((masters, into_of(source, masters))))
             except Exception as error:  # broken data raises anything
                 found.append(error)
         return found
@@ -64,8 +70,8 @@ class MendJob(Job[Head, list[Mended]]):
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""
         found = []
-        for masters, fixed in contents:
-            new, changes = mended(masters, self.kinds, self.tolerance, self.thresholds, self.outer, fixed)
+        for masters, into in contents:
+            new, changes = mended(masters, self.kinds, self.tolerance, self.thresholds, self.outer, into)
             moved = None if new is masters else new
             found.append(Mended(masters if moved else None, moved, [c for c in changes if c.why != OF_COMPONENT]))
         return found
@@ -75,15 +81,23 @@ class MendJob(Job[Head, list[Mended]]):
         return [Mended(None, None, (), reason(error))]
 
 
-def _fixed(source: Any, masters: Masters) -> dict[int, str]:
-    """The contours of a glyph that may not change, and why."""
-    own = {index for index in source.own_contours(masters.name) if index is not None}
+def into_of(source: Any, masters: Masters) -> Into:
+    """What a source allows of a glyph."""
+    count = len(masters.contours)
+    if isinstance(source, Font):
+        from ...writers.back.fonts import edit_of
+
+        stored = edit_of(source).stored(masters)
+        own = {index for index in stored.owns if index is not None}
+        fixed = {number: OF_COMPONENT for number in range(count) if number not in own}
+        step = 1.0 if source.outer < 0 else None
+        return Into(fixed | dict(stored.why), FONT_KEEPS, stored.masters, step)
     from ...writers.ufo_folder import places_of
 
-    count = len(masters.contours)
+    own = {index for index in source.own_contours(masters.name) if index is not None}
     if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
-        return dict.fromkeys(range(count), "has masters in which only its components are drawn")
-    return {number: OF_COMPONENT for number in range(count) if number not in own}
+        return Into(dict.fromkeys(range(count), "has masters in which only its components are drawn"))
+    return Into({number: OF_COMPONENT for number in range(count) if number not in own})
 
 
 @dataclass
@@ -122,7 +136,7 @@ class MendedSource:
 
 
 def mend_source(
-    source: Ufo | Designspace,
+    source: Ufo | Designspace | Font,
     names: Sequence[str],
     *,
     kinds: Sequence[str] = MENDED_UNASKED,
@@ -134,7 +148,7 @@ def mend_source(
     executor: Executor | None = None,
     observer: Observer | None = None,
 ) -> MendedSource:
-    """Mend glyphs of a source, and write those that changed into it, a layer of it or a copy.
+    """Mend glyphs of a source or font, and write those that changed into it, a layer of it or a copy.
 
     Args:
         names: of the glyphs. kinds, tolerance, thresholds: see :func:`glyphspline.mend`.
@@ -144,10 +158,17 @@ def mend_source(
     Raises:
         OptionError: a kind cannot be mended. OutputError: the source takes nothing back, or cannot be written.
     """
-    from ...writers.back.back import editable, moved_points, write_back
-
     check_kinds(kinds)
-    editable(source)
+    if isinstance(source, Font):
+        from ...writers.back.fonts import edit_of
+
+        if layer is not None:
+            raise OutputError("is a font, which has no layers", font=str(source.path))
+        edit_of(source)
+    else:
+        from ...writers.back.back import editable
+
+        editable(source)
     index = {name: gid for gid, name in enumerate(source.glyph_names)}
     tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
@@ -161,9 +182,17 @@ def mend_source(
                 found.changes += one.changes
                 if one.old is not None and one.new is not None:
                     redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
-                    new.append(moved_points(source, one.old, one.new, redrawn))
+                    new.append((one.old, one.new, redrawn))
     with writing(copy or source.path):
-        written = write_back(source, new, DIGITS, copy=copy, layer=layer, dry=dry)
+        if isinstance(source, Font):
+            from ...writers.back.fonts import write_points
+
+            found.changed = write_points(source, [(old, now) for old, now, _ in new], copy=copy, dry=dry)
+            return found
+        from ...writers.back.back import moved_points, write_back
+
+        moved = [moved_points(source, *each) for each in new]
+        written = write_back(source, moved, DIGITS, copy=copy, layer=layer, dry=dry)
     found.changed = written.names
     kept = written.contours
     found.changes = [

@@ -176,19 +176,23 @@ def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class CharStrings2:
-    """The char strings of a font, to be replaced one by one. Those of other glyphs keep their bytes."""
+    """The char strings of a font, to be replaced one by one. Those of other glyphs keep their bytes.
+
+    Attributes:
+        regions: (A, 3) each, of every item of the font's variation store.
+    """
 
     def __init__(self, font: TTFont) -> None:
         self._font = font
         top = font["CFF2"].cff.topDictIndex[0]
         self._strings = top.CharStrings
-        self._data: list[list[FloatArray]] = []
+        self.regions: list[list[FloatArray]] = []
         if "VarStore" in top.rawDict:
             store = top.VarStore.otVarStore
             axes = font["fvar"].axes
             supports = [region.get_support(axes) for region in store.VarRegionList.Region]
             regions = [np.array([support.get(axis.axisTag, (0, 0, 0)) for axis in axes]) for support in supports]
-            self._data = [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
+            self.regions = [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
 
     def replace(self, name: str, redrawn: Redrawn) -> StoredGlyph:
         """Replace a glyph.
@@ -249,9 +253,9 @@ class CharStrings2:
         reader = SimpleT2Decompiler(getattr(private, "Subrs", []), old.globalSubrs, private)
         reader.execute(copy)
         known = {region_key(region): k for k, region in enumerate(regions)}
-        for index in (reader.vsIndex, *range(len(self._data))):
-            if index < len(self._data):
-                keys = [region_key(region) for region in self._data[index]]
+        for index in (reader.vsIndex, *range(len(self.regions))):
+            if index < len(self.regions):
+                keys = [region_key(region) for region in self.regions[index]]
                 if len(keys) == len(known) and set(keys) == known.keys():
                     return index, [known[key] for key in keys]
         raise GlyphsplineError(f"no item of the font's variation store has just its {len(regions)} regions")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -112,42 +113,50 @@ class Quadratics:
 
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
-        font, glyf = self._font, self._glyf
-        names = font.getGlyphOrder()
-        before = {}
-        for name in users(font, self._new):
-            glyph = glyf[name]
-            before[name] = (glyph.xMin, glyph.yMax) if glyph.numberOfContours else (0, 0)
-        touched = list(before)
-        for name, glyph in self._new.items():
-            glyf[name] = glyph
-        metrics, heights = font["hmtx"].metrics, font["vmtx"].metrics if "vmtx" in font else {}
-        maxp = font["maxp"]
-        for name in touched:
-            glyph = glyf[name]
-            glyph.recalcBounds(glyf)
-            left, top = before[name]
-            if glyph.numberOfContours:
-                advance, bearing = metrics[name]
-                metrics[name] = (advance, bearing + glyph.xMin - left)
-                if name in heights:
-                    height, bearing = heights[name]
-                    heights[name] = (height, bearing + top - glyph.yMax)
-            if glyph.isComposite():
-                values = glyph.getCompositeMaxpValues(glyf)
-                maxp.maxCompositePoints = min(max(maxp.maxCompositePoints, values.nPoints), 0xFFFF)
-                maxp.maxCompositeContours = min(max(maxp.maxCompositeContours, values.nContours), 0xFFFF)
-            elif glyph.numberOfContours:
-                maxp.maxPoints = max(maxp.maxPoints, len(glyph.coordinates))
-                maxp.maxContours = max(maxp.maxContours, glyph.numberOfContours)
-        bounds = [box for box in (_bounds(glyf.glyphs[name]) for name in names) if box]
-        if bounds:
-            head = font["head"]
-            low, high = np.min(bounds, axis=0), np.max(bounds, axis=0)
-            head.xMin, head.yMin, head.xMax, head.yMax = (int(v) for v in (*low[:2], *high[2:]))
+        put_glyphs(self._font, self._new)
         raw = DefaultTable("gvar")
         raw.data = self._gvar.compiled()
-        font["gvar"] = raw
+        self._font["gvar"] = raw
+
+
+def put_glyphs(font: TTFont, new: Mapping[str, Glyph]) -> bool:
+    """Put glyphs into ``glyf``: bounds, side bearings and maxima follow. Returns whether any bounds are others."""
+    glyf = font["glyf"]
+    names = font.getGlyphOrder()
+    before = {}
+    for name in users(font, new):
+        glyph = glyf[name]
+        before[name] = _bounds(glyph) or (0, 0, 0, 0)
+    touched = list(before)
+    for name, glyph in new.items():
+        glyf[name] = glyph
+    metrics, heights = font["hmtx"].metrics, font["vmtx"].metrics if "vmtx" in font else {}
+    maxp = font["maxp"]
+    follows = False
+    for name in touched:
+        glyph = glyf[name]
+        glyph.recalcBounds(glyf)
+        left, _, _, top = before[name]
+        if glyph.numberOfContours:
+            follows |= _bounds(glyph) != before[name]
+            advance, bearing = metrics[name]
+            metrics[name] = (advance, bearing + glyph.xMin - left)
+            if name in heights:
+                height, bearing = heights[name]
+                heights[name] = (height, bearing + top - glyph.yMax)
+        if glyph.isComposite():
+            values = glyph.getCompositeMaxpValues(glyf)
+            maxp.maxCompositePoints = min(max(maxp.maxCompositePoints, values.nPoints), 0xFFFF)
+            maxp.maxCompositeContours = min(max(maxp.maxCompositeContours, values.nContours), 0xFFFF)
+        elif glyph.numberOfContours:
+            maxp.maxPoints = max(maxp.maxPoints, len(glyph.coordinates))
+            maxp.maxContours = max(maxp.maxContours, glyph.numberOfContours)
+    bounds = [box for box in (_bounds(glyf.glyphs[name]) for name in names) if box]
+    if bounds and follows:
+        head = font["head"]
+        low, high = np.min(bounds, axis=0), np.max(bounds, axis=0)
+        head.xMin, head.yMin, head.xMax, head.yMax = (int(v) for v in (*low[:2], *high[2:]))
+    return follows
 
 
 def _bounds(glyph: Any) -> tuple[int, ...] | None:
