@@ -18,7 +18,7 @@ from . import arguments as opt
 from .config import CHECK, names_of, settings
 from .groups import Shown, collected, grouped, only
 from .messages import progress, say, stop
-from .running import say_face, say_missing
+from .running import chosen, say_face
 
 if TYPE_CHECKING:
     from ..readers import Source
@@ -66,20 +66,18 @@ def check(
     faces: list[Face] = []
     undone = False
 
-    def chosen(source: Source) -> Sequence[str]:
+    def names_in(source: Source) -> Sequence[str]:
         nonlocal undone
         if alone:
             say_face(source, instance, run.quiet)
         if not subset.is_given:
             return source.glyph_names
-        names = subset.of(source)
+        names = chosen(source, subset, run.quiet, None if alone else str(source.path))
         undone |= bool(names.missing)
-        if not run.quiet:
-            say_missing(names.missing, "" if alone else f"{source.path}: ")
         return names
 
     for face in check_fonts(
-        files, asked, chosen=chosen, face_index=instance.face_index,
+        files, asked, chosen=names_in, face_index=instance.face_index,
         location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
     ):  # fmt: skip
         faces.append(face)

@@ -28,11 +28,11 @@ from .messages import RULE, UNDONE, listen, print_json, printable, progress, say
 from .running import (
     Conversion,
     check_masters,
+    chosen,
     convert_fonts,
     convert_masters,
     run_face,
     say_face,
-    say_missing,
     workplace,
 )
 from .tables import font_lines, runs_facts, runs_table
@@ -241,15 +241,11 @@ def atlas(
         stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
     source = open_source(font, instance.face_index or 0, instance.place)
     say_face(source, instance, run.quiet)
-    names = subset.of(source)
-    if not run.quiet:
-        say_missing(names.missing)
-    if not names:
-        stop("none of the glyphs asked for is in the font")
-    chosen = None if profiles is None else source.select(text=opt.as_typed(profiles))
+    names = chosen(source, subset, run.quiet)
+    profiled = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
         made = make_atlas(
-            source, names, out, options, axis, profiles=chosen, maps=maps, jobs=run.jobs, observer=observer
+            source, names, out, options, axis, profiles=profiled, maps=maps, jobs=run.jobs, observer=observer
         )
     if not run.quiet:
         failed = made.failed

@@ -17,7 +17,7 @@ from . import arguments as opt
 from .check_command import thresholds_of
 from .groups import grouped, only
 from .messages import print_json, progress, say, stop
-from .running import say_missing
+from .running import chosen
 from .tables import plain
 
 if TYPE_CHECKING:
@@ -82,10 +82,8 @@ def mend(
                 stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
             names: Sequence[str] = source.glyph_names
             if subset.is_given:
-                chosen = subset.of(source)
-                undone |= bool(chosen.missing)
-                say_missing([] if run.quiet else chosen.missing)
-                names = chosen
+                names = asked = chosen(source, subset, run.quiet, str(path))
+                undone |= bool(asked.missing)
             copy = None if out is None else copy_of(source, out)
             with progress(run.quiet) as observer:
                 found.append(mend_source(

@@ -17,7 +17,7 @@ from .tables import FontRun, with_character
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..readers import Source
+    from ..readers import Selection, Source
     from ..runs.spec import RunSpec
     from ..runs.summary import Summary
 
@@ -55,6 +55,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
     from ..runs.file_names import folders_for
     from ..runs.folder import locked
     from ..runs.font_search import faces_of
+    from ..runs.summary import Summary
 
     face_index, folders = call.instance.face_index, [call.out]
     if alone:
@@ -75,7 +76,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
                     raise
                 if call.run.quiet or call.run.json_log:  # or else it is below the table
                     say(str(error))
-                runs.append(FontRun(str(font), folder, error=str(error)))
+                runs.append(FontRun(str(font), folder, Summary(), str(error)))
     return runs
 
 
@@ -86,13 +87,21 @@ def convert_face(source: Source, name: str, call: Conversion, executor: Executor
         call = replace(call, out=call.out / f"face-{source.face_index}")
     if alone:
         say_face(source, call.instance, call.run.quiet or call.run.json_log)
-    names = call.subset.of(source)
-    if not call.run.quiet:
-        say_missing(names.missing, "" if alone else f"{name}: ")
-    if alone and not names:
-        stop("none of the glyphs asked for is in the font")
+    names = chosen(source, call.subset, call.run.quiet, None if alone else name)
     summary = run_face(source, names, call, executor, None if alone else name)
     return FontRun(name, call.out, summary)
+
+
+def chosen(source: Source, subset: opt.Subset, quiet: bool, name: str | None = None) -> Selection:
+    """The glyphs that are asked for; what is not in the font is named, with the ``name`` of one font of several.
+
+    The command ends if there are none of them in a font alone.
+    """
+    names = subset.of(source)
+    say_missing(() if quiet else names.missing, f"{name}: " if name else "")
+    if name is None and not names:
+        stop("none of the glyphs asked for is in the font")
+    return names
 
 
 def say_missing(missing: Sequence[str], before: str = "") -> None:
@@ -132,11 +141,7 @@ def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleF
     sources = [open_source(font, call.instance.face_index or 0) for font in (*fonts, *(single.others or ()))]
     for source in sources:
         say_face(source, call.instance, run.quiet)
-    names = call.subset.of(sources[0])
-    if not run.quiet:
-        say_missing(names.missing)
-    if not names:
-        stop("none of the glyphs asked for is in the font")
+    names = chosen(sources[0], call.subset, run.quiet)
     with json_lines() if run.json_log else progress(run.quiet) as observer:
         summary = convert_font_masters(
             sources, names, call.out, call.spec, executor, axis=single.axis, restart=not run.resume, observer=observer

@@ -85,72 +85,59 @@ class FontRun:
 
     Attributes:
         name: of the file, with the face if there are several. out: its folder.
-        summary: None if the font could not be read; then ``error`` says why.
+        error: why the font could not be read; its summary is empty then.
     """
 
     name: str
     out: Path
-    summary: Summary | None = None
+    summary: Summary
     error: str | None = None
 
     @property
     def counts(self) -> tuple[int, int, int]:
         """Glyphs of the folder that have a result, that failed, and with a contour outside the tolerance."""
-        if self.summary is None:
-            return 0, 0, 0
         statuses = self.summary.statuses
         return statuses["ok"] + statuses["empty"], statuses["failed"], self.summary.outside_tolerance
 
     @property
-    def seconds(self) -> float:
-        """Time of the run."""
-        return 0.0 if self.summary is None else self.summary.seconds
-
-    @property
-    def failed(self) -> int:
-        """Number of glyphs that failed; a font that could not be read counts as one."""
-        return self.counts[1] if self.summary else 1
-
-    @property
     def undone(self) -> bool:
         """Whether something asked for was not done."""
-        return self.summary is None or self.summary.undone
+        return self.error is not None or self.summary.undone
 
     def failures(self) -> Iterator[str]:
         """What failed, the first three and the number of the others."""
         if self.error is not None:
             yield f"failed: {self.error}"
-        for glyph, error in self.summary.failures[:3] if self.summary else ():
+        for glyph, error in self.summary.failures[:3]:
             yield f"failed: {self.name}: {glyph}: {error}"
-        if self.failed > 3:
-            yield f"failed: {self.name}: and {self.failed - 3} more, in the manifest"
+        if self.summary.failed > 3:
+            yield f"failed: {self.name}: and {self.summary.failed - 3} more, in the manifest"
 
 
 def runs_table(runs: Sequence[FontRun]) -> str:
     """All fonts with the numbers of their glyphs; those with failures come last, and why fonts failed."""
-    order = sorted(runs, key=lambda run: (run.summary is None, run.failed > 0))
-    rows = [[run.name, *(map(str, run.counts) if run.summary else "---"), f"{run.seconds:.1f}"] for run in order]
+    order = sorted(runs, key=lambda run: (run.error is not None, run.summary.failed > 0))
+    rows = [[run.name, *("---" if run.error else map(str, run.counts)), f"{run.summary.seconds:.1f}"] for run in order]
     headings = ("font", "glyphs", "failed", "outside tolerance", "seconds")
     sums = [str(sum(column)) for column in zip(*(run.counts for run in runs), strict=True)]
-    footer = [f"{len(runs)} in all", *sums, f"{sum(run.seconds for run in runs):.1f}"]
+    footer = [f"{len(runs)} in all", *sums, f"{sum(run.summary.seconds for run in runs):.1f}"]
     return "\n".join([plain(headings, rows, headings[1:], footer), *(line for run in order for line in run.failures())])
 
 
 def runs_facts(runs: Sequence[FontRun]) -> dict[str, Any]:
     """All runs as JSON data."""
-    read = [run.summary for run in runs if run.summary is not None]
     glyphs, failed, outside = (sum(column) for column in zip(*(run.counts for run in runs), strict=True))
     return {
         "fonts": [
-            {"font": run.name, "out": str(run.out), "error": run.error, **(run.summary.facts() if run.summary else {})}
+            {"font": run.name, "out": str(run.out), "error": run.error, **({} if run.error else run.summary.facts())}
             for run in runs
         ],
         "glyphs": glyphs,
         "failed": failed,
         "outside_tolerance": outside,
-        "unreadable": len(runs) - len(read),
-        "missing": sum(len(summary.missing) for summary in read),
-        "seconds": round(sum(summary.seconds for summary in read), 3),
+        "unreadable": sum(run.error is not None for run in runs),
+        "missing": sum(len(run.summary.missing) for run in runs),
+        "seconds": round(sum(run.summary.seconds for run in runs), 3),
     }
 
 
