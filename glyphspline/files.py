@@ -60,45 +60,35 @@ def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> in
     """
     data = content.encode() if isinstance(content, str) else content
     partial = os.path.join(os.path.dirname(path), f".{os.getpid()}{PARTIAL}")
-    with writing(path):
-        # O_EXCL does not follow a link planted under the temporary name.
-        handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | O_BINARY, 0o666)
-        try:
-            try:
-                written = os.write(handle, data)
-                while written < len(data):
-                    written += os.write(handle, data[written:])
-                if durable:
-                    os.fsync(handle)
-            finally:
-                os.close(handle)
-            os.replace(partial, path)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(partial)
-            raise
+    with replacing(path, durable=durable, partial=partial) as file:
+        file.write(data)
     return len(data)
 
 
 @contextmanager
-def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
+def replacing(path: Path | str, *, durable: bool = False, partial: str | None = None) -> Iterator[BinaryIO]:
     """A file to write to, which gets its name when the block ends without an error; see :func:`write_whole`.
+
+    ``partial``: the temporary name; without it, one of this process for this file.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
-    partial = path.with_name(f".{path.name.strip('.')}-{os.getpid()}{PARTIAL}")
+    folder, name = os.path.split(path)
+    partial = partial or os.path.join(folder, f".{name.strip('.')}-{os.getpid()}{PARTIAL}")
     with writing(path):
+        file = open(partial, "xb")  # noqa: SIM115 -- x does not follow a link planted under the temporary name
         try:
-            with open(partial, "xb") as file:  # x does not follow a link planted under the temporary name
+            with file:
                 yield file
                 if durable:
                     file.flush()
                     os.fsync(file.fileno())
             os.replace(partial, path)
-        finally:
+        except BaseException:
             with suppress(OSError):
-                partial.unlink(missing_ok=True)
+                os.unlink(partial)
+            raise
 
 
 def make_folder(path: Path) -> None:
