@@ -43,32 +43,13 @@ KNOT = Contour(
 )  # fmt: skip
 """Crosses itself, and is fitted again more than once."""
 
-ROUND = Outline(
-    "round",
-    contours=[
-        Contour(
-            np.array(
-                [
-                    [300.0, 0],
-                    [300, 120],
-                    [210, 210],
-                    [120, 300],
-                    [0, 300],
-                    [-120, 300],
-                    [-210, 210],
-                    [-300, 120],
-                    [-300, 0],
-                    [-300, -300],
-                    [0, -300],
-                    [200, -300],
-                    [280, -100],
-                    [300, -50],
-                ]
-            ),
-            np.array([2, 2, 2, 2, 2, 2, 1, 1]),
-        )
-    ],
-)
+ROUND = Contour(
+    np.array([
+        [300.0, 0], [300, 120], [210, 210], [120, 300], [0, 300], [-120, 300], [-210, 210], [-300, 120], [-300, 0],
+        [-300, -300], [0, -300], [200, -300], [280, -100], [300, -50],
+    ]),
+    np.array([2, 2, 2, 2, 2, 2, 1, 1]),
+)  # fmt: skip
 """Quadratics, as TrueType has them."""
 
 SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
@@ -180,7 +161,7 @@ def fonts() -> None:
 
     options = Options(corners="sharp", continuity="g2", tolerance=0.3)
     converted(options)
-    quadratic_points(ROUND.arrays, options, 1.0, 1000.0)
+    quadratic_points(Outline("round", contours=(ROUND,)).arrays, options, 1.0, 1000.0)
 
 
 def masters() -> None:

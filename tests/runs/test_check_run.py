@@ -52,7 +52,8 @@ def pool() -> Iterator[Executor]:
 
 def found(path: Path, **options: Any) -> list[GlyphFindings]:
     font = gs.open_source(path)
-    return list(check_font(font, font.glyph_names, **options))
+    asked = Asked(**{name: options.pop(name) for name in ("thresholds", "steps") if name in options})
+    return list(check_font(font, font.glyph_names, asked, **options))
 
 
 def of(glyphs: Sequence[GlyphFindings], kind: str) -> list[Finding]:

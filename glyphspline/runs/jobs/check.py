@@ -169,95 +169,13 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
     return found
 
 
-class GlyphFindings(NamedTuple):
-    """What was found in a glyph.
-
-    Attributes:
-        findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
-        axes: its kinks along each axis in numbers; () if it is not looked at along axes, or could not be checked.
-        score: how far all its kinks, turns and jumps are seen, in thousandths of an em, whatever is looked for and in
-            whichever glyph they are reported; None if it could not be checked.
-    """
-
-    glyph: str
-    gid: int
-    findings: list[Finding]
-    error: str | None
-    axes: tuple[AxisNumbers, ...]
-    score: float | None
-
-
-def check_font(
-    source: Source,
-    names: Sequence[str],
-    thresholds: Thresholds = THRESHOLDS,
-    *,
-    kinds: frozenset[str] | None = None,
-    axes: Sequence[str] | None = None,
-    steps: int = STEPS,
-    executor: Executor | None = None,
-    observer: Observer | None = None,
-    once: bool = True,
-    kinks: list[Sequence[AxisKinks]] | None = None,
-) -> Iterator[GlyphFindings]:
-    """Check glyphs of a font; yield them in glyph index order. Nothing is fitted.
-
-    The result does not depend on the number of workers. A glyph that cannot be read, or takes longer than the workers'
-    time limit, has an error, and costs no other glyph.
-
-    Args:
-        source: the opened font; workers open it again by its path.
-        names: of its glyphs. thresholds: from which values on it counts. kinds: names of those looked for; None: all.
-        axes: tags of the axes along which glyphs of a variable font are checked; without it all, of () none: glyphs
-            are checked where the font is open.
-        steps: of each axis, at whose ends glyphs are checked besides the masters.
-        executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
-        observer: called after each chunk of glyphs.
-        once: a contour that occurs in several glyphs, as components do, is reported in the first one only, and so are
-            two that touch or cross. Directions, which depend on all contours of a glyph, are reported in each.
-        kinks: gets the smooth joints of each batch of glyphs along each axis.
-
-    Raises:
-        FontError: the source has no such glyph, or no such axis.
-    """
-    tags = tuple(axis.tag for axis in source.axes)
-    chosen = tags if axes is None else tuple(axes)
-    if unknown := [tag for tag in chosen if tag not in tags]:
-        raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
-    index = {name: gid for gid, name in enumerate(source.glyph_names)}
-    if unknown := [name for name in names if name not in index]:
-        raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
-    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
-    looked = frozenset(kind.name for kind in KINDS) if kinds is None else kinds
-    job = CheckJob(side_of(source), thresholds, looked, source.outer)
-    if chosen:
-        job = AxesJob(job.side, thresholds, looked, source.outer, chosen, steps, kinks is not None)
-
-    def glyphs() -> Iterator[GlyphFindings]:
-        reported = Shapes()
-        with workers(0, executor=executor) as pool:
-            for part in run(job, tasks, pool, ordered=True, observer=observer):
-                rows, numbers, shapes, scores, along, error = part.result
-                if kinks is not None and along:
-                    kinks.append(along)
-                if once:
-                    first = reported.first(shapes)
-                    fresh = (first >= 0) & (rows.glyphs[first] == rows.glyphs)  # rows are in the order of glyphs
-                    rows = rows.chosen(np.flatnonzero(fresh | (rows.kinds == DIRECTION)))
-                found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
-                for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
-                    yield GlyphFindings(name, gid, own, error, of_axes, score)
-
-    return glyphs()
-
-
 @dataclass(frozen=True)
 class Asked:
     """What is looked for, and what is kept of it.
 
     Attributes:
         kinds: names. kept: findings of this level or above are kept, others only counted.
-        axis: tag of the only one, or None. steps: see :func:`check_font`.
+        axis: tag of the only one, or None. steps: of each axis, at whose ends glyphs are checked besides the masters.
         baseline: known findings, or None. written: where all findings are added, or None.
         drawn: whether sources are kept, for drawings. joints: whether all smooth joints are kept, for a diagram.
     """
@@ -271,6 +189,87 @@ class Asked:
     written: Baseline | None = None
     drawn: bool = False
     joints: bool = False
+
+
+ALL = Asked()
+"""Findings of every kind."""
+
+
+class GlyphFindings(NamedTuple):
+    """What was found in a glyph.
+
+    Attributes:
+        findings: kinks first, the largest value of each kind first. error: why it could not be checked, or None.
+        axes: its kinks along each axis in numbers; () if it is not looked at along axes, or could not be checked.
+        score: how far all its kinks, turns and jumps are seen, in thousandths of an em, whatever is looked for and in
+            whichever glyph they are reported; None if it could not be checked.
+        kinks: along each axis, of it and the glyphs after it up to the next that has some, if joints are asked for.
+    """
+
+    glyph: str
+    gid: int
+    findings: list[Finding]
+    error: str | None
+    axes: tuple[AxisNumbers, ...]
+    score: float | None
+    kinks: Sequence[AxisKinks] = ()
+
+
+def check_font(
+    source: Source,
+    names: Sequence[str],
+    asked: Asked = ALL,
+    *,
+    axes: Sequence[str] | None = None,
+    executor: Executor | None = None,
+    observer: Observer | None = None,
+    once: bool = True,
+) -> Iterator[GlyphFindings]:
+    """Check glyphs of a font; yield them in glyph index order. Nothing is fitted.
+
+    The result does not depend on the number of workers. A glyph that cannot be read, or takes longer than the workers'
+    time limit, has an error, and costs no other glyph.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        names: of its glyphs. asked: what is looked for.
+        axes: tags of the axes along which glyphs of a variable font are checked; without it all, of () none: glyphs
+            are checked where the font is open.
+        executor: see :func:`.schedule.workers`; without it, glyphs are checked in this process. It is not closed.
+        observer: called after each chunk of glyphs.
+        once: a contour that occurs in several glyphs, as components do, is reported in the first one only, and so are
+            two that touch or cross. Directions, which depend on all contours of a glyph, are reported in each.
+
+    Raises:
+        FontError: the source has no such glyph, or no such axis.
+    """
+    tags = tuple(axis.tag for axis in source.axes)
+    chosen = tags if axes is None else tuple(axes)
+    if unknown := [tag for tag in chosen if tag not in tags]:
+        raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
+    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    if unknown := [name for name in names if name not in index]:
+        raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
+    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
+    job = CheckJob(side_of(source), asked.thresholds, asked.kinds, source.outer)
+    if chosen:
+        job = AxesJob(job.side, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)
+
+    def glyphs() -> Iterator[GlyphFindings]:
+        reported = Shapes()
+        with workers(0, executor=executor) as pool:
+            for part in run(job, tasks, pool, ordered=True, observer=observer):
+                rows, numbers, shapes, scores, along, error = part.result
+                if once:
+                    first = reported.first(shapes)
+                    fresh = (first >= 0) & (rows.glyphs[first] == rows.glyphs)  # rows are in the order of glyphs
+                    rows = rows.chosen(np.flatnonzero(fresh | (rows.kinds == DIRECTION)))
+                found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
+                for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
+                    yield GlyphFindings(name, gid, own, error, of_axes, score, along)
+                    along = ()
+
+    return glyphs()
 
 
 @dataclass
@@ -397,11 +396,9 @@ def check_face(
                 raise
             face.remark, tags = f"{error}; checked without it", []
     face.axes = [AxisNumbers(axis.tag, 0, (axis.default,)) for axis in source.axes if axis.tag in tags]
-    kinks: list[Sequence[AxisKinks]] | None = [] if asked.joints else None
-    for row in check_font(
-        source, names, asked.thresholds, kinds=asked.kinds, axes=tags, steps=asked.steps, executor=pool,
-        observer=observer, kinks=kinks,
-    ):  # fmt: skip
+    kinks: list[Sequence[AxisKinks]] = []
+    for row in check_font(source, names, asked, axes=tags, executor=pool, observer=observer):
+        kinks += [row.kinks] if row.kinks else []
         face.glyphs += row.error is None
         if row.error is not None:
             face.failed.append((row.glyph, row.error))
