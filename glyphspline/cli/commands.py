@@ -22,7 +22,7 @@ from ..writers.settings import BOTH, Maps
 from . import arguments as opt
 from .check_command import check
 from .diff_command import diff
-from .groups import grouped, only, place, without
+from .groups import BareOptions, grouped, only, place, without
 from .mend_command import mend
 from .messages import RULE, UNDONE, listen, print_json, printable, progress, say, stop, watch_interruption
 from .running import (
@@ -60,7 +60,7 @@ def common(version: opt.Version = False) -> None:
     listen()
 
 
-@app.command()
+@app.command(cls=BareOptions)
 @grouped
 def convert(
     fonts: opt.FontFiles,
@@ -263,7 +263,7 @@ app.command()(check)
 app.command()(diff)
 
 
-app.command()(mend)
+app.command(cls=BareOptions)(mend)
 
 
 @app.command()

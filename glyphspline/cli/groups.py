@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import typer
+from typer.core import TyperCommand
 
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of
@@ -23,6 +24,21 @@ MASTERS = {"masters", "others", "axis"}
 
 OTHER_CURVES = {"step", "count", "variant", "margin", "fallback"}
 """Options of the interpolation, which fonts' own curves do without."""
+
+
+BARE = {"--layer": "glyphspline"}
+"""Options that may stand without a value, at the end or before another option, and the value that is meant then."""
+
+
+class BareOptions(TyperCommand):
+    """A command whose options may stand bare."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Add the values that are meant."""
+        filled: list[str] = []
+        for arg, following in zip(args, [*args[1:], "-"], strict=True):
+            filled += [arg, BARE[arg]] if arg in BARE and following.startswith("-") else [arg]
+        return super().parse_args(ctx, filled)
 
 
 class Shown(NamedTuple):

@@ -134,8 +134,9 @@ class RunSpec:
         WRITTEN,
     )  # fmt: skip
     layer: str | None = option(
-        None, "Write new outlines into this layer of the source, beside the old ones.", WRITTEN, "NAME"
-    )
+        None, "Write new outlines into this layer of the source, beside the old ones: glyphspline without a NAME.",
+        WRITTEN, "[NAME]",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if self.in_place and self.layer is not None:

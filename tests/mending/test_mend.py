@@ -208,6 +208,21 @@ def test_a_dry_run_writes_nothing_and_a_copy_leaves_the_source(tmp_path: Path) -
     assert "left: a, contour 0" in run.output
 
 
+def test_a_bare_layer_is_called_glyphspline(tmp_path: Path) -> None:
+    path = sources(tmp_path)
+    for options in (["--layer", "-j", "1"], ["-j", "1", "--layer"]):
+        run = CliRunner().invoke(app, ["mend", str(path), "--tolerance", "5", *options])
+        assert run.exit_code == 0, run.output
+        assert (tmp_path / "Bold.ufo" / "glyphs.glyphspline" / "a.glif").exists() or (
+            tmp_path / "Regular.ufo" / "glyphs.glyphspline" / "a.glif"
+        ).exists()
+    run = CliRunner().invoke(
+        app, ["convert", str(tmp_path / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
+    )
+    assert run.exit_code == 0, run.output
+    assert "layer glyphspline of Bold.ufo: new outlines of 0 glyphs, C2 (" in run.output
+
+
 @pytest.mark.parametrize("layer", [None, "mended"])
 def test_a_glyphs_file_is_mended(layer: str | None, tmp_path: Path) -> None:
     path = glyphs_file(tmp_path)

@@ -310,12 +310,16 @@ def back_to_source(
     Raises:
         OutputError: a file cannot be written.
     """
+    from ...readers.ufo import Ufo
     from ...writers.back.back import write_back
 
     with writing(copy or source.path):
         found = write_back(source, glyphs, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
     where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
-    remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, nothing else changed"]
+    curves = "C2 in all masters"
+    if isinstance(source, Ufo):
+        curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
+    remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, {curves}; nothing else changed"]
     kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
     return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
 
