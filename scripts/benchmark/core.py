@@ -15,7 +15,7 @@ from glyphspline.interpolation.reference import footpoint, interpolate_reference
 from glyphspline.interpolation.result import BatchedInterpolation
 from glyphspline.types import FloatArray, IntArray
 
-from .measure import Row, in_words, interleaved
+from .measure import Row, in_words, interleaved, ratio
 
 SHARE = 2e-7
 """The residual tolerance in all rows, as a share of the polygon's extent."""
@@ -110,8 +110,7 @@ def against_reference() -> list[Row]:
     )
     assert plain.iterations == ours.whole[0, 2]
     a, b = times["ours"] / _footpoints(ours), times["roots"] / (4 * 20)
-    note = f"{in_words(a)}, {in_words(b)}"
-    return [Row("variant 2 footpoint against the `numpy.roots` reference", b / a, must=2000, aim=3500, note=note)]
+    return [ratio("variant 2 footpoint against the `numpy.roots` reference", b, a, 2000, 3500)]
 
 
 def against_kurbo() -> list[Row]:
@@ -134,8 +133,7 @@ def against_kurbo() -> list[Row]:
     times = interleaved({"ours": polygons.run, "kurbo": kurbo})
     a, b = times["ours"] / _footpoints(ours), times["kurbo"] / len(p)
     assert np.isfinite(footpoint(spline, p[0], problem.intervals.bounds[0], 0.0))
-    note = f"{in_words(a)}, {in_words(b)}"
-    return [Row("against kurbo's nearest point at 1e-6, two pieces", b / a, must=15, aim=25, note=note)]
+    return [ratio("against kurbo's nearest point at 1e-6, two pieces", b, a, 15, 25)]
 
 
 def against_libraries() -> list[Row]:
@@ -172,11 +170,9 @@ def against_libraries() -> list[Row]:
             usable[name] = case
         times = interleaved(usable)
         for name in list(usable)[1:]:
-            first = name == "`make_interp_spline`"
-            note = f"{in_words(times['ours'])}, {in_words(times[name])}"
-            ratio = times[name] / times["ours"]
+            limits = (must, aim) if name == "`make_interp_spline`" else (None, None)
             what = f"one smooth contour, n = {n}, against {name}"
-            found.append(Row(what, ratio, must=must if first else None, aim=aim if first else None, note=note))
+            found.append(ratio(what, times[name], times["ours"], *limits))
     return found
 
 
@@ -217,7 +213,6 @@ def many() -> list[Row]:
 
     times = interleaved(
         {
-            "1": lambda: read(ours(1)),
             "2": lambda: read(ours(2)),
             "splprep": library,
             "core 1": lambda: laid_out.run(1),
@@ -231,17 +226,12 @@ def many() -> list[Row]:
         a.spline.control_points.tobytes() == b.spline.control_points.tobytes() for a, b in zip(one, two, strict=True)
     )
     assert same
-    words = {name: in_words(seconds) for name, seconds in times.items()}
     return [
-        Row(
-            "2000 glyph contours, two threads, against a loop over `splprep`",
-            times["splprep"] / times["2"], must=1.8, aim=2.5, note=f"{words['2']}, {words['splprep']}",
+        ratio(
+            "2000 glyph contours, two threads, against a loop over `splprep`", times["splprep"], times["2"], 1.8, 2.5
         ),
-        Row(
-            "two threads against one, same bits",
-            times["core 1"] / times["core 2"], must=1.9, note=f"{words['core 1']}, {words['core 2']}",
-        ),
-    ]  # fmt: skip
+        ratio("two threads against one, same bits", times["core 1"], times["core 2"], 1.9),
+    ]
 
 
 def growth() -> list[Row]:

@@ -24,9 +24,9 @@ from itertools import cycle
 from pathlib import Path
 from time import perf_counter
 
-from .batch import least, per
+from .batch import least
 from .check import ANCHORED, LATIN, OTHER_LATIN
-from .measure import Row, Watched, in_words, run_watched
+from .measure import Row, Watched, in_words, ratio, run_watched
 
 TORCHFONT = os.environ.get("GLYPHSPLINE_BENCH_TORCHFONT")
 ROUNDS = 3
@@ -57,9 +57,22 @@ def resampled(pieces, count=64, steps=20):  # pieces: (degree + 1, 2) each
     return points, first / speed[:, None], curvature
 """
 
-BY_TORCHFONT = (
-    RESAMPLE
-    + """
+CONTOURS = """
+def contours(operations):  # moveTo, lineTo, curveTo and closePath, each with its points
+    found, pieces = [], []
+    for kind, to in operations:
+        if kind == "moveTo":
+            pieces, begin, here = [], to[0], to[0]
+        elif to:
+            pieces.append(np.stack([here, *to])); here = to[-1]
+        elif pieces:
+            if (here != begin).any():
+                pieces.append(np.stack([here, begin]))
+            found.append(resampled(pieces))
+    return found
+"""
+
+BY_TORCHFONT = RESAMPLE + CONTOURS + """
 import sys, time, torch
 from torchfont.datasets import GlyphIdDataset
 from torchfont.transforms import LoadGlyph
@@ -67,61 +80,37 @@ torch.set_num_threads(1)
 start = time.perf_counter()
 data = GlyphIdDataset(sys.argv[1], transform=LoadGlyph())
 count = min(len(data), int(sys.argv[2]))
+POINTS = {1: (4,), 2: (4,), 3: (0, 4), 4: (0, 2, 4), 5: ()}
 for index in range(count):
     outline = data[index].data
-    found, pieces = [], []
-    for kind, row in zip(outline.types.tolist(), outline.coords.numpy().astype(np.float64)):
-        if kind == 1:
-            pieces, begin, here = [], row[4:], row[4:]
-        elif kind == 2:
-            pieces.append(np.stack([here, row[4:]])); here = row[4:]
-        elif kind == 3:
-            pieces.append(np.stack([here, row[:2], row[4:]])); here = row[4:]
-        elif kind == 4:
-            pieces.append(np.stack([here, row[:2], row[2:4], row[4:]])); here = row[4:]
-        elif kind == 5 and pieces:
-            if (here != begin).any():
-                pieces.append(np.stack([here, begin]))
-            found.append(resampled(pieces))
+    rows = zip(outline.types.tolist(), outline.coords.numpy().astype(np.float64))
+    contours(("moveTo" if k == 1 else "", [row[p:p + 2] for p in POINTS[k]]) for k, row in rows if k in POINTS)
 print((time.perf_counter() - start) / count)
-"""
-)
+"""  # fmt: skip
 
-BY_FONTTOOLS = (
-    RESAMPLE
-    + """
+BY_FONTTOOLS = RESAMPLE + CONTOURS + """
 import pathlib, sys, time
 from fontTools.pens.recordingPen import DecomposingRecordingPen
 from fontTools.pens.basePen import decomposeQuadraticSegment
 from fontTools.ttLib import TTFont
+
+def operations(drawn):
+    for kind, to in drawn:
+        to = [np.array(p, dtype=float) for p in to if p is not None]
+        for part in decomposeQuadraticSegment(to) if kind == "qCurveTo" else [to]:
+            yield kind, part
+
 start = time.perf_counter()
 font = TTFont(next(pathlib.Path(sys.argv[1]).iterdir()), fontNumber=0)
 glyphs, count = font.getGlyphSet(), 0
 for name in font.getGlyphOrder():
     pen = DecomposingRecordingPen(glyphs)
     glyphs[name].draw(pen)
-    found, pieces = [], []
-    for kind, to in pen.value:
-        to = [np.array(p, dtype=float) for p in to if p is not None]
-        if kind == "moveTo":
-            pieces, begin, here = [], to[0], to[0]
-        elif kind == "lineTo":
-            pieces.append(np.stack([here, to[0]])); here = to[0]
-        elif kind == "qCurveTo":
-            for control, on in decomposeQuadraticSegment(to):
-                pieces.append(np.stack([here, np.array(control), np.array(on)])); here = np.array(on)
-        elif kind == "curveTo":
-            pieces.append(np.stack([here, *to])); here = to[-1]
-        elif kind == "closePath" and pieces:
-            if (here != begin).any():
-                pieces.append(np.stack([here, begin]))
-            found.append(resampled(pieces))
-    count += bool(found)
+    count += bool(contours(operations(pen.value)))
     if count == int(sys.argv[2]):
         break
 print((time.perf_counter() - start) / count)
-"""
-)
+"""  # fmt: skip
 
 
 def rows() -> list[Row]:
@@ -143,13 +132,8 @@ def against_loaders(font: Path) -> list[Row]:
             loaders.insert(0, ("TorchFont", TORCHFONT, BY_TORCHFONT))
         cases = [partial(theirs, python, code, folder) for _, python, code in loaders]
         mine, *others = least(ROUNDS, lambda _: made(font, MOST), *[lambda _, case=case: case() for case in cases])
-    return [
-        Row(
-            f"rows of {font.name} with points and curvature, no fit, against {name} and a resampling in NumPy",
-            other / mine, "x", 3.0, note=f"{per(mine)}, {per(other)}",
-        )
-        for (name, _, _), other in zip(loaders, others, strict=True)
-    ]  # fmt: skip
+    what = f"rows of {font.name} with points and curvature, no fit, against {{}} and a resampling in NumPy"
+    return [ratio(what.format(name), other, mine, 3.0) for (name, *_), other in zip(loaders, others, strict=True)]
 
 
 def theirs(python: str, code: str, folder: str) -> float:
@@ -206,8 +190,7 @@ def with_fit() -> Row:
         return (perf_counter() - start) / count
 
     svg, table = least(ROUNDS, lambda _: fitted(True), lambda _: fitted(False))
-    what = f"rows of {LATIN.name} with the fit against its conversion to SVG, without files"
-    return Row(what, svg / table, "x", 0.8, note=f"{per(table)}, {per(svg)}")
+    return ratio(f"rows of {LATIN.name} with the fit against its conversion to SVG, without files", svg, table, 0.8)
 
 
 INSTALLED = Path("/usr/share/fonts")
@@ -253,8 +236,7 @@ def against_convert(here: Path) -> list[Row]:
         lambda k: command("dataset", LATIN, "--out", here / f"fit-{k}", *fit).seconds,
         lambda k: command("convert", LATIN, "--all", "--format", "svg", "--out", here / f"svg-{k}", *fit).seconds,
     )
-    note = f"{in_words(table)}, {in_words(svg)}"
-    return [Row(f"a set of {LATIN.name} with the fit against `convert --format svg`", svg / table, "x", 0.8, note=note)]
+    return [ratio(f"a set of {LATIN.name} with the fit against `convert --format svg`", svg, table, 0.8)]
 
 
 def processors() -> Row:
@@ -284,8 +266,7 @@ def workers(here: Path) -> Iterator[Row]:
         if all(font.exists() for font in fonts):
             runs = [partial(set_made, fonts, here / f"{k}-{jobs}", jobs, words) for jobs in ("1", "2")]
             one, two = least(ROUNDS_OF_RUNS, *runs)
-            note = f"{in_words(one)}, {in_words(two)}"
-            yield Row(f"two workers against one, {what}", one / two, "x", 1.8, note=note)
+            yield ratio(f"two workers against one, {what}", one, two, 1.8)
 
 
 def set_made(fonts: Sequence[Path], out: Path, jobs: str, words: Sequence[str], k: int) -> float:

@@ -220,12 +220,3 @@ def symmetric_polygons(count: int) -> list[FloatArray]:
         axis = np.stack([np.zeros(2), rng.uniform(0, 5, 2)], axis=1)
         found.append(np.concatenate([axis[:1], half, axis[1:], half[::-1] * [-1, 1]]))
     return found
-
-
-def lemmas(run: Run) -> None:
-    """All of the above."""
-    lemma_1(run)
-    lemma_2(run)
-    corollary_1_converges(run)
-    appendix_a_holds(run)
-    tie_rule(run)

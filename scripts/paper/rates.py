@@ -292,13 +292,3 @@ def any_order(run: Run) -> None:
 def _factors(corrections: Sequence[float] | FloatArray) -> FloatArray:
     c = np.asarray(corrections)
     return np.asarray(c[1:] / c[:-1])
-
-
-def rates(run: Run) -> None:
-    """All of the above."""
-    asymptotic_rate(run)
-    rate_at_knots(run)
-    family_of_limits(run)
-    variant_3(run)
-    sharpness(run)
-    any_order(run)

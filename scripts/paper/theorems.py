@@ -151,14 +151,6 @@ def _picture_of_rates(bound: FloatArray, worst: FloatArray, mean: FloatArray) ->
     return figure
 
 
-def theorems(run: Run) -> None:
-    """All of the above."""
-    corollary_1(run)
-    theorem_1(run)
-    remark_2(run)
-    theorem_2(run)
-
-
 HYPOTHESIS = "proven for cubics, n ≥ 4, every peak above 1/2"
 
 
