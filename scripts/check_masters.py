@@ -93,7 +93,9 @@ def check(font: gs.Font, names: tuple[str, ...], options: gs.Options, rng: np.ra
     print(f"  turn at inner joints, exact: {bends.max(initial=0.0):.1e}°")
     print(f"  CPU time, all at once against one by one: {together / apart:.2f} ({together:.1f} s)")
     if "CFF2" in font.tables():
-        drawn(font, {result.masters.name: without_bounds(redrawn_glyph(result)) for result in results}, rng)
+        # Without the bounds of what is redrawn, no arc stays as the font has it.
+        redrawn = [Redrawn(each.masters, each.contours, each.inner) for each in map(redrawn_glyph, results)]
+        drawn(font, {each.masters.name: each for each in redrawn}, rng)
 
 
 def compare(result: MastersResult, tolerance: float, rng: np.random.Generator) -> list[tuple[float, float]]:
@@ -115,11 +117,6 @@ def largest_turn(cubics: FloatArray, inner: BoolArray, shortest: float) -> float
     """Degrees at most by which a contour turns at inner joints; handles from ``shortest`` on have a direction."""
     bends = np.abs(np.degrees(turns(np.ascontiguousarray(cubics), shortest)))
     return float(bends[inner].max(initial=0.0))
-
-
-def without_bounds(redrawn: Redrawn) -> Redrawn:
-    """The same, of which no arc stays as the font has it."""
-    return Redrawn(redrawn.masters, redrawn.contours, redrawn.inner)
 
 
 def drawn(font: gs.Font, redrawn: dict[str, Redrawn], rng: np.random.Generator) -> None:

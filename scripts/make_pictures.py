@@ -44,7 +44,6 @@ figure { margin: 0; width: 490px } svg { width: 490px; height: 520px }
 figcaption { text-align: center; padding: 0 0 14px }
 """
 
-
 LINE = """
 body { margin: 0; background: #fff }
 svg { display: block; width: 950px; height: 270px; margin: 5px 20px; overflow: visible }

@@ -19,6 +19,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -132,39 +133,27 @@ def with_handle(s: Segments, j: int, handle: FloatArray) -> Segments:
     return rounded([*s[:j], np.concatenate([s[j][:1], [s[j][0] + handle], s[j][2:]]), *s[j + 1 :]])
 
 
-def kink(degrees: float) -> Planter:
+def kink(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
     """A handle turned at a smooth joint, by one degree more at most after its points are rounded."""
-
-    def plant(s: Segments, j: int, unit: float) -> Planted | None:
-        if len(s[j]) < 3 or abs(joint(s, j)) > 0.2 or min(map(size, joint_handles(s, j))) < 25 * unit:
-            return None
-        return turned(s, j, degrees)
-
-    return plant
+    if len(s[j]) < 3 or abs(joint(s, j)) > 0.2 or min(map(size, joint_handles(s, j))) < 25 * unit:
+        return None
+    return turned(s, j, degrees)
 
 
-def line_into_curve(degrees: float) -> Planter:
+def line_into_curve(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
     """The same where a line runs into a curve."""
-
-    def plant(s: Segments, j: int, unit: float) -> Planted | None:
-        return kink(degrees)(s, j, unit) if len(s[j - 1]) == 2 else None
-
-    return plant
+    return kink(s, j, unit, degrees) if len(s[j - 1]) == 2 else None
 
 
-def beside_short(degrees: float) -> Planter:
+def beside_short(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
     """A curve cut where 8 to 20 thousandths of an em are left of it, and the longer part's handle turned there."""
-
-    def plant(s: Segments, j: int, unit: float) -> Planted | None:
-        if len(s[j]) < 3 or chord(s[j]) < 60 * unit:
-            return None
-        parts = rounded(cut(s[j], (8 + 12 * (chord(s[j]) % 1)) * unit / chord(s[j])))
-        new = [*s[:j], *parts, *s[j + 1 :]]
-        if abs(joint(new, j + 1)) > 1 or size(tangents(parts[1])[0]) < 15 * unit or chord(parts[0]) < 5 * unit:
-            return None
-        return turned(new, j + 1, degrees)
-
-    return plant
+    if len(s[j]) < 3 or chord(s[j]) < 60 * unit:
+        return None
+    parts = rounded(cut(s[j], (8 + 12 * (chord(s[j]) % 1)) * unit / chord(s[j])))
+    new = [*s[:j], *parts, *s[j + 1 :]]
+    if abs(joint(new, j + 1)) > 1 or size(tangents(parts[1])[0]) < 15 * unit or chord(parts[0]) < 5 * unit:
+        return None
+    return turned(new, j + 1, degrees)
 
 
 def joint_handles(s: Segments, j: int) -> tuple[FloatArray, FloatArray]:
@@ -362,28 +351,17 @@ def detour(s: Segments, j: int, unit: float, points: Sequence[tuple[float, float
     return Planted([*s[:j], *lines, *s[j + 1 :]], (a + b) / 2, 30 * unit + chord(s[j]) / 10)
 
 
-def spur(s: Segments, j: int, unit: float) -> Planted | None:
-    """A line with a spur of 30/1000 em, out and back."""
-    return detour(s, j, unit, [(0.5, 0), (0.5, 30), (0.5, 0)])
-
-
 def spike(s: Segments, j: int, unit: float) -> Planted | None:
     """A line with a spike of 2 units' width, 15 to 60 thousandths of an em long, to the left or to the right."""
     reach, half = 15 + chord(s[j]) % 45, 1 / max(chord(s[j]), 1)
     return detour(s, j, unit, [(0.5 - half, 0), (0.5, reach if j % 2 else -reach), (0.5 + half, 0)])
 
 
-def loop(height: float) -> Planter:
+def loop(s: Segments, j: int, unit: float, height: float) -> Planted | None:
     """A line with a loop of so many thousandths of an em."""
-
-    def plant(s: Segments, j: int, unit: float) -> Planted | None:
-        side, wide = height * unit / max(chord(s[j]), 1), height / 2
-        return detour(
-            s, j, unit,
-            [(0.5 + side, 0), (0.5 + side, wide), (0.5 - side, wide), (0.5 - side, -wide), (0.5 + 2 * side, -wide)],
-        )  # fmt: skip
-
-    return plant
+    a, wide = height * unit / max(chord(s[j]), 1), height / 2
+    way = [(0.5 + a, 0), (0.5 + a, wide), (0.5 - a, wide), (0.5 - a, -wide), (0.5 + 2 * a, -wide)]
+    return detour(s, j, unit, way)
 
 
 def swapped(s: Segments, j: int, unit: float) -> Planted | None:
@@ -464,26 +442,22 @@ def retracted(s: Segments, j: int, unit: float) -> Planted | None:
     return Planted(with_handle(s, j, np.zeros(2)), (s[j][0] + s[j][3]) / 2, chord(s[j]) / 2)
 
 
-def unlevel(units: float) -> Planter:
+def unlevel(s: Segments, j: int, unit: float, units: float) -> Planted | None:
     """The handles of an extreme point turned, until the longer one's end is so many units off level."""
-
-    def plant(s: Segments, j: int, unit: float) -> Planted | None:
-        if min(len(s[j]), len(s[j - 1])) < 3 or abs(joint(s, j)) > 0.01:
-            return None
-        a, b = joint_handles(s, j)
-        k = 0 if b[0] == 0 else 1
-        before, behind = s[j - 1][0] - s[j][0], s[j][-1] - s[j][0]
-        if b[k] != 0 or min(size(a), size(b)) < 20 * unit or before[k] * behind[k] <= 0:
-            return None
-        if min(abs(before[k]), abs(behind[k])) < 3 * units:
-            return None
-        new = [segment.copy() for segment in s]
-        longer = max(size(a), size(b))
-        new[j - 1][-2, k] -= units * size(a) / longer
-        new[j][1, k] += units * size(b) / longer
-        return Planted(rounded(new), s[j][0], 0.0)
-
-    return plant
+    if min(len(s[j]), len(s[j - 1])) < 3 or abs(joint(s, j)) > 0.01:
+        return None
+    a, b = joint_handles(s, j)
+    k = 0 if b[0] == 0 else 1
+    before, behind = s[j - 1][0] - s[j][0], s[j][-1] - s[j][0]
+    if b[k] != 0 or min(size(a), size(b)) < 20 * unit or before[k] * behind[k] <= 0:
+        return None
+    if min(abs(before[k]), abs(behind[k])) < 3 * units:
+        return None
+    new = [segment.copy() for segment in s]
+    longer = max(size(a), size(b))
+    new[j - 1][-2, k] -= units * size(a) / longer
+    new[j][1, k] += units * size(b) / longer
+    return Planted(rounded(new), s[j][0], 0.0)
 
 
 def repeated(s: Segments, j: int, unit: float) -> Planted | None:
@@ -508,16 +482,25 @@ CUBIC = frozenset({"jump", "lump", "inflection", "handle too long", "crossed han
 FAULTS: dict[str, tuple[Planter, frozenset[str]]] = {
     name: (planter, frozenset(kinds.split()))
     for name, planter, kinds in (
-        *((f"kink of {degrees}°", kink(degrees), "kink turn") for degrees in (2, 3, 5, 8, 10)),
-        *((f"kink of {degrees}° beside a short segment", beside_short(degrees), "kink turn") for degrees in (3, 5, 8)),
-        *((f"line into curve, {degrees}°", line_into_curve(degrees), "kink turn") for degrees in (2, 3, 5)),
+        *((f"kink of {degrees}°", partial(kink, degrees=degrees), "kink turn") for degrees in (2, 3, 5, 8, 10)),
+        *(
+            (f"kink of {degrees}° beside a short segment", partial(beside_short, degrees=degrees), "kink turn")
+            for degrees in (3, 5, 8)
+        ),
+        *(
+            (f"line into curve, {degrees}°", partial(line_into_curve, degrees=degrees), "kink turn")
+            for degrees in (2, 3, 5)
+        ),
         ("jump", jump, "jump"),
         ("lump", lump, "lump"),
         ("inflection", inflection, "inflection"),
         ("straight", straight, "straight"),
         ("slanted", slanted, "slanted"),
         ("extremum left out", extremum, "extremum"),
-        *((f"extreme point {units} units off level", unlevel(units), "unlevel kink") for units in (1, 2, 3)),
+        *(
+            (f"extreme point {units} units off level", partial(unlevel, units=units), "unlevel kink")
+            for units in (1, 2, 3)
+        ),
         ("short segment", short, "short"),
         ("almost closed", almost_closed, "short"),
         ("handle too long", handles, "handles"),
@@ -525,9 +508,9 @@ FAULTS: dict[str, tuple[Planter, frozenset[str]]] = {
         ("handle of no length", retracted, "retracted"),
         ("doubled point", repeated, "repeated"),
         ("leftover point on a line", leftover, "leftover"),
-        ("spur", spur, "doubled"),
+        ("spur", partial(detour, points=[(0.5, 0), (0.5, 30), (0.5, 0)]), "doubled"),
         ("spike of 2 units' width", spike, "spike"),
-        *((f"loop of {height} thousandths", loop(height), "crossing") for height in (30, 10, 4)),
+        *((f"loop of {height} thousandths", partial(loop, height=height), "crossing") for height in (30, 10, 4)),
         ("ends of a line swapped", swapped, "crossing"),
         ("lines beyond their corner", beyond_corner, "crossing"),
         ("doubled contour", copied, "doubled"),
@@ -635,18 +618,13 @@ def write(path: Path, glyphs: Sequence[list[Segments]], em: int, cubic: bool) ->
     builder.save(path)
 
 
-def read(path: Path, count: int) -> list[gs.Outline]:
-    """The glyphs of such a font."""
-    font = gs.open_font(path)
-    return [font.outline(f"g{k}") for k in range(count)]
-
-
 def checked(glyphs: Sequence[list[Segments]], em: float, cubic: bool) -> list[list[Finding]]:
     """The findings of glyphs that are written to a font and read again."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "planted.font"
         write(path, glyphs, int(em), cubic)
-        return check_many(read(path, len(glyphs)), outer=gs.open_font(path).outer)
+        font = gs.open_font(path)
+        return check_many([font.outline(f"g{k}") for k in range(len(glyphs))], outer=font.outer)
 
 
 def new_findings(found: Sequence[Finding], before: Sequence[Finding], scale: float, em: float) -> list[Finding]:

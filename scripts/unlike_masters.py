@@ -254,7 +254,7 @@ def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: M
         for one, two in combinations(range(len(true)), 2):
             for weight in MIXTURES:
                 mine, its = ((1 - weight) * points[one] + weight * points[two] for points in (here, there))
-                shape = max(shape, farthest(mine, its), farthest(its, mine))
+                shape = max(shape, distances(mine, its).max(), distances(its, mine).max())
         turns = [np.degrees(np.abs(joins(own).turns)) >= 12 for own in true]
         both = np.all(turns, axis=0)
         marks = np.stack([points[np.cumsum(contour.degrees) - contour.degrees] for points in contour.points])
@@ -262,11 +262,6 @@ def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: M
         for j in range(corners.shape[1]):
             corner = max(corner, np.hypot(*np.moveaxis(marks - corners[:, j, None], 2, 0)).max(axis=0).min())
     return float(shape), float(corner), float(slip)
-
-
-def farthest(points: FloatArray, polygon: FloatArray) -> float:
-    """The largest distance of points (n, 2) from a closed polygon, near whose vertices they are."""
-    return float(distances(points, polygon).max())
 
 
 def dense(contours: Sequence[gs.Contour]) -> FloatArray:

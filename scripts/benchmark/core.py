@@ -54,15 +54,8 @@ LIMITS = {20: (5, 6), 90: (2.5, 3), 300: (1.5, 2), 1000: (1.0, 1.2)}
 
 def rows() -> list[Row]:
     """All rows of this suite."""
-    return [
-        *against_reference(),
-        *against_kurbo(),
-        *against_libraries(),
-        *overhead(),
-        *many(),
-        *growth(),
-        *dimensions(),
-    ]
+    suites = (against_reference, against_kurbo, against_libraries, overhead, many, growth, dimensions)
+    return [row for suite in suites for row in suite()]
 
 
 @dataclass(frozen=True, eq=False)

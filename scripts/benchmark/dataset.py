@@ -218,7 +218,7 @@ def runs() -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
         found = [*against_convert(here), processors(), *workers(here)]
-        if fonts := installed():
+        if fonts := sorted(path for path in INSTALLED.rglob("*") if path.suffix in (".ttf", ".otf", ".ttc")):
             found += [*thousands(fonts, here), *of_a_million(fonts, here)]
     return found
 
@@ -272,11 +272,6 @@ def workers(here: Path) -> Iterator[Row]:
 def set_made(fonts: Sequence[Path], out: Path, jobs: str, words: Sequence[str], k: int) -> float:
     """Seconds of a set."""
     return command("dataset", *fonts, "--out", f"{out}-{k}", "--jobs", jobs, *words).seconds
-
-
-def installed() -> list[Path]:
-    """Font files that are installed, by name."""
-    return sorted(path for path in INSTALLED.rglob("*") if path.suffix in (".ttf", ".otf", ".ttc"))
 
 
 def thousands(fonts: Sequence[Path], here: Path) -> list[Row]:

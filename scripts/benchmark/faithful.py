@@ -67,8 +67,9 @@ def outlines(face: Face) -> list[gs.Outline]:
     found: dict[int, tuple[Any, str]] = {}
     for path in faces(face.pattern):
         font = gs.open_font(path)
-        for name, code in names(font, low, high):
-            found.setdefault(code, (font, name))
+        for code, name in font.cmap.items():
+            if low <= code <= high:
+                found.setdefault(code, (font, name))
     codes = sorted(found)
     result: list[gs.Outline] = []
     for k in range(min(2 * GLYPHS, len(codes))):
@@ -77,14 +78,6 @@ def outlines(face: Face) -> list[gs.Outline]:
         if outline.contours:
             result.append(to_em(outline))
     return result[:: max(1, len(result) // GLYPHS)][:GLYPHS]
-
-
-def names(font: Any, low: int, high: int) -> Iterator[tuple[str, int]]:
-    """Glyph names of a font in a range of code points."""
-    for name, codes in font._unicodes.items():
-        for code in codes:
-            if low <= code <= high:
-                yield name, code
 
 
 def to_em(outline: gs.Outline) -> gs.Outline:
@@ -211,17 +204,15 @@ def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:
             yield json.loads(p.stdout.readline())
 
 
-def farthest(points: FloatArray, line: FloatArray) -> float:
-    """Largest distance of points from a polyline."""
-    return float(distances(points, line, closed=False).max())
-
-
 def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]:
     """Segments and numbers of the result with the fewest numbers that stays within one unit."""
     source = sampled((s for c in glyph.contours for s in c.segments()), SPACING)
     sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
     for size, segments, k in sorted(sizes):
         curve = sampled((np.array(s) for c in results[k] for s in c), SPACING)
-        if len(curve) and max(farthest(curve, source), farthest(source, curve)) <= 1.0:
+        if (
+            len(curve)
+            and max(distances(*pair, closed=False).max() for pair in ((curve, source), (source, curve))) <= 1.0
+        ):
             return segments, size
     return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))

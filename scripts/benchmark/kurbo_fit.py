@@ -10,6 +10,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from fontTools.pens.recordingPen import RecordingPen
+from fontTools.svgLib.path import parse_path
 
 import glyphspline as gs
 from glyphspline.fitting.sharp.sharp_fit import LONG_LINE
@@ -80,13 +82,11 @@ def fitted(contour: gs.Contour, accuracy: float, glyph: gs.Outline) -> list[Any]
 
 
 def beziers(path: str) -> list[Any]:
-    """The segments of an SVG path of M, L and C commands with absolute coordinates."""
-    segments: list[Any] = []
-    here = [0.0, 0.0]
-    for command in path.replace("M", "|M").replace("C", "|C").replace("L", "|L").split("|")[1:]:
-        values = [float(value) for value in command[1:].replace(",", " ").split()]
-        points = [values[k : k + 2] for k in range(0, len(values), 2)]
-        if command[0] != "M":
+    """The segments of an SVG path of lines and cubics."""
+    pen, segments, here = RecordingPen(), list[Any](), (0.0, 0.0)
+    parse_path(path, pen)
+    for kind, points in pen.value:
+        if kind in ("lineTo", "curveTo"):
             segments.append([here, *points])
-        here = points[-1]
+        here = points[-1] if points else here
     return segments

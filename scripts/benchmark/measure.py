@@ -13,7 +13,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import median
 from time import perf_counter, sleep
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from ..survey import table
 
 
 @dataclass(frozen=True)
@@ -43,10 +45,6 @@ class Row:
             return ""
         passes = [limit is not None and (self.value >= limit) == self.more for limit in (self.aim, self.must)]
         return "aim" if passes[0] else "must" if passes[1] else "no"
-
-    def as_json(self) -> dict[str, Any]:
-        """For the file beside the table."""
-        return {**asdict(self), "reached": self.reached()}
 
 
 def interleaved(cases: dict[str, Callable[[], object]], rounds: int = 15, repeat: int = 1) -> dict[str, float]:
@@ -126,15 +124,15 @@ def said(pid: int, file: str, entry: str) -> float:
 MARKERS = "<!-- benchmark {suite}: begin -->", "<!-- benchmark {suite}: end -->"
 
 
-def markdown(rows: list[Row]) -> str:
+def markdown(found: list[Row]) -> str:
     """The table; ratios say how many times as fast glyphspline is."""
-    lines = ["| what | measured | must | aim | reached | times |", "|---|---|---|---|---|---|"]
-    for row in rows:
+    rows = []
+    for row in found:
         unit = "x" if row.unit == "x" else f" {row.unit}"
         limits = ["" if limit is None else f"{limit:g}{unit}" for limit in (row.must, row.aim)]
         value = f"{row.value:.0f}" if row.value >= 1000 else f"{row.value:.3g}"
-        lines.append(f"| {row.what} | {value}{unit} | {limits[0]} | {limits[1]} | {row.reached()} | {row.note} |")
-    return "\n".join(lines)
+        rows.append([row.what, f"{value}{unit}", *limits, row.reached(), row.note])
+    return table(["what", "measured", "must", "aim", "reached", "times"], rows)
 
 
 def write(suite: str, rows: list[Row], root: Path) -> None:
@@ -148,4 +146,6 @@ def write(suite: str, rows: list[Row], root: Path) -> None:
         page.write_text(f"{before}{begin}\n{markdown(rows)}\n{end}{after}", encoding="utf-8")
     target = root / "outputs" / "benchmark" / f"{suite}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(json.dumps([row.as_json() for row in rows], indent=1) + "\n", encoding="utf-8")
+    target.write_text(
+        json.dumps([asdict(row) | {"reached": row.reached()} for row in rows], indent=1) + "\n", encoding="utf-8"
+    )

@@ -44,7 +44,8 @@ def page(path: Path, text: str) -> list[Row]:
 
     def ours(_: int) -> float:
         start = perf_counter()
-        svg = set_page(font, text)
+        placed = gs.layout(font, text, width=WIDTH * font.metrics.units_per_em)
+        svg = gs.to_svg(placed.convert(gs.Options(corners="sharp")))
         seconds = perf_counter() - start
         sizes[:] = [svg.count("M"), len(svg)]
         return seconds
@@ -70,15 +71,6 @@ def page(path: Path, text: str) -> list[Row]:
         Row(f"page of {what}, fitted, as SVG", own, "s", 1.0, more=False, note=note),
         Row(f"layout alone of {what}", laid, "s", None, more=False),
     ]
-
-
-def set_page(font: object, text: str) -> str:
-    """The page as one path, each distinct glyph fitted once."""
-    import glyphspline as gs
-
-    assert isinstance(font, gs.Font)
-    placed = gs.layout(font, text, width=WIDTH * font.metrics.units_per_em)
-    return gs.to_svg(placed.convert(gs.Options(corners="sharp")))
 
 
 def by_pens(path: Path, text: str) -> str:

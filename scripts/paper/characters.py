@@ -19,9 +19,9 @@ import glyphspline as gs
 from glyphspline.curves.curvature import comb
 from glyphspline.types import FloatArray
 
-from .clicking import CHARACTERS, DATA, FONTS, clicked_character, load_polygons, source_contours
+from .clicking import CHARACTERS, DATA, FONTS, clicked_character, source_contours
 from .common import COLOURS, GREY, INK, Run, bare, draw_closed, letter, verdict
-from .fairness import relative_to, result_bulge, result_quality
+from .fairness import bulge, curve_of, quality, relative_to
 
 VARIANTS = (1, 2, 3)
 Box = tuple[float, float, float, float]
@@ -78,7 +78,7 @@ def figures_6_and_7(run: Run) -> None:
     for name, source in (("fig-6", "Fig. 6"), ("fig-7", "Fig. 7")):
         polygon, box = load(name)
         results = {v: r[0] for v, r in interpolate_variants([polygon], 1e-8).items()}
-        values = {f"variant {v}": result_quality(results[v], polygon) for v in VARIANTS}
+        values = {f"variant {v}": quality(*curve_of(results[v]), polygon) for v in VARIANTS}
         fair = {v: q["∫(dκ/ds)² ds"] for v, q in values.items()}
         worst = max(fair, key=lambda v: fair[v])
         alike = all(abs(r - 1) < 0.1 for r in relative_to(values, "variant 2")["variant 1"].values() if r)
@@ -126,10 +126,10 @@ def figures_8_and_9(run: Run) -> None:
         installed = (Path(f) for f in sorted(font_manager.findSystemFonts()) if family.lower() in f.lower())
         given = run.fonts.get(name) or next(installed, None)
         data = clicked_character(given, character) if given else json.loads((DATA / f"{stem}.json").read_text("utf-8"))
-        polygons, em = load_polygons(data), float(data["units_per_em"])
+        polygons, em = [np.array(p) for p in data["polygons"]], float(data["units_per_em"])
         results = interpolate_variants(polygons, em * 1e-7)
         beyond = {
-            v: [1000 * result_bulge(r, p) / em for r, p in zip(results[v], polygons, strict=True)] for v in VARIANTS
+            v: [1000 * bulge(*curve_of(r), p) / em for r, p in zip(results[v], polygons, strict=True)] for v in VARIANTS
         }
         splines = {v: [r.spline for r in results[v]] for v in VARIANTS}
         far = {f"variant {v}": {"largest": max(b), "mean of contours": float(np.mean(b))} for v, b in beyond.items()}

@@ -98,11 +98,6 @@ def clicked_character(font_file: Path, character: str) -> dict[str, Any]:
     }
 
 
-def load_polygons(data: dict[str, Any]) -> list[FloatArray]:
-    """The polygons of a data file or of :func:`clicked_character`."""
-    return [np.array(p) for p in data["polygons"]]
-
-
 def source_contours(font_file: Path, character: str) -> list[FloatArray]:
     """The original outline as dense closed polylines, for the picture."""
     font = open_font(font_file)
@@ -119,7 +114,7 @@ def main() -> None:
             json.dumps(data, ensure_ascii=False).replace("]], [[", "]],\n[[").replace('"polygons": ', '"polygons":\n')
         )
         (DATA / f"{stem}.json").write_text(text + "\n", encoding="utf-8")
-        print(stem, [len(p) for p in load_polygons(data)])
+        print(stem, [len(p) for p in data["polygons"]])
 
 
 if __name__ == "__main__":

@@ -51,34 +51,7 @@ COLOURS = {
 }
 MARKERS = {"variant 0": "x", "variant 1": "o", "variant 2": "s", "variant 3": "^", "variant 4": "D"}
 
-plt.rcParams.update(
-    {
-        "figure.dpi": 100,
-        "savefig.dpi": 160,
-        "font.family": "DejaVu Sans",
-        "font.size": 8.5,
-        "axes.titlesize": 9,
-        "axes.edgecolor": GREY,
-        "axes.labelcolor": INK,
-        "axes.linewidth": 0.6,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.grid": True,
-        "axes.axisbelow": True,
-        "grid.color": "#e4e7eb",
-        "grid.linewidth": 0.5,
-        "xtick.color": INK,
-        "ytick.color": INK,
-        "xtick.major.width": 0.6,
-        "ytick.major.width": 0.6,
-        "text.color": INK,
-        "lines.linewidth": 1.1,
-        "lines.markersize": 3.5,
-        "legend.frameon": False,
-        "svg.hashsalt": "glyphspline",
-        "svg.fonttype": "none",
-    }
-)
+plt.style.use(Path(__file__).with_name("pictures.mplstyle"))
 
 
 def random_polygons(n: int, count: int, seed: int = SEED) -> list[FloatArray]:

@@ -45,8 +45,7 @@ def curves_of(polygon: FloatArray, tolerance: float) -> dict[str, tuple[FloatArr
     places = np.arange(len(polygon), dtype=np.float64)
     curves: dict[str, tuple[FloatArray, FloatArray]] = {}
     for v in (1, 2, 3):
-        r = gs.interpolate(polygon, v, residual_tolerance=tolerance)
-        curves[f"variant {v}"] = r.spline.to_bezier(), _places(r.spline, r.parameters)
+        curves[f"variant {v}"] = curve_of(gs.interpolate(polygon, v, residual_tolerance=tolerance))
     ways: tuple[Parametrisation, ...] = ("chord", "centripetal", "uniform")
     for knots in ways:
         curves[f"SciPy {knots}"] = scipy_pieces(polygon, knots), places
@@ -79,14 +78,9 @@ def bulge(pieces: FloatArray, places: FloatArray, polygon: FloatArray) -> float:
     return float(np.hypot(gap[..., 0], gap[..., 1]).max())
 
 
-def result_bulge(result: gs.Interpolation, polygon: FloatArray) -> float:
-    """:func:`bulge` of an interpolation."""
-    return bulge(result.spline.to_bezier(), _places(result.spline, result.parameters), polygon)
-
-
-def result_quality(result: gs.Interpolation, polygon: FloatArray) -> Quality:
-    """:func:`quality` of an interpolation."""
-    return quality(result.spline.to_bezier(), _places(result.spline, result.parameters), polygon)
+def curve_of(result: gs.Interpolation) -> tuple[FloatArray, FloatArray]:
+    """The Bézier pieces of an interpolation, and the parameters of the vertices counted in pieces."""
+    return result.spline.to_bezier(), _places(result.spline, result.parameters)
 
 
 def overshoot(points: FloatArray, polygon: FloatArray) -> float:

@@ -205,8 +205,9 @@ def tie_rule(run: Run) -> None:
     run.claim("tie-rule", measured, "measured", steps=steps)
 
 
-def _tied(parameters: FloatArray, squared: FloatArray) -> bool:
+def _tied(parameters: FloatArray, deviations: FloatArray) -> bool:
     """Whether two different parameters share the least squared distance, which is not zero."""
+    squared = (deviations**2).sum(axis=1)
     near = parameters[squared <= squared.min() * (1 + 1e-9)]
     return bool(squared.min() > 1e-20 and np.ptp(near) > 1e-6)
 

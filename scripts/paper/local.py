@@ -68,12 +68,8 @@ class LocalMethod:
         return found
 
     def candidates(self, P: FloatArray, i: int) -> tuple[FloatArray, FloatArray]:
-        """Parameters where vertex i may have its footpoint on the curve of P, and the squared distances there."""
-        parameters, deviations = self._candidates(P, i)
-        return np.array(parameters), np.square(deviations).sum(axis=1)
-
-    def _candidates(self, P: FloatArray, i: int) -> tuple[list[float], list[FloatArray]]:
-        parameters, deviations = [], []
+        """Parameters where vertex i may have its footpoint on the curve of P, and its deviations (k, 2) there."""
+        parameters, deviations = list[float](), list[FloatArray]()
         for piece in self._pieces[i]:
             c = piece.to_powers @ P[piece.controls]
             c[3] -= self.points[i]
@@ -86,15 +82,15 @@ class LocalMethod:
             for y in x:
                 parameters.append(piece.start + piece.length * y)
                 deviations.append(-(((c[0] * y + c[1]) * y + c[2]) * y + c[3]))
-        return parameters, deviations
+        return np.array(parameters), np.array(deviations)
 
     def footpoint(self, P: FloatArray, i: int) -> tuple[float, FloatArray]:
         """The parameter of vertex i's footpoint on the curve of P, and the deviation of the vertex there."""
-        parameters, deviations = self._candidates(P, i)
+        parameters, deviations = self.candidates(P, i)
         squared = np.square(deviations).sum(axis=1)
         tied = np.flatnonzero(squared <= squared.min() * (1 + TIE))
         best = min(tied.tolist(), key=lambda k: abs(parameters[k] - float(self.centres[i])))
-        return parameters[best], deviations[best]
+        return float(parameters[best]), deviations[best]
 
     def sweep(self, P: FloatArray, order: Sequence[Sequence[int]]) -> tuple[FloatArray, float]:
         """One sweep: the vertices of a block are measured on one curve and moved together, block after block.

@@ -19,7 +19,7 @@ from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run, random_polygons
-from .fairness import result_quality
+from .fairness import curve_of, quality
 from .measures import curvature_variation, shape
 from .smooth_curves import Waves, distance, polar
 from .study import MAX_ITERATIONS, TOLERANCE
@@ -122,9 +122,9 @@ def _fairness(run: Run) -> None:
     ratios: dict[str, dict[str, list[float]]] = {f"variant {v}": {m: [] for m in measures} for v in (1, 2, 4)}
     results = {v: gs.interpolate_many(polygons, v, residual_tolerance=TOLERANCE) for v in VARIANTS}
     for k, p in enumerate(polygons):
-        base = result_quality(results[3][k], p)
+        base = quality(*curve_of(results[3][k]), p)
         for v in (1, 2, 4):
-            q = result_quality(results[v][k], p)
+            q = quality(*curve_of(results[v][k]), p)
             for m in measures:
                 ratios[f"variant {v}"][m].append(q[m] / base[m])
     run.claim(

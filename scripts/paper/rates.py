@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.optimize import brentq
 
@@ -273,7 +271,7 @@ def any_order(run: Run) -> None:
             if method.rate_bound > 1:
                 continue
             corrections = np.array(method.run(random_order(len(p), rng))[1])
-            factors = _factors(corrections)
+            factors = corrections[1:] / corrections[:-1]
             count += 1
             failures += int(corrections[-1] >= TOLERANCE)
             largest = max(largest, float(factors.max()))
@@ -287,8 +285,3 @@ def any_order(run: Run) -> None:
     run.claim(
         "beyond-any-order", measured, "proven for cubics, n ≥ 4, every peak above 1/2, the same order in every sweep"
     )
-
-
-def _factors(corrections: Sequence[float] | FloatArray) -> FloatArray:
-    c = np.asarray(corrections)
-    return np.asarray(c[1:] / c[:-1])
