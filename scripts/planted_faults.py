@@ -479,45 +479,40 @@ SMALL = frozenset({"extreme point 1 units off level"})
 CUBIC = frozenset({"jump", "lump", "inflection", "handle too long", "crossed handles", "handle of no length"})
 """Faults of cubics."""
 
-FAULTS: dict[str, tuple[Planter, frozenset[str]]] = {
-    name: (planter, frozenset(kinds.split()))
-    for name, planter, kinds in (
-        *((f"kink of {degrees}°", partial(kink, degrees=degrees), "kink turn") for degrees in (2, 3, 5, 8, 10)),
-        *(
-            (f"kink of {degrees}° beside a short segment", partial(beside_short, degrees=degrees), "kink turn")
-            for degrees in (3, 5, 8)
-        ),
-        *(
-            (f"line into curve, {degrees}°", partial(line_into_curve, degrees=degrees), "kink turn")
-            for degrees in (2, 3, 5)
-        ),
-        ("jump", jump, "jump"),
-        ("lump", lump, "lump"),
-        ("inflection", inflection, "inflection"),
-        ("straight", straight, "straight"),
-        ("slanted", slanted, "slanted"),
-        ("extremum left out", extremum, "extremum"),
-        *(
-            (f"extreme point {units} units off level", partial(unlevel, units=units), "unlevel kink")
-            for units in (1, 2, 3)
-        ),
-        ("short segment", short, "short"),
-        ("almost closed", almost_closed, "short"),
-        ("handle too long", handles, "handles"),
-        ("crossed handles", crossed_handles, "handles"),
-        ("handle of no length", retracted, "retracted"),
-        ("doubled point", repeated, "repeated"),
-        ("leftover point on a line", leftover, "leftover"),
-        ("spur", partial(detour, points=[(0.5, 0), (0.5, 30), (0.5, 0)]), "doubled"),
-        ("spike of 2 units' width", spike, "spike"),
-        *((f"loop of {height} thousandths", partial(loop, height=height), "crossing") for height in (30, 10, 4)),
-        ("ends of a line swapped", swapped, "crossing"),
-        ("lines beyond their corner", beyond_corner, "crossing"),
-        ("doubled contour", copied, "doubled"),
-        ("overlap", overlap, "overlap"),
-        ("direction", direction, "direction"),
-    )
-}
+TABLE: tuple[tuple[str, Planter, str], ...] = (
+    *((f"kink of {degrees}°", partial(kink, degrees=degrees), "kink turn") for degrees in (2, 3, 5, 8, 10)),
+    *(
+        (f"kink of {degrees}° beside a short segment", partial(beside_short, degrees=degrees), "kink turn")
+        for degrees in (3, 5, 8)
+    ),
+    *(
+        (f"line into curve, {degrees}°", partial(line_into_curve, degrees=degrees), "kink turn")
+        for degrees in (2, 3, 5)
+    ),
+    ("jump", jump, "jump"),
+    ("lump", lump, "lump"),
+    ("inflection", inflection, "inflection"),
+    ("straight", straight, "straight"),
+    ("slanted", slanted, "slanted"),
+    ("extremum left out", extremum, "extremum"),
+    *((f"extreme point {units} units off level", partial(unlevel, units=units), "unlevel kink") for units in (1, 2, 3)),
+    ("short segment", short, "short"),
+    ("almost closed", almost_closed, "short"),
+    ("handle too long", handles, "handles"),
+    ("crossed handles", crossed_handles, "handles"),
+    ("handle of no length", retracted, "retracted"),
+    ("doubled point", repeated, "repeated"),
+    ("leftover point on a line", leftover, "leftover"),
+    ("spur", partial(detour, points=[(0.5, 0), (0.5, 30), (0.5, 0)]), "doubled"),
+    ("spike of 2 units' width", spike, "spike"),
+    *((f"loop of {height} thousandths", partial(loop, height=height), "crossing") for height in (30, 10, 4)),
+    ("ends of a line swapped", swapped, "crossing"),
+    ("lines beyond their corner", beyond_corner, "crossing"),
+    ("doubled contour", copied, "doubled"),
+    ("overlap", overlap, "overlap"),
+    ("direction", direction, "direction"),
+)
+FAULTS = {name: (planter, frozenset(kinds.split())) for name, planter, kinds in TABLE}
 
 
 class Fault(NamedTuple):

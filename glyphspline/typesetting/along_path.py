@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import GlyphsplineError, is_number, require, require_choice
 from ..types import FloatArray, IntArray, counted
+from .moved import Motion
 from .path import Path
 from .placed import Layout
 from .setting import Align, Side
@@ -75,15 +76,12 @@ def along(layout: Layout, path: Path, *, offset: float = 0.0, align: Align = "st
     points, tangents = path.at(start + middle)
     angle = np.arctan2(tangents[:, 1], tangents[:, 0])
     arms = layout.origin - np.stack([middle[letters.of], np.zeros(len(layout))], axis=1)
-    origin = points[letters.of] + _turned(arms, tangents[letters.of])
-    bottom, top = layout.box[1], layout.box[3]
-    half = (letters.right - letters.left) / 2
-    corners = [
-        points + _turned(np.stack([x, np.full(len(x), y)], axis=1), tangents)
-        for x in (-half, half)
-        for y in (bottom, top)
-    ]
-    (left, low), (right, high) = np.min(corners, axis=(0, 1)).tolist(), np.max(corners, axis=(0, 1)).tolist()
+    onto = Motion(points, *tangents.T)
+    origin = Motion(*(column[letters.of] for column in onto)).of(arms, np.ones(len(arms), dtype=np.int64))
+    half = (letters.right - letters.left)[:, None] / 2 * [-1, -1, 1, 1]
+    boxes = np.stack(np.broadcast_arrays(half, layout.box[1::2] * 2), axis=2)
+    corners = onto.of(boxes.reshape(-1, 2), np.full(len(boxes), 4))
+    (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     return replace(layout, origin=origin, angle=layout.angle + angle[letters.of], box=(left, low, right, high))
 
 
@@ -164,10 +162,3 @@ def letters_of(layout: Layout) -> Letters:
     np.minimum.at(left, of[counts], np.minimum(pens, ends)[counts])
     np.maximum.at(right, of[counts], np.maximum(pens, ends)[counts])
     return Letters(of, left + begin, right + begin - layout.letter_spacing, character[kept])
-
-
-def _turned(arms: FloatArray, tangents: FloatArray) -> FloatArray:
-    """Vectors (n, 2) turned by the angles of unit tangents (n, 2)."""
-    x, y = arms.T
-    c, s = tangents.T
-    return np.stack([c * x - s * y, s * x + c * y], axis=1)

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
-from unicodedata import category, normalize
+from unicodedata import normalize
 
 import numpy as np
 import uharfbuzz as hb
@@ -23,12 +23,6 @@ UNSAFE = int(hb.GlyphFlags.UNSAFE_TO_BREAK)
 
 SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
 """What HarfBuzz makes of the space where a font lacks it."""
-
-DRAWN_FORMATS = frozenset("\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u0890\u0891\u08e2\U000110bd\U000110cd")
-"""Format characters that have a glyph."""
-
-IGNORED = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u180b\u180c\u180d\u180f\u3164\uffa0")
-"""Characters that are not drawn where a font lacks them, beside format characters and variation selectors."""
 
 
 class Run(NamedTuple):
@@ -109,17 +103,13 @@ class Shaper(ABC):
             Glyphs along a horizontal line, or, for "ttb" and "btt", a vertical one.
         """
 
+    @abstractmethod
     def has(self, cluster: str) -> bool:
-        """Whether the font has glyphs for all of a grapheme cluster, as it is, composed or decomposed."""
-        forms = (cluster, normalize("NFC", cluster), normalize("NFD", cluster))
-        return any(all(self._has(character) for character in form) for form in forms)
+        """Whether the font has glyphs for all of a grapheme cluster, or needs none."""
 
     def lacking(self, cluster: str) -> list[str]:
         """The characters of a grapheme cluster that have no glyph."""
         return [] if self.has(cluster) else [character for character in cluster if not self.has(character)]
-
-    def _has(self, character: str) -> bool:
-        return ord(character) in self.source.cmap
 
 
 class HarfBuzzShaper(Shaper):
@@ -153,16 +143,15 @@ class HarfBuzzShaper(Shaper):
         positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(-1, 4) * self.scale
         return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2], unsafe)
 
-    def _has(self, character: str) -> bool:
-        return (
-            super()._has(character)
-            or (character in SPACES and 0x20 in self.source.cmap)
-            or (character == "\u2011" and 0x2010 in self.source.cmap)
-            or character in IGNORED
-            or 0xFE00 <= ord(character) < 0xFE10
-            or 0xE0000 <= ord(character) < 0xE1000
-            or (category(character) == "Cf" and character not in DRAWN_FORMATS)
-        )
+    def has(self, cluster: str) -> bool:
+        """See :meth:`Shaper.has`. HarfBuzz knows other forms of a cluster, and what a font may lack."""
+        if all(ord(character) in self.source.cmap for character in cluster):
+            return True
+        self._buffer.reset()
+        self._buffer.add_str(cluster.replace("\t", " "))
+        self._buffer.guess_segment_properties()
+        hb.shape(self.source.shaper, self._buffer)
+        return all(info.codepoint for info in self._buffer.glyph_infos)
 
 
 class PlainShaper(Shaper):
@@ -184,11 +173,15 @@ class PlainShaper(Shaper):
         self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
 
     def _glyph(self, code: int) -> int:
-        name = self.source.cmap.get(code) or (self.source.cmap.get(0x20) if chr(code) in SPACES else None) or ".notdef"
-        return self._gids.get(name, -1)
+        return self._gids.get(self._name(code) or ".notdef", -1)
 
-    def _has(self, character: str) -> bool:
-        return super()._has(character) or (character in SPACES and 0x20 in self.source.cmap)
+    def _name(self, code: int) -> str | None:
+        return self.source.cmap.get(code) or (self.source.cmap.get(0x20) if chr(code) in SPACES else None)
+
+    def has(self, cluster: str) -> bool:
+        """See :meth:`Shaper.has`; as it is, composed or decomposed."""
+        forms = (cluster, normalize("NFC", cluster), normalize("NFD", cluster))
+        return any(all(self._name(ord(character)) for character in form) for form in forms)
 
     @cached_property
     def _gids(self) -> dict[str, int]:

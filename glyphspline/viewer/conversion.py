@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import asdict, replace
 from functools import lru_cache
 from itertools import chain
@@ -17,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from ..curves.curvature import Comb, shared_scale
 from ..errors import GlyphsplineError
 from ..fields import arguments, instance_arguments
 from ..fitting.closed_curves import History, recorded, through_polygons
@@ -33,7 +31,7 @@ from ..outlines.outline import Contour, Contours, Outline
 from ..readers import Font, open_font
 from ..types import BoolArray, FloatArray, rounded_up
 from ..typesetting.lay_out import layout
-from ..writers.svg.comb import combs
+from ..writers.svg.comb import curvature_scale
 from ..writers.svg.document import code_points
 from ..writers.svg.path_data import path_data, polyline_data
 from ..writers.svg.text_drawing import text_document
@@ -118,11 +116,8 @@ class Work:
         """The font's curvature scale, from the source outlines of at most 60 glyphs."""
         names = [name for name in self.font.glyph_names if name in set(self.font.cmap.values())]
         chosen = (names or list(self.font.glyph_names))[:: max(1, len(names) // 60)]
-        found: list[Comb] = []
-        for name in chosen:
-            with suppress(GlyphsplineError):  # a broken glyph has its error when it is shown
-                found += combs(as_glyph(self.outline(name, ())))
-        return shared_scale(found, self.em) or 4 / self.em
+        # A broken glyph has its error when it is shown.
+        return curvature_scale(as_glyph(self.outline(name, ())) for name in filter(self.has_ink, chosen)) or 4 / self.em
 
     def command(self, state: State, along: str | None = None) -> str:
         """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis."""

@@ -152,6 +152,13 @@ def test_letters_join_over_a_change_of_font(font: gs.Font, tmp_path: Path) -> No
     assert found.font.tolist() == [0, 1, 0]
 
 
+def test_what_is_missing_is_what_harfbuzz_draws_as_notdef(font: gs.Font) -> None:
+    """Hangul fillers and annotation marks are default ignorables to Unicode, and not to HarfBuzz."""
+    found = gs.layout(font, "A\u115f\u200b\ufff9\u2003\u0301\u00e1")
+    assert found.missing == ("\u115f", "\ufff9")
+    assert [found.text[k] for k in found.cluster[found.gid == 0].tolist()] == ["\u115f", "\ufff9"]
+
+
 def test_the_face_is_opened_once(font: gs.Font, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(hb, "Face", None)
     monkeypatch.setattr(hb, "Blob", None)

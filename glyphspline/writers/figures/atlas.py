@@ -17,7 +17,7 @@ from ...outlines.masters import Masters
 from ...outlines.outline import Contour, Outline
 from ...types import FloatArray
 from ..settings import Combs
-from ..svg.comb import LONGEST, SOURCE, SPACING, Teeth, cut_words, shown_by, teeth
+from ..svg.comb import LONGEST, SOURCE, SPACING, Teeth, legend, shown_by, teeth
 from .basics import ascii_text, blank, colour_bar, comb_patches, outline_patch, write_pages
 
 PAGE = (8.27, 11.69)
@@ -98,10 +98,8 @@ def overview(
             place = _placed(glyph, corner)
             shown = [c.curve if whose == "result" else c.source for c in glyph.contours]
             outlines += [place(curve.cubics().reshape(-1, 2)).reshape(-1, 4, 2) for curve in shown]
-            found = teeth(glyph, scale, whose, in_corners=in_corners)
-            drawn += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in found]
-            other = teeth(glyph, scale, "source") if combs == "both" else []
-            of_source += [Teeth(place(t.feet), place(t.tips), t.relative, t.cut) for t in other]
+            drawn += [t.placed(place) for t in teeth(glyph, scale, whose, in_corners=in_corners)]
+            of_source += [t.placed(place) for t in teeth(glyph, scale, "source")] if combs == "both" else []
             words = label(glyph.outline)
         else:
             words = f"{glyph[0]}: {glyph[1]}"[:60]
@@ -112,8 +110,7 @@ def overview(
         line.set(edgecolor=SOURCE, alpha=1.0, linewidth=0.4, linestyle=(0, (4, 2)))
         axes.add_patch(line)
     em = next((g.outline.metrics.units_per_em for g in glyphs if isinstance(g, GlyphResult)), 1000.0)
-    words = f" of the {whose} in 1/em, convex positive" + ("; dashed: of the source" if combs == "both" else "")
-    words += cut_words(sum(int(t.cut.sum()) for t in drawn), scale * em)
+    words = legend(combs, sum(int(t.cut.sum()) for t in drawn), scale * em)
     colour_legend(figure, (0.3, 0.05, 0.4, 0.012), scale * em, words)
     return figure
 

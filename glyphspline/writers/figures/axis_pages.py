@@ -188,7 +188,7 @@ def _draw_places(axes: Any, source: AlongAxis, curve: AlongAxis, scale: float) -
             shift = np.array([(c + 0.5) * width, -(r + 0.5) * height]) - middle
             outlines += [contour.cubics() / em + shift for contour in outline.contours]
             found = teeth(as_glyph(outline), scale, "source")
-            drawn += [Teeth(t.feet / em + shift, t.tips / em + shift, t.relative, t.cut) for t in found]
+            drawn += [t.placed(lambda points, shift=shift: points / em + shift) for t in found]  # type: ignore[misc]
             if r == 0 and kink is not None and kink.turn >= LEAST_SHOWN:
                 ring = outline.contours[kink.contour].cubics()[kink.joint, 0] / em + shift
                 axes.plot(*ring, "o", color=SOURCE, markersize=8, markerfacecolor="none", markeredgewidth=0.7)

@@ -10,7 +10,7 @@ import numpy as np
 from ...fitting.results import GlyphResult
 from ...types import FloatArray
 from ..settings import CURRENT, PLAIN, PLAIN_MAPS, Appearance, Combs, ImageKind, Maps, Settings
-from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, cut_words, palette, shown_by, teeth
+from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, legend, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
 from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, saved
@@ -107,9 +107,7 @@ def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices
     bar.ax.tick_params(labelsize=8)
     if columns < 30:
         bar.set_ticks([-reach, reach], labels=[f"{-reach:.3g}", f"{reach:.3g}"], fontsize=6)
-    words = f"curvature of the {whose} in 1/em, convex positive"
-    words += "; dashed: of the source" if combs == "both" else ""
-    words += cut_words(sum(int(part.cut.sum()) for part in drawn), reach)
+    words = f"curvature{legend(combs, sum(int(part.cut.sum()) for part in drawn), reach)}"
     bar.set_label("\n".join(wrap(words, max(columns, 12))), fontsize=8)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -51,6 +51,10 @@ class Teeth:
     relative: FloatArray
     cut: BoolArray
 
+    def placed(self, place: Callable[[FloatArray], FloatArray]) -> Teeth:
+        """The teeth, moved by a map of points."""
+        return Teeth(place(self.feet), place(self.tips), self.relative, self.cut)
+
 
 def curvature_scale(glyphs: Iterable[GlyphResult]) -> float:
     """The scale, in 1/unit, that maps of these glyphs share: see :func:`glyphspline.curves.curvature.shared_scale`.
@@ -88,9 +92,10 @@ def shown_by(combs: Combs) -> Whose:
     return "source" if combs == "source" else "result"
 
 
-def cut_words(number: int, reach: float) -> str:
-    """What a map says of its cut teeth; ``reach`` is its scale in 1/em."""
-    return f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" if number else ""
+def legend(combs: Combs, number: int, reach: float) -> str:
+    """What a map says of its curvature, and of the number of its cut teeth; ``reach`` is its scale in 1/em."""
+    words = f" of the {shown_by(combs)} in 1/em, convex positive{'; dashed: of the source' * (combs == 'both')}"
+    return words + f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" * bool(number)
 
 
 def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:

@@ -18,7 +18,7 @@ from .comb import (
     colour_classes,
     curvature_scale,
     curves_of,
-    cut_words,
+    legend,
     palette,
     shown_by,
     sides_and_corners,
@@ -130,10 +130,7 @@ def map_document(
         layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
     width = min(max(floor((box[2] - box[0]) / (STEP * em)), 1) * STEP, WIDEST) * em
     letters = min(LETTERS * em, width / 8)
-    meaning = f"κ of the {whose} in 1/em, convex positive"
-    meaning += "; dashed: of the source" if combs == "both" else ""
-    meaning += cut_words(cut, scale * em)
-    lines = wrap(meaning, max(int(width / (ADVANCE * letters)), 1))
+    lines = wrap(f"κ{legend(combs, cut, scale * em)}", max(int(width / (ADVANCE * letters)), 1))
     said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
     height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
     left, base = box[0], box[1] - (0.06 + TOOTH) * em

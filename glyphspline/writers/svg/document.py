@@ -65,8 +65,8 @@ def to_svg(
         >>> to_svg(glyph, view_box="ink").startswith('<svg xmlns="http://www.w3.org/2000/svg" viewBox="')
         True
     """
-    path = curves_data(glyph.arrays.curves, glyph.options.precision)[0]
-    return svg_document(glyph, path, Appearance(view_box, size, fill, stroke, em, stroke_width)).decode()
+    look = Appearance(view_box, size, fill, stroke, em, stroke_width)
+    return write_svg(glyph, Settings(look)).decode()
 
 
 def write_svg(result: GlyphResult, settings: Settings) -> bytes:
