@@ -10,7 +10,7 @@ from ..curves.cubics import jet, length
 from ..curves.fairness import MOST, TURN, curvatures, first_of, swings
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray
-from .segments import NO_HANDLE
+from .turns import NO_HANDLE
 
 QUARTER = np.pi / 2
 """A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""

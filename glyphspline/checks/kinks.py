@@ -23,7 +23,7 @@ from ..outlines.sampling import CORNER_ANGLE
 from ..types import BoolArray, FloatArray, IntArray, counted
 from .finding import Measured
 from .kinds import KINK
-from .turns import LEAST, joint_controls, largest_jumps, largest_turns, turns_of
+from .turns import NO_HANDLE, joint_controls, largest_jumps, largest_turns, turns_of
 
 PROFILE = 96
 """Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
@@ -405,7 +405,7 @@ def along_axis(
     for contour in masters.contours:
         arcs = contour.cubics()[:, contour.degrees > 1]
         for k, cubics in enumerate(np.tensordot(weights, arcs, axes=1)):
-            lasts = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) > LEAST  # it may have a length elsewhere only
+            lasts = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) > NO_HANDLE  # it may have a length elsewhere only
             energies[k] += integrals(cubics[lasts])[1]
     energies *= masters.metrics.units_per_em
     return AlongAxis(masters, location, found.axis, found, next(iter(found), None), values, turns, energies)

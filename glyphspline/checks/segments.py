@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..compiled import compiled
+from ..curves.bezier import AT_END
 from ..outlines.contour_arrays import ContourArrays
 from ..types import ComplexArray, FloatArray, IntArray
 from .kinds import (
@@ -25,9 +26,7 @@ from .kinds import (
     UNLEVEL,
     Limits,
 )  # fmt: skip
-
-NO_HANDLE = 1e-6
-"""Length in font units up to which a handle gives no tangent; the next control point then gives one."""
+from .turns import NO_HANDLE
 
 ROUNDING = np.sqrt(0.5)
 """How far rounding to whole units moves a point at most. It moves the two ends of a handle."""
@@ -40,9 +39,6 @@ LEVEL = np.tan(np.radians(10.0))
 
 BACK = 0.25
 """Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
-
-AT_END = 1e-9
-"""Parameter distance within which a root is an end of its segment."""
 
 WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER, SEEN = range(7)
 """Columns of the table (n, 7) that passes return: number of the kind; contour; place on it, segment and local

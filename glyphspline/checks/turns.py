@@ -17,8 +17,8 @@ from ..curves.bezier import AT_END, cross, roots_inside
 from ..outlines.masters import MasterContour
 from ..types import FloatArray
 
-LEAST = 1e-6
-"""Length in font units up to which a tangent has no direction; the next control point then gives one."""
+NO_HANDLE = 1e-6
+"""Length in font units up to which a handle gives no tangent; the next control point then gives one."""
 
 STRAIGHT = 1e-3
 """Curvature, in 1/em, up to which both sides of a joint are straight, and none jumps against the other."""
@@ -39,7 +39,7 @@ def joint_controls(contour: MasterContour) -> FloatArray:
 def turns_of(controls: FloatArray) -> FloatArray:
     """(…,) turn in degrees, positive to the left, of joints (…, 2, 4, 2); NaN where a side has no direction."""
     vectors = controls[..., 1:, :] - controls[..., :1, :]  # (…, 2, 3, 2) from the joint
-    long = np.abs(vectors).sum(axis=-1) > LEAST
+    long = np.abs(vectors).sum(axis=-1) > NO_HANDLE
     chosen = np.take_along_axis(vectors, long.argmax(axis=-1)[..., None, None], axis=-2)[..., 0, :]
     turns = _angle(-chosen[..., 0, :], chosen[..., 1, :])
     turns[~long.any(axis=-1).all(axis=-1)] = np.nan
@@ -60,7 +60,7 @@ def jumps_of(controls: FloatArray, units_per_em: FloatArray) -> FloatArray:
         curvature[..., 0] *= -1  # the segment that arrives is reversed
         most = np.abs(curvature).max(axis=-1)
         jump = np.abs(curvature[..., 1] - curvature[..., 0]) / most
-    valid = (length > LEAST).all(axis=-1) & (most * units_per_em > STRAIGHT)
+    valid = (length > NO_HANDLE).all(axis=-1) & (most * units_per_em > STRAIGHT)
     return np.where(valid, jump, 0.0)
 
 
@@ -71,7 +71,8 @@ def largest_turns(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Float
         start, end: (N, 2, 4, 2) control points at the ticks; they are linear between.
     """
     vectors = np.stack([start[..., 1:, :] - start[..., :1, :], end[..., 1:, :] - end[..., :1, :]])  # (2, N, 2, 3, 2)
-    long = (np.abs(vectors).sum(axis=-1) > LEAST).any(axis=0)  # a handle without length at one tick has it at no other
+    # A handle without length at one tick has it at no other.
+    long = (np.abs(vectors).sum(axis=-1) > NO_HANDLE).any(axis=0)
     level = np.broadcast_to(long.argmax(axis=-1)[None, ..., None, None], (*vectors.shape[:3], 1, 1))
     chosen = np.take_along_axis(vectors, level, axis=-2)[..., 0, :]
     a, b = -chosen[0, :, 0], chosen[0, :, 1]

@@ -76,18 +76,16 @@ def _changed(
 ) -> Iterator[dict[str, Any]]:  # fmt: skip
     """How outlines differ whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
-    from .outline_distance import outline_distances
+    from .outline_distance import outline_distance
 
     every, other = joined([outline.arrays for outline in old]), joined(moved)
     firsts = offsets_of([len(outline.contours) for outline in old])
     others = offsets_of([len(outline.contours) for outline in new])
     cubics, other_cubics = all_cubics(every), all_cubics(other)
-    ems = np.array([outline.metrics.units_per_em for outline in old])
-    rows = outline_distances(cubics, every.offsets, firsts, other_cubics, other.offsets, others, ems / 1000)
     hulls, other_hulls = extents(cubics, every.offsets), extents(other_cubics, other.offsets)
     kinks, other_kinks = turns(old), turns(new, scales)
-    for g, (em, row) in enumerate(zip(ems.tolist(), rows.tolist(), strict=True)):
-        bound, seen, x, y, side, contour, near_x, near_y = row
+    for g, em in enumerate(outline.metrics.units_per_em for outline in old):
+        bound, seen, x, y, side, contour, near_x, near_y = outline_distance(old[g].arrays, moved[g], em / 1000).tolist()
         bound += old[g].snapped + scales[g] * new[g].snapped
         costs = np.abs(hulls[firsts[g] : firsts[g + 1], None] - other_hulls[others[g] : others[g + 1]]).max(axis=2)
         # Share of the em by which the extents of two contours may differ that are partners.

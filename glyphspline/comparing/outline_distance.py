@@ -26,6 +26,8 @@ from ..arrays import ascending
 from ..compiled import compiled
 from ..curves.cubics import extent, length, nearest, section
 from ..curves.pairing import ROUNDING, apart
+from ..outlines.contour_arrays import ContourArrays
+from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
 
 SHARP, SLACK = 0.01, 0.01
@@ -73,13 +75,12 @@ class Chains(NamedTuple):
 
 @compiled
 def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
-    """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,), which may begin at any number."""
+    """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,)."""
     m = len(cubics)
-    own, owners, bends = offsets - offsets[0], np.empty(m, dtype=np.int64), np.empty(m)
+    owners, bends = np.empty(m, dtype=np.int64), np.empty(m)
     boxes, groups = np.empty((m, 4)), np.empty(((m + GROUP - 1) // GROUP, 4))
-    for c in range(len(own) - 1):
-        for s in range(own[c], own[c + 1]):
-            owners[s] = c
+    for c in range(len(offsets) - 1):
+        owners[offsets[c] : offsets[c + 1]] = c
     for s in range(m):
         b, box, group = cubics[s], boxes[s], groups[s // GROUP]
         for axis in range(2):
@@ -93,7 +94,7 @@ def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
             x = b[k, 0] - 2 * b[k + 1, 0] + b[k + 2, 0]
             y = b[k, 1] - 2 * b[k + 1, 1] + b[k + 2, 1]
             bends[s] = max(bends[s], 0.75 * length(x, y))
-    return Chains(cubics, own, owners, bends, boxes, groups)
+    return Chains(cubics, offsets, owners, bends, boxes, groups)
 
 
 @compiled
@@ -209,39 +210,21 @@ def nearest_of_outline(
     return segment, at, best
 
 
-@compiled
-def outline_distances(
-    old: FloatArray, old_offsets: IntArray, old_glyphs: IntArray, new: FloatArray, new_offsets: IntArray,
-    new_glyphs: IntArray, units: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """(G, COLUMNS) the distances of glyphs' outlines.
-
-    Args:
-        old: (m, 4, 2) segments of all glyphs. old_offsets: (C + 1,) where contours begin. old_glyphs: (G + 1,) where
-            the contours of each glyph begin. new, new_offsets, new_glyphs: likewise.
-        units: (G,) thousandths of the em.
-    """
-    count = len(old_glyphs) - 1
-    found = np.zeros((count, COLUMNS))
-    for g in range(count):
-        a, b = old_glyphs[g], old_glyphs[g + 1]
-        one = old[old_offsets[a] : old_offsets[b]]
-        c, d = new_glyphs[g], new_glyphs[g + 1]
-        other = new[new_offsets[c] : new_offsets[d]]
-        row = found[g]
-        row[SIDE] = row[CONTOUR] = -1
-        if len(one) > 0 and len(other) > 0:
-            distance(
-                chains_of(one, old_offsets[a : b + 1]), chains_of(other, new_offsets[c : d + 1]), SHARP * units[g], row
-            )
-        elif len(one) > 0 or len(other) > 0:
-            row[BOUND] = row[SEEN] = np.inf
-    return found
+def outline_distance(old: ContourArrays, new: ContourArrays, unit: float) -> FloatArray:
+    """(COLUMNS,) the distance of two outlines; ``unit``: a thousandth of the em."""
+    row = np.zeros(COLUMNS)
+    row[SIDE] = row[CONTOUR] = -1
+    if len(old.degrees) and len(new.degrees):
+        one, other = (chains_of(all_cubics(outline), outline.offsets) for outline in (old, new))
+        distance(one, other, SHARP * unit, row)
+    elif len(old.degrees) or len(new.degrees):
+        row[BOUND] = row[SEEN] = np.inf
+    return row
 
 
 @compiled
 def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
-    """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distances`."""
+    """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distance`."""
     places, sections, marks = np.empty((STACK, 2)), np.empty((2, 1, 4, 2)), np.empty((DEEPEST + 2, 7))
     m, n = len(old.cubics), len(new.cubics)
     # Of every segment: the bound; and the segment of the other outline, and parameter on it, nearest to both its ends.

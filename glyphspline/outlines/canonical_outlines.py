@@ -94,10 +94,8 @@ def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays
                 p, d = backward, its
             s = _first_joint(p, d)
             i = np.sum(d[:s])
-            for k in range(n):
-                points[starts[c] + k, 0], points[starts[c] + k, 1] = p[(i + k) % n, 0], p[(i + k) % n, 1]
-            for k in range(m):
-                degrees[offsets[c] + k] = d[(s + k) % m]
+            points[starts[c] : starts[c] + n] = np.concatenate((p[i:], p[:i]))
+            degrees[offsets[c] : offsets[c] + m] = np.concatenate((d[s:], d[:s]))
             offsets[c + 1], starts[c + 1] = offsets[c] + m, starts[c] + n
     found = ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)
     for c in range(count):

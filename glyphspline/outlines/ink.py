@@ -6,8 +6,9 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import jet, turns
+from ..curves.integrals import area
 from ..types import BoolArray, FloatArray, IntArray
-from .contour_arrays import ContourArrays
+from .contour_arrays import ContourArrays, offsets_of
 from .segments import contour_cubics
 
 CHORDS = 4
@@ -34,11 +35,7 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
     sides = np.empty(count)
     for c in range(count):
         own = chords[starts[c] : starts[c + 1]]
-        area = 0.0
-        for i in range(len(own)):
-            x, y = own[i - 1, 0] - own[0, 0], own[i - 1, 1] - own[0, 1]
-            area += x * (own[i, 1] - own[0, 1]) - y * (own[i, 0] - own[0, 0])
-        sides[c] = -1.0 if area < 0.0 else 1.0
+        sides[c] = -1.0 if area(contour_cubics(contours, c)) < 0.0 else 1.0
         if len(own) == 0:
             continue
         at = CHORDS // 2
@@ -69,20 +66,12 @@ def winding(polygon: FloatArray, x: float, y: float) -> int:
     return found
 
 
-@compiled
 def corner_points(contours: ContourArrays, angle: float) -> tuple[FloatArray, IntArray]:
     """(k, 2) where the tangents turn by ``angle``, in radians, or more; (C + 1,) where those of each contour begin."""
-    found, count = np.empty((len(contours.degrees), 2)), 0
-    offsets = np.zeros(len(contours.offsets), dtype=np.int64)
-    for c in range(len(contours.offsets) - 1):
-        cubics = contour_cubics(contours, c)
-        turned = turns(cubics, 0.0)
-        for j in range(len(cubics)):
-            if abs(turned[j]) >= angle:
-                found[count, 0], found[count, 1] = cubics[j, 0, 0], cubics[j, 0, 1]
-                count += 1
-        offsets[c + 1] = count
-    return found[:count], offsets
+    chains = [contour_cubics(contours, c) for c in range(contours.num_contours if angle < np.inf else 0)]
+    found = [cubics[np.abs(turns(cubics, 0.0)) >= angle, 0] for cubics in chains]
+    counts = [len(points) for points in found] if found else np.zeros(contours.num_contours, dtype=np.int64)
+    return np.concatenate([np.empty((0, 2)), *found]), offsets_of(counts)
 
 
 @compiled

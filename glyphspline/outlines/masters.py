@@ -125,10 +125,9 @@ class Masters:
     def of(cls, outline: Outline) -> Masters:
         """A glyph of a font that is not variable: one master, no axes."""
         contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
-        head, advances = (outline.name, outline.gid, outline.unicodes), np.array([outline.advance])
         return cls(
-            *head, contours=contours, advances=advances, metrics=outline.metrics, notes=outline.notes,
-            repeats=outline.repeats,
+            outline.name, outline.gid, outline.unicodes, contours=contours, advances=np.array([outline.advance]),
+            metrics=outline.metrics, notes=outline.notes, repeats=outline.repeats,
         )  # fmt: skip
 
     def __repr__(self) -> str:
@@ -192,15 +191,15 @@ class Masters:
     def instance(self, location: Mapping[str, float]) -> Outline:
         """The glyph at a location."""
         weights = self.weights(location)
-        contours = Contours([contour.mixed(weights) for contour in self.contours], self.repeats)
-        return Outline(
-            self.name, self.gid, self.unicodes, float(self.advances @ weights), contours, self.metrics, self.notes
-        )
+        return self._outline([contour.mixed(weights) for contour in self.contours], float(self.advances @ weights))
 
     def master(self, k: int) -> Outline:
         """The glyph in master k."""
-        contours = Contours([Contour(each.points[k], each.degrees) for each in self.contours], self.repeats)
-        return Outline(self.name, self.gid, self.unicodes, float(self.advances[k]), contours, self.metrics, self.notes)
+        return self._outline([Contour(each.points[k], each.degrees) for each in self.contours], float(self.advances[k]))
+
+    def _outline(self, contours: Sequence[Contour], advance: float) -> Outline:
+        of_font = Contours(contours, self.repeats)
+        return Outline(self.name, self.gid, self.unicodes, advance, of_font, self.metrics, self.notes)
 
     def ticks(self, a: int) -> FloatArray:
         """Ascending normalised values of an axis between which every weight is linear: of regions, and its ends."""

@@ -15,6 +15,7 @@ from fontTools.ufoLib import UFOWriter
 from glyphspline import FontError, GlyphsplineError, open_source
 from glyphspline.readers import Source
 from glyphspline.readers.designspace import Designspace
+from glyphspline.readers.ufo import Ufo
 
 Points: TypeAlias = Sequence[tuple[float, float]]
 
@@ -194,6 +195,25 @@ def change(space: Path, file: str, name: str, draw: Callable[[Any], None]) -> No
     from fontTools.ufoLib.glifLib import GlyphSet
 
     GlyphSet(space.with_name(f"{file}.ufo") / "glyphs").writeGlyph(name, Drawn(500), draw)
+
+
+def test_own_contours_are_numbered_as_in_the_file(space: Path) -> None:
+    """One without points, a component, one that encloses nothing, and a box, whose number is that of the outline."""
+
+    def draw(pen: Any) -> None:
+        for part in (lines(), components(("o", (1, 0, 0, 1, 5, 0))), lines((0, 0), (9, 9)), box(30, 40)):
+            part(pen)
+
+    for file in ("Light", "Regular", "Bold"):
+        change(space, file, "c", draw)
+    for path in (space, space.with_name("Regular.ufo")):
+        source = open_source(path)
+        assert isinstance(source, Ufo | Designspace)
+        assert source.own_contours("c") == [None, None, 1]
+        assert len(source.outline("c").contours) == 2
+        assert source.own_contours("o") == [0]
+        assert source.own_contours("i") == []
+        assert [each.layer for each in source.drawings("c")] == [None] * (3 if path == space else 1)
 
 
 @pytest.mark.parametrize(
