@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 import glyphspline as gs
 from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.method import Method
-from glyphspline.interpolation.reference import interpolate_vertex_reference
+from glyphspline.interpolation.reference import footpoint, prepare
 
 from .agreement import TOLERANCE, compare
 from .polygons import KINDS, polygon, smooth, uniform
@@ -148,13 +148,22 @@ def test_a_batch_of_open_arcs_is_those_one_by_one() -> None:
 
 
 @pytest.mark.parametrize("whole_curve", [False, True])
-def test_one_vertex_alone_agrees_with_the_reference(whole_curve: bool) -> None:
+def test_one_vertex_alone_is_algorithm_1_by_the_roots_of_polynomials(whole_curve: bool) -> None:
     for number in range(20):
         kind, p = polygon(number)
-        options: dict[str, Any] = {"residual_tolerance": 2e-7 * np.ptp(p, axis=0).max(), "max_iterations": 30}
-        ours = gs.interpolate_vertex(p, number % 3, whole_curve=whole_curve, **options)
-        plain = interpolate_vertex_reference(p, number % 3, whole_curve=whole_curve, **options)
-        assert ours.iterations == plain.iterations, (kind, number)
-        assert ours.rate_bound == pytest.approx(plain.rate_bound, abs=1e-9)
-        difference = ours.spline.control_points - plain.spline.control_points
+        k, tolerance, problem = number % 3, 2e-7 * np.ptp(p, axis=0).max(), prepare(p, 1)
+        centre, half = problem.centres[k], np.array([-0.5, 0.5]) * problem.knots[-1]
+        interval = centre + half if whole_curve else problem.intervals.bounds[k]
+        controls, errors = problem.points.copy(), [np.inf]
+        while errors[-1] >= tolerance and len(errors) <= 31:
+            spline = problem.spline(controls)
+            e = problem.points[k] - spline(footpoint(spline, problem.points[k], interval, centre))
+            errors.append(np.hypot(*e))
+            if errors[-1] >= tolerance and len(errors) <= 31:
+                controls[k] += e
+        least = problem.spline(controls).basis(interval)[:, k].min()  # B_k has a single peak
+        ours = gs.interpolate_vertex(p, k, whole_curve=whole_curve, residual_tolerance=tolerance, max_iterations=30)
+        assert ours.iterations == len(errors) - 2, (kind, number)
+        assert ours.rate_bound == pytest.approx(1.0 if whole_curve else 1 - least, abs=1e-9)
+        difference = ours.spline.control_points - controls
         assert np.abs(difference).max() <= TOLERANCE * np.ptp(p, axis=0).max(), (kind, number)

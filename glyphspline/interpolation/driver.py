@@ -18,7 +18,7 @@ from ..curves.bspline import Spline, full_knots, span_controls
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .batch import filled, run_batch
-from .intervals import Intervals, arc_ends, search_intervals
+from .intervals import Intervals, search_intervals
 from .method import SETTLED, Method
 from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import NOTHING_MERGED, Interpolation
@@ -115,8 +115,7 @@ def _intervals(
     first = free - ((method.degree + 1) // 2 if method.closed else 2)
     order = method.degree + 2
     windows = full_knots(u, order, method.closed)[order + first[:, None] + np.arange(order)]
-    arc = None if method.closed else arc_ends(u, natural_weights(np.diff(u), tangents))
-    return search_intervals(windows, centres[free], method.variant, method.margin, method.fallback, arc)
+    return search_intervals(windows, centres[free], method.variant, method.margin, method.fallback)
 
 
 class Problem:

@@ -5,17 +5,16 @@ even degree alike.
 
 Row i of I - B has the absolute sum 2 (1 - B_i) on a closed curve. On an arc the control points at the ends do not move
 with those of the vertices, and what their basis functions take leaves less for the row: its sum is 2 (1 - W_i) with
-W_i = B_i + F_i/2, F_i the part of the curve that is fixed. There Lemma 2 holds of W_i.
+W_i = B_i + F_i/2, F_i the part of the curve that is fixed. There Lemma 2 holds of W_i: see :mod:`.kernels.lemma2`, and
+:mod:`.reference`. Here every vertex counts as one of a closed curve.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.bspline import full_knots
 from ..types import FloatArray
 from .method import PEAK_SHARE, Fallback
 
@@ -36,43 +35,14 @@ class Intervals:
 
     Attributes:
         bounds: (n, 2) the intervals.
-        fallbacks: number of vertices where Lemma 2 gives no interval, as W_i (B_i on a closed curve) nowhere exceeds
-            1/2.
-        rate_bound: max 2 (1 - min W_i over i's interval), Theorem 2's factor a step.
+        fallbacks: number of vertices where Lemma 2 gives no interval, as B_i (beside the ends of an arc W_i) nowhere
+            exceeds 1/2.
+        rate_bound: max 2 (1 - min B_i over i's interval), Theorem 2's factor a step.
     """
 
     bounds: FloatArray
     fallbacks: int
     rate_bound: float
-
-
-@dataclass(frozen=True, eq=False)
-class ArcEnds:
-    """The basis functions of a cubic arc whose control points are fixed, or follow a free one (natural ends).
-
-    Attributes:
-        windows: (4, 5) the knots of the first two and the last two basis functions.
-        natural: (2,) the weight w of the first (last) free control point in the one between it and the end.
-    """
-
-    windows: FloatArray
-    natural: FloatArray
-
-    def shares(self, i: int, count: int) -> FloatArray:
-        """(4,) F_i/2 by these functions, for free vertex i of ``count``.
-
-        What follows a free control point with weight w is fixed by 1 - w. The vertex of that control point has the
-        rest w on the diagonal of its row, where it counts twice.
-        """
-        w = self.natural
-        own = np.array([0.0, w[0] if i == 0 else 0.0, w[1] if i == count - 1 else 0.0, 0.0])
-        return (1 - np.array([0.0, w[0], w[1], 0.0])) / 2 + own
-
-
-def arc_ends(u: FloatArray, natural: FloatArray) -> ArcEnds:
-    """The fixed functions of an arc with knots u (m,) and these weights of natural ends (2,), 0 for end tangents."""
-    full, m = full_knots(u, 3, False), len(u)
-    return ArcEnds(full[np.array([0, 1, m, m + 1])[:, None] + np.arange(5)], natural)
 
 
 def basis_function(windows: FloatArray, t: FloatArray) -> FloatArray:
@@ -136,7 +106,6 @@ def search_intervals(
     variant: int,
     margin: float = 0.0,
     fallback: Fallback = "knot",
-    ends: ArcEnds | None = None,
 ) -> Intervals:
     """The interval of every footpoint.
 
@@ -147,8 +116,6 @@ def search_intervals(
         margin: c of Lemma 2, the interval being {B_i ≥ 1/2 + min(c, max B_i - 1/2)}, clipped to that of variant 1.
         fallback: where B_i nowhere exceeds 1/2, "knot" takes the centre (Remark 3). "peak" instead takes, for every
             vertex, {B_i ≥ min(1/2 + c, 0.9 max B_i)}, which is never empty.
-        ends: of an arc. W_i takes the place of B_i where its level is not below 1/2, and c is ``END_MARGIN`` at least
-            for the first and the last vertex, where W_i always rises above 5/8.
     """
     support = windows[:, [0, -1]]
     inner = windows[:, [1, -2]]
@@ -171,60 +138,5 @@ def search_intervals(
         bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
         bounds = np.where(low[:, None], centres[:, None], bounds)
     least = np.minimum(basis_function(windows, bounds[:, 0]), basis_function(windows, bounds[:, 1]))
-    if ends is not None:
-        last = len(windows) - 1
-        for i in range(len(windows)):
-            if min(i, last - i) > 1:  # no fixed function reaches the interval
-                continue
-            W = _Dominance(windows[i], ends, i, len(windows))
-            c = max(margin, END_MARGIN) if i in (0, last) else margin
-            found = W.interval(0.5 + c, PEAK_SHARE if fallback == "peak" else 1.0) if variant in (2, 4) else None
-            if variant == 3:
-                least[i] = W(centres[i : i + 1])[0]
-            elif found is not None:
-                bounds[i], low[i] = found, False
-                least[i] = W(found).min()
     fallbacks = int(low.sum()) if variant in (2, 4) else 0
     return Intervals(bounds, fallbacks, float(2 * (1 - least.min(initial=1.0))))
-
-
-class _Dominance:
-    """W_i of free vertex i of an arc, as a function of t."""
-
-    def __init__(self, window: FloatArray, ends: ArcEnds, i: int, count: int) -> None:
-        self.windows = np.concatenate([window[None], ends.windows])
-        self.weights = np.concatenate([[1.0], ends.shares(i, count)])
-
-    def __call__(self, t: FloatArray) -> FloatArray:
-        rows = [basis_function(np.repeat(w[None], len(t), axis=0), t) for w in self.windows]
-        return np.asarray(self.weights @ np.array(rows))
-
-    def interval(self, level: float, share: float) -> FloatArray | None:
-        """(2,) where W_i ≥ level, or ``share`` of its maximum if that is lower; None if that is below 1/2.
-
-        On [u_{i-1}, u_{i+1}] W_i is at least 1/2 on a single interval.
-        """
-        _, before, knot, after, _ = self.windows[0]
-        candidates = np.concatenate([_critical(self, before, knot), _critical(self, knot, after)])
-        values = self(candidates)
-        peak, highest = candidates[values.argmax()], values.max()
-        level = min(level, share * highest)
-        if highest <= 0.5 or level < 0.5:
-            return None
-        if highest <= level:
-            return np.array([peak, peak])
-        ends = []
-        for inside, outside in ((peak, before), (peak, after)):
-            for _ in range(BISECTIONS):
-                middle = (inside + outside) / 2
-                inside, outside = (middle, outside) if self(middle[None])[0] >= level else (inside, middle)
-            ends.append(inside)
-        return np.array(ends)
-
-
-def _critical(f: Callable[[FloatArray], FloatArray], start: float, stop: float) -> FloatArray:
-    """The ends of a span and the zeros inside of the derivative of f, a cubic there."""
-    x = np.arange(4) / 3
-    zeros = np.roots(np.polyder(np.polyfit(x, f(start + x * (stop - start)), 3)))
-    inside = zeros.real[(np.abs(zeros.imag) < 1e-9) & (zeros.real > 0) & (zeros.real < 1)]
-    return start + np.concatenate([[0.0], inside, [1.0]]) * (stop - start)

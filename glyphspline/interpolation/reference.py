@@ -8,8 +8,9 @@ the algorithms or their proofs needs the plane: vertices may have d ≥ 2 coordi
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache, reduce
+from dataclasses import dataclass, replace
+from functools import cache, partial, reduce
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,10 @@ from numpy.typing import ArrayLike
 
 from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
-from ..errors import PolygonError
 from ..types import FloatArray, IntArray
 from .driver import diagnose, iterate
-from .intervals import Intervals, arc_ends, search_intervals
-from .method import SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Parametrisation, Tangents
+from .intervals import BISECTIONS, END_MARGIN, Intervals, search_intervals
+from .method import PEAK_SHARE, SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Parametrisation, Tangents
 from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import Interpolation
 
@@ -171,14 +171,15 @@ def prepare(
     if closed:
         u, centres, vertices = closed_knots(s, degree), vertex_centres(s, degree), np.arange(len(p))
         first = vertices - (degree + 1) // 2
-        spread, fixed, ends = np.eye(len(p)), np.zeros(p.shape), None
+        spread, fixed = np.eye(len(p)), np.zeros(p.shape)
     else:
         u, centres, vertices = s, s, np.arange(1, len(p) - 1)
         first = vertices - 2
         spread, fixed = _clamped_ends(p, u, end_tangents or (None, None))
-        ends = arc_ends(u, spread[[1, -2], [0, -1]] if len(vertices) else np.zeros(2))
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
-    intervals = search_intervals(windows, centres[vertices], variant, margin, fallback, ends)
+    intervals = (search_intervals if closed else partial(_arc_intervals, u, spread))(
+        windows, centres[vertices], variant, margin, fallback
+    )
     return Problem(p, vertices, u, degree, closed, centres, intervals, spread, fixed, merged)
 
 
@@ -204,6 +205,72 @@ def _clamped_ends(p: FloatArray, u: FloatArray, tangents: Tangents) -> tuple[Flo
             fixed[second] = (1 - weight) * p[near]
             spread[second, free] = weight
     return spread, fixed
+
+
+def _arc_intervals(
+    u: FloatArray, spread: FloatArray, windows: FloatArray, centres: FloatArray, variant: int, margin: float,
+    fallback: Fallback,
+) -> Intervals:  # fmt: skip
+    """:func:`search_intervals` for an arc, by W_i for the two vertices next to either end, as far as fixed functions
+    reach.
+
+    W_i takes the place of B_i where its level is not below 1/2, and c is ``END_MARGIN`` at least for the first and the
+    last vertex, where W_i always rises above 5/8.
+    """
+    count, parts = len(windows), [Intervals(np.empty((0, 2)), 0, 0.0)]
+    basis = Spline.trusted(np.zeros((len(spread), 2)), u, 3, False).basis
+    alone = sorted({0, 1, 2, count - 2, count - 1, count} & set(range(count + 1)))
+    for i, stop in pairwise(alone):
+        part = search_intervals(windows[i:stop], centres[i:stop], variant, margin, fallback)
+        if min(i, count - 1 - i) < 2:
+
+            def dominance(t: FloatArray, i: int = i) -> FloatArray:
+                rows = basis(t) @ spread
+                found: FloatArray = rows[:, i] + (1 - rows.sum(axis=1)) / 2
+                return found
+
+            level = 0.5 + (max(margin, END_MARGIN) if i in (0, count - 1) else margin)
+            share = PEAK_SHARE if fallback == "peak" else 1.0
+            found = _level_interval(dominance, windows[i, 1:4], level, share) if variant in (2, 4) else None
+            if variant == 3:
+                part = replace(part, rate_bound=float(2 * (1 - dominance(centres[i:stop])[0])))
+            elif found is not None:
+                part = Intervals(found[None], 0, float(2 * (1 - dominance(found).min())))
+        parts.append(part)
+    bounds, fallbacks, rates = zip(*((part.bounds, part.fallbacks, part.rate_bound) for part in parts), strict=True)
+    return Intervals(np.concatenate(bounds), sum(fallbacks), max(rates))
+
+
+def _level_interval(f: Callable[[FloatArray], FloatArray], knots: FloatArray, level: float, share: float) -> Any:
+    """(2,) where W_i ≥ level, or ``share`` of its maximum if that is lower; None if that is below 1/2.
+
+    Args:
+        f: W_i, at least 1/2 on a single interval between these. knots: (3,) u_{i-1}, u_i, u_{i+1}.
+    """
+    before, knot, after = knots
+    candidates = np.concatenate([_critical(f, before, knot), _critical(f, knot, after)])
+    values = f(candidates)
+    peak, highest = candidates[values.argmax()], values.max()
+    level = min(level, share * highest)
+    if highest <= 0.5 or level < 0.5:
+        return None
+    if highest <= level:
+        return np.array([peak, peak])
+    ends = []
+    for inside, outside in ((peak, before), (peak, after)):
+        for _ in range(BISECTIONS):
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if f(middle[None])[0] >= level else (inside, middle)
+        ends.append(inside)
+    return np.array(ends)
+
+
+def _critical(f: Callable[[FloatArray], FloatArray], start: float, stop: float) -> FloatArray:
+    """The ends of a span and the zeros inside of the derivative of f, a cubic there."""
+    x = np.arange(4) / 3
+    zeros = np.roots(np.polyder(np.polyfit(x, f(start + x * (stop - start)), 3)))
+    inside = zeros.real[(np.abs(zeros.imag) < 1e-9) & (zeros.real > 0) & (zeros.real < 1)]
+    return start + np.concatenate([[0.0], inside, [1.0]]) * (stop - start)
 
 
 def interpolate_reference(
@@ -299,50 +366,3 @@ def _solve(problem: Problem, t: FloatArray) -> FloatArray:
 def _error_at(problem: Problem, free: FloatArray, t: FloatArray) -> float:
     e = problem.points[problem.vertices] - problem.spline(free)(t)
     return float(lengths(e).max())
-
-
-def interpolate_vertex_reference(
-    points: ArrayLike,
-    k: int,
-    *,
-    whole_curve: bool = False,
-    residual_tolerance: float | None = None,
-    max_iterations: int = 1000,
-) -> Interpolation:
-    """Algorithm 1: only control point k moves, until the curve passes through p_k (arguments as in the public one)."""
-    method = Method(1, residual_tolerance=residual_tolerance, max_iterations=max_iterations)
-    problem = prepare(points, 1)
-    n = len(problem.points)
-    if not 0 <= k < n:
-        raise PolygonError(f"there is no vertex {k} among {n}")
-    T = problem.knots[-1]
-    centre = float(problem.centres[k])
-    interval = np.array([centre - T / 2, centre + T / 2]) if whole_curve else problem.intervals.bounds[k]
-
-    def one_pass(P: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-        spline, updated = problem.spline(P), P.copy()
-        t = footpoint(spline, problem.points[k], interval, centre)
-        e = problem.points[k] - spline(t)
-        updated[k] += e
-        return np.array([t]), updated, float(lengths(e))
-
-    tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
-    run = iterate(one_pass, problem.points.copy(), tolerance, max_iterations)
-    least = _least_basis_value(problem, k) if not whole_curve else 0.0
-    return Interpolation(
-        spline=problem.spline(run.controls),
-        parameters=run.footpoints,
-        intervals=interval[None],
-        iterations=len(run.residuals) - 1,
-        residuals=np.array(run.residuals),
-        converged=run.residuals[-1] < tolerance,
-        fallbacks=0,
-        rate_bound=1 - least,
-        merged=problem.merged,
-    )
-
-
-def _least_basis_value(problem: Problem, k: int) -> float:
-    """The smallest value of B_k on vertex k's interval; it is reached at an end, as B_k has a single peak."""
-    spline = problem.spline(problem.points)
-    return float(spline.basis(problem.intervals.bounds[k])[:, k].min())
