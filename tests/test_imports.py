@@ -44,7 +44,7 @@ PLAN = {
     "readers": CURVES | {"outlines", "matching"},
     "typesetting": FITTING | {"readers"},
     "writers": WRITERS,
-    "report": WRITERS | {"comparing"},
+    "report": WRITERS | {"comparing", "mending"},
     "runs": WRITERS | {"matching", "comparing", "mending", "report"},
     "datasets": WRITERS | {"report", "runs"},
     "viewer": WRITERS | {"report"},

@@ -37,7 +37,7 @@ def mend(
     sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
     subset: opt.Subset,
     spec: Annotated[RunSpec, only("in_place", "layer")],
-    report: Annotated[opt.ReportOptions, only("rows")],
+    report: Annotated[opt.ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     out: Annotated[
         Path | None,
@@ -71,6 +71,8 @@ def mend(
         stop("give one of --in-place, --layer, --out and --dry-run")
     if out is not None and len({path.name for path in sources}) < len(sources):
         raise OptionError("--out takes no two sources of one name")
+    if report.html is not None and len(sources) > 1:
+        raise OptionError("--html draws one source")
     limits = thresholds_of(thresholds, None)
     chosen_kinds = MENDED if kinds == "all" else opt.items_of(kinds)
     found: list[MendedSource] = []
@@ -90,6 +92,8 @@ def mend(
                     source, names, kinds=chosen_kinds, tolerance=tolerance, thresholds=limits, copy=copy,
                     layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
                 ))  # fmt: skip
+    if report.html is not None:
+        write_page(report.html, found[0], dry_run)
     if run.as_json:
         print_json([one.facts() for one in found])
     for one in found:
@@ -99,6 +103,19 @@ def mend(
             for line in lines(one, dry_run):
                 say(line)
     return undone or any(one.left or one.failed for one in found)
+
+
+def write_page(path: Path, found: MendedSource, dry: bool) -> None:
+    """Draw what moved.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    from ..files import write_made
+    from ..report.mending_page import mending_page
+
+    page = mending_page(Path(found.source).name, [next(lines(found, dry))], found.changes, found.drawn)
+    write_made(path, page.encode())
 
 
 def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
@@ -113,11 +130,13 @@ def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
 
 def table(changes: Sequence[Change]) -> str:
     """What moved, a finding a line."""
+    from ..report.mending_page import moved_words
+
     rows = [
         [
             change.glyph, change.kind, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point), value(change),
             "" if change.after is None else f"{change.after:.2f}°",
-            f"{change.moved:.3g}" + f", {change.gone} gone" * bool(change.gone),
+            moved_words(change),
             f"{rounded_up(change.distance or 0.0, 3):g}",
         ]
         for change in changes
@@ -135,6 +154,7 @@ def value(change: Change) -> str:
 
 def lines(found: MendedSource, dry: bool) -> Iterator[str]:
     """What the table does not say."""
+
     mended, left = found.mended, found.left
     verb = "would change" if dry else "changed"
     yield (
@@ -150,6 +170,7 @@ def lines(found: MendedSource, dry: bool) -> Iterator[str]:
 
 def reason(change: Change) -> str:
     """Where a finding is that is left, and why."""
-    needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
+    from ..report.mending_page import left_words
+
     place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
-    return f"{change.glyph}, {place}, {change.kind} of {value(change)}: {change.why}{needs}"
+    return f"{change.glyph}, {place}, {change.kind} of {value(change)}: {left_words(change)}"

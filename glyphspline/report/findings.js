@@ -9,7 +9,6 @@
   const CLOSE = 6; // times the length of a very short segment, which is shown closer than others
   const CARDS = 120, ROWS = 300; // at a time
   const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump", "retracted"]); // it is drawn over
-  const FULL = 0.9; // share of the teeth in view that are shorter than a full one
 
   const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, outline, score]) => ({
     font: setup.fonts[font], fontNumber: font, glyph, gid, kindNumber: kind, kind: setup.kinds[kind][0], level: setup.kinds[kind][1],
@@ -38,27 +37,19 @@
     return half <= FAR * em ? [(left + right) / 2, (top + bottom) / 2, size] : [row.x, -row.y, size];
   };
 
-  /** The curvature, in 1/unit, of a full tooth: most teeth in view are shorter. */
-  const scaleOf = (contours, em, [x, y, half]) => {
-    const found = GS.frames(contours, em).flat().filter(({ point: [a, b] }) => Math.abs(a - x) < half && Math.abs(b - y) < half)
-      .map(({ curvature }) => Math.abs(curvature)).filter((value) => value * em > 0.01).sort((a, b) => a - b);
-    return found.length ? found[Math.min(found.length - 1, Math.floor(FULL * found.length))] : 0;
-  };
-
-  const join = (a, b) => `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
   const bezier = (p) => `M${p[0].join(" ")}${p.length === 2 ? "L" : p.length === 3 ? "Q" : "C"}${p.slice(1).flat().join(" ")}`;
 
   const draw = (card, row) => {
     const contours = contoursOf(row.outline), whole = card.classList.contains("whole"), em = row.font.em;
     const frame = view(row, contours, whole), [x, y, half] = frame;
-    const picture = card.querySelector("svg"), scale = scaleOf(contours, em, frame), pieces = contours.flat();
-    const handles = pieces.flatMap((p) => (p.length === 2 ? [] : p.length === 3 ? [[p[0], p[1]], [p[2], p[1]]] : [[p[0], p[1]], [p[3], p[2]]]));
+    const picture = card.querySelector("svg"), scale = GS.scaleNear(contours, em, frame), pieces = contours.flat();
+    const handles = GS.handles(pieces);
     const found = ON_SEGMENT.has(row.kind) ? contours[row.contour]?.[row.segment] : null;
     picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
     picture.replaceChildren(
       GS.svg("path", { class: "source", d: setup.outlines[row.outline] }),
       ...(scale > 0 ? [GS.comb(contours, em, scale, { name: "source-comb", gain: Math.min(6, half / (0.09 * em)) })] : []),
-      GS.svg("path", { class: "control", d: handles.map(([a, b]) => join(a, b)).join("") }),
+      GS.svg("path", { class: "control", d: handles.map(([a, b]) => GS.join(a, b)).join("") }),
       GS.dots(handles.map(([, b]) => b), "handles"),
       ...(found ? [GS.svg("path", { class: "found", d: bezier(found) })] : []),
       ...(row.kind === "direction" ? [GS.svg("path", { class: "found", d: (contours[row.contour] ?? []).map(bezier).join("") })] : []),
@@ -76,7 +67,7 @@
     const away = (points) => points.map(([x, y]) => [x - points[0][0], y - points[0][1]]).find(([x, y]) => x || y);
     return [piece, [...pieces.at(row.segment - 1)].reverse()].map((points) => [points[0], away(points)]).filter(([, to]) => to)
       .map(([[x, y], [dx, dy]]) => [x, y, dx / Math.hypot(dx, dy) * half, dy / Math.hypot(dx, dy) * half])
-      .map(([x, y, dx, dy]) => join([x, y], [x - dx, y - dy])).join("");
+      .map(([x, y, dx, dy]) => GS.join([x, y], [x - dx, y - dy])).join("");
   };
 
   const drawn = new WeakSet();
@@ -112,25 +103,8 @@
     return GS.element("tr", {}, ...HEADS.map((name) => GS.element("td", NUMERIC.has(name) ? { class: "number" } : {}, cells[name])));
   };
 
-  /** Fills a list with so many at a time; its button shows how many are left. */
-  const filled = (list, button, size, make, noun) => {
-    let items = [], shown = 0;
-    const more = () => {
-      list.append(...items.slice(shown, shown + size).map(make));
-      shown = Math.min(items.length, shown + size);
-      button.hidden = shown === items.length;
-      button.textContent = `Show ${Math.min(size, items.length - shown)} of ${items.length - shown} more ${noun}`;
-    };
-    button.addEventListener("click", more);
-    return (chosen) => {
-      items = chosen;
-      shown = 0;
-      list.replaceChildren();
-      more();
-    };
-  };
-  const fillCards = filled(at("cards"), at("more-cards"), CARDS, cardOf, "drawings");
-  const fillRows = filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
+  const fillCards = GS.filled(at("cards"), at("more-cards"), CARDS, cardOf, "drawings");
+  const fillRows = GS.filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
 
   const boxes = [...document.querySelectorAll("[data-kind]")];
   const update = () => {

@@ -35,6 +35,23 @@ const GS = {};
     return node;
   };
 
+  /** Fills a list with so many at a time; its button shows how many are left. */
+  GS.filled = (list, button, size, make, noun) => {
+    let items = [], shown = 0;
+    const more = () => {
+      list.append(...items.slice(shown, shown + size).map(make));
+      shown = Math.min(items.length, shown + size);
+      button.hidden = shown === items.length;
+      button.textContent = `Show ${Math.min(size, items.length - shown)} of ${items.length - shown} more ${noun}`;
+    };
+    button.addEventListener("click", more);
+    return (chosen) => {
+      items = chosen;
+      shown = 0;
+      list.replaceChildren();
+      more();
+    };
+  };
   /** Offer a text as a file. */
   GS.download = (text, name, type) => {
     const url = URL.createObjectURL(new Blob([text], { type }));

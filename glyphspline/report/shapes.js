@@ -6,6 +6,7 @@
   const TOOTH = 0.03, LONGEST = 2.5, SPACING = 1 / 140; // in em and in units of the scale, as in the maps
   const MOST_TEETH = 400; // a piece
   const NEAR = 1 / 40, CORNER = Math.PI / 15; // in em and radians: where a smooth result turns about a corner of 12 degrees
+  const FULL = 0.9; // share of the teeth in view that are shorter than a full one
   const CHORDS = 4; // a segment, for which a point counts as inside or outside
 
   /** The colours of curvature, from the most concave ink to the most convex. */
@@ -221,6 +222,19 @@
     const group = GS.svg("g", { class: "coloured" });
     parts.forEach((data, i) => data.length && group.append(GS.svg("path", { d: data.join(""), stroke: GS.palette[i] })));
     return group;
+  };
+
+  GS.join = (a, b) => `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
+
+  /** The handles of pieces, each from its point to its end. */
+  GS.handles = (pieces) => pieces.flatMap((p) =>
+    (p.length === 2 ? [] : p.length === 3 ? [[p[0], p[1]], [p[2], p[1]]] : [[p[0], p[1]], [p[3], p[2]]]));
+
+  /** The curvature, in 1/unit, of a full tooth: most teeth in view are shorter. */
+  GS.scaleNear = (contours, em, [x, y, half]) => {
+    const found = GS.frames(contours, em).flat().filter(({ point: [a, b] }) => Math.abs(a - x) < half && Math.abs(b - y) < half)
+      .map(({ curvature }) => Math.abs(curvature)).filter((value) => value * em > 0.01).sort((a, b) => a - b);
+    return found.length ? found[Math.min(found.length - 1, Math.floor(FULL * found.length))] : 0;
   };
 
   /** Dots that keep their size whatever the zoom: strokes of no length with round caps. */

@@ -107,6 +107,7 @@ class MendedSource:
     Attributes:
         source: its path. glyphs: number of those looked at. changed: names of those that changed.
         changes: what became of each finding. failed: glyphs that could not be read, with the reasons.
+        drawn: glyphs that changed, as they were and as they are, by name.
     """
 
     source: str
@@ -114,6 +115,7 @@ class MendedSource:
     changed: list[str] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)
+    drawn: dict[str, tuple[Masters, Masters]] = field(default_factory=dict, repr=False)
 
     @property
     def left(self) -> list[Change]:
@@ -183,6 +185,7 @@ def mend_source(
                 if one.old is not None and one.new is not None:
                     redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
                     new.append((one.old, one.new, redrawn))
+    found.drawn = {now.name: (old, now) for old, now, _ in new}
     with writing(copy or source.path):
         if isinstance(source, Font):
             from ...writers.back.fonts import write_points

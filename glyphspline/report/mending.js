@@ -1,0 +1,131 @@
+"use strict";
+/* The page of what was mended: before and after over each other, at a place of an axis, and a table of what moved. */
+
+(() => {
+  const setup = JSON.parse(document.getElementById("setup").textContent);
+  GS.usePalette(setup.palette);
+  const at = (id) => document.getElementById(id);
+  const NEAR = 0.05; // half the width of what is shown around a place, in em, at least
+  const AT_JOINTS = new Set(["kink", "unlevel", "repeated", "jump"]); // their handles are shown, of others the segment
+  const CARDS = 60, ROWS = 300; // at a time
+  const rows = setup.rows.map(([glyph, kind, contour, segment, x, y, before, after, moved, curves, why, drawing, axis, step]) => (
+    { glyph, kind: setup.kinds[kind], kindNumber: kind, contour, segment, x, y, before, after, moved, curves, why, drawing, axis, step }));
+  const point = (row) => `${Math.round(row.x)}, ${Math.round(row.y)}`.replaceAll("-", "\u2212");
+
+  /** Where on the axes a card is: the number of an axis of its drawing and a step of it, or null at the default. */
+  const placeOf = (row) => {
+    if (!setup.axes.length) return null;
+    if (at("worst").checked) return row.axis < 0 ? null : [row.axis, row.step];
+    return [+at("axis").value, +at("place").value];
+  };
+
+  /** Contours as pieces, y down, of one side, "old" or "new", of a drawing at a place. */
+  const contoursOf = (drawing, side, place) => {
+    const weights = place ? drawing.weights[place[0]][place[1]] : [1];
+    return drawing[side].map(([degrees, masters]) => {
+      const count = masters[0].length / 2, points = Array.from({ length: count }, (_, n) => [0, 1].map((k) =>
+        weights.reduce((sum, weight, m) => sum + weight * masters[m][2 * n + k], 0) * (k ? -1 : 1)));
+      let from = 0;
+      return degrees.map((degree) => {
+        const piece = Array.from({ length: degree + 1 }, (_, i) => points[(from + i) % count]);
+        from += degree;
+        return piece;
+      });
+    });
+  };
+
+  const data = (contours) => contours.map((pieces) => `M${pieces[0][0].join(" ")}` + pieces.map((p) =>
+    `${" LQC"[p.length - 1]}${p.slice(1).flat().join(" ")}`).join("") + "Z").join("");
+
+  const draw = (card) => {
+    const { row } = card, drawing = setup.drawings[row.drawing], place = placeOf(row), em = drawing.em;
+    const old = contoursOf(drawing, "old", place), now = contoursOf(drawing, "new", place);
+    const whole = card.classList.contains("whole"), own = old[row.contour], m = own.length;
+    const joint = AT_JOINTS.has(row.kind) ? [own[(row.segment + m - 1) % m].slice(-2), own[row.segment].slice(0, 2)].flat() : own[row.segment];
+    const around = whole ? old.flat(2) : joint;
+    const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
+    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const half = Math.max(NEAR * em, 0.8 * Math.max(right - left, bottom - top)), x = (left + right) / 2, y = (top + bottom) / 2;
+    const picture = card.querySelector("svg"), scale = GS.scaleNear(old, em, [x, y, half]), gain = Math.min(6, half / (0.09 * em));
+    const combs = scale > 0 ? [[old, "source-comb"], [now, "comb"]].map(([of, name]) => GS.comb(of, em, scale, { name, gain })) : [];
+    const same = old.flat(2).length === now.flat(2).length ? old.flat(2).map((p, k) => [p, now.flat(2)[k]]) : [];
+    const moves = same.filter(([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]) > 1e-3);
+    const handles = (of, name) => GS.svg("path", { class: name, d: GS.handles(of.flat()).map(([a, b]) => GS.join(a, b)).join("") });
+    picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
+    picture.replaceChildren(
+      GS.svg("path", { class: "source", d: data(old) }), GS.svg("path", { class: "result", d: data(now) }), ...combs,
+      handles(old, "handle-before"), handles(now, "handle-after"), GS.dots([own[row.segment][0]], "mark"),
+      GS.svg("path", { class: "moves", d: moves.map(([a, b]) => GS.join(a, b)).join("") }),
+      GS.dots(moves.map(([a]) => a), "before"), GS.dots(moves.map(([, b]) => b), "after"),
+    );
+    const where = place ? `${setup.axes[place[0]].tag} ${GS.number(setup.axes[place[0]].values[place[1]])}` : "";
+    const teeth = scale > 0 ? `a full tooth is ${GS.number(scale * em)}/em` : "no curvature in view";
+    card.querySelector(".comb-scale").textContent = [where, teeth].filter(Boolean).join("; ");
+  };
+
+  const visible = new Set();
+  const watcher = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (isIntersecting) { visible.add(target); draw(target); } else visible.delete(target);
+    }
+  }, { rootMargin: "300px" });
+
+  const kindOf = (row) => GS.element("span", { class: "kind" }, row.kind);
+  const result = (row) => (row.why ? "left" : row.after || "gone");
+  const cardOf = (row) => {
+    const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, GS.svg("svg", { "aria-hidden": "true" }));
+    const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
+      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` ${row.before} → ${result(row)}`),
+      GS.element("div", {}, `points moved by ${row.moved}, curves by ${row.curves}`),
+      GS.element("p", {}, `contour ${row.contour}, segment ${row.segment}, at ${point(row)}`), GS.element("p", { class: "comb-scale" })));
+    card.row = row;
+    button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card); });
+    watcher.observe(card);
+    return card;
+  };
+
+  const HEADS = ["glyph", "kind", "contour", "segment", "point", "before", "after", "points moved", "curves moved", "why left"];
+  at("head").append(...HEADS.map((name) => GS.element("th", { scope: "col" }, name)));
+  const lineOf = (row) => GS.element("tr", {}, ...[row.glyph, kindOf(row), `${row.contour}`, `${row.segment}`, point(row), row.before, result(row), row.moved, row.curves, row.why]
+    .map((cell, k) => GS.element("td", k > 1 && k < 9 ? { class: "number" } : {}, cell)));
+  const fillCards = GS.filled(at("cards"), at("more-cards"), CARDS, (row) => cardOf(row), "drawings");
+  const fillRows = GS.filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
+
+  const boxes = [...document.querySelectorAll("[data-kind]")];
+  const update = () => {
+    const kinds = new Set(boxes.filter((box) => box.checked).map((box) => +box.dataset.kind)), words = at("words").value.trim().toLowerCase();
+    const chosen = rows.filter((row) => kinds.has(row.kindNumber) && (!words || row.glyph.toLowerCase().includes(words)));
+    visible.clear();
+    fillCards(chosen.filter((row) => row.drawing >= 0));
+    fillRows(chosen);
+    const mended = chosen.filter((row) => !row.why).length;
+    at("none").hidden = mended > 0;
+    at("count").textContent = `${mended} of ${chosen.length} findings mended`;
+  };
+
+  const moved = () => {
+    const axis = setup.axes[+at("axis").value];
+    if (axis) at("value").textContent = at("worst").checked ? "" : `${axis.tag} ${GS.number(axis.values[+at("place").value])}`;
+    visible.forEach(draw);
+  };
+  const chosenAxis = () => {
+    const axis = setup.axes[+at("axis").value];
+    at("place").max = axis.values.length - 1;
+    at("place").value = axis.home;
+  };
+  at("along").hidden = !setup.axes.length;
+  if (setup.axes.length) {
+    setup.axes.forEach((axis, k) => at("axis").append(new Option(`${axis.name} (${axis.tag})`, String(k))));
+    chosenAxis();
+    at("place").addEventListener("input", () => { at("worst").checked = false; moved(); });
+    at("axis").addEventListener("change", () => { chosenAxis(); at("worst").checked = false; moved(); });
+    at("worst").addEventListener("change", moved);
+  }
+  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
+  boxes.forEach((box) => box.addEventListener("change", update));
+  let pause;
+  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(update, 120); });
+  update();
+  moved();
+  document.body.dataset.ready = "yes";
+})();

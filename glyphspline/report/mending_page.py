@@ -1,0 +1,137 @@
+"""A page of what was mended: before and after over each other with combs, along each axis, and what moved."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from ..checks.finding import with_unit
+from ..checks.kinds import KINDS
+from ..checks.turns import joint_controls, turns_of
+from ..mending.mend import Change
+from ..outlines.masters import DesignAxis, Masters
+from ..types import FloatArray, rounded_up
+from ..writers.svg.comb import palette
+from ..writers.svg.document import text
+from .pages import page_of
+
+DRAWN, LISTED = 500, 20_000
+"""Findings with a drawing: those whose points moved most. Findings in the table."""
+
+STEPS = 48
+"""Steps of each axis on the slider."""
+
+PRECISION = 3
+"""Decimals of coordinates and weights: weights of masters times coordinates of thousands."""
+
+SCRIPTS = ("page.js", "shapes.js", "mending.js")
+
+UNITS = {kind.name: kind.unit for kind in KINDS}
+
+
+def mending_page(
+    heading: str, facts: Sequence[str], changes: Sequence[Change], glyphs: Mapping[str, tuple[Masters, Masters]]
+) -> str:
+    """The page as HTML; it loads nothing.
+
+    Args:
+        heading: its title. facts: sentences below it. changes: what became of each finding.
+        glyphs: those that changed, as they were and as they are, by name.
+    """
+    ordered = sorted(changes, key=lambda change: (not change.is_mended, -change.moved))[:LISTED]
+    axes = next((old.axes for old, _ in glyphs.values()), ())
+    places = [positions(axis) for axis in axes]
+    names, drawings, rows = dict[str, int](), list[Any](), []
+    kinds = [*dict.fromkeys(change.kind for change in ordered)]
+    for n, change in enumerate(ordered):
+        number, worst = -1, (-1, 0)
+        if n < DRAWN and change.is_mended and change.glyph in glyphs:
+            old, new = glyphs[change.glyph]
+            if change.glyph not in names:
+                names[change.glyph] = len(drawings)
+                drawings.append(drawing(old, new, places))
+            number, worst = names[change.glyph], worst_place(old, change, places)
+        rows.append([
+            change.glyph, kinds.index(change.kind), change.contour, change.segment,
+            *[round(value, 2) for value in change.point], with_unit(change.before, UNITS[change.kind]),
+            "" if change.after is None else with_unit(change.after, "°"), moved_words(change),
+            "" if change.distance is None else f"{rounded_up(change.distance, 3):g}",
+            left_words(change), number, *worst,
+        ])  # fmt: skip
+    counts = Counter(change.kind for change in ordered)
+    switches = "".join(
+        f'<label><input type="checkbox" data-kind="{k}" checked><i></i>{escape(kind)} '
+        f"<span>{counts[kind]}</span></label>"
+        for k, kind in enumerate(kinds)
+    )
+    setup = {
+        "kinds": kinds, "rows": rows, "drawings": drawings, "palette": palette(),
+        "axes": [
+            {
+                "tag": axis.tag, "name": axis.name, "values": [float(f"{value:.6g}") for value in values],
+                "home": int(np.abs(values - axis.default).argmin()),
+            }
+            for axis, values in zip(axes, places, strict=True)
+        ],
+    }  # fmt: skip
+    sentences = "".join([f"<p>{text(line)}</p>" for line in facts])
+    return page_of(
+        "mending.html", ("theme.css", "findings.css", "mending.css"), heading, SCRIPTS, setup, kinds=switches,
+        facts=sentences,
+    )  # fmt: skip
+
+
+def positions(axis: DesignAxis) -> FloatArray:
+    """User-space values on an axis's slider: even steps, and the default."""
+    found: FloatArray = np.union1d(np.linspace(axis.minimum, axis.maximum, STEPS + 1), [axis.default])
+    return found
+
+
+def weights_along(masters: Masters, places: Sequence[FloatArray]) -> list[FloatArray]:
+    """(v, K) weights of the masters at the values of each axis, the others at their defaults."""
+    found = []
+    for axis, values in zip(masters.axes, places, strict=True):
+        at = [masters.normalised({axis.tag: float(value)}) for value in values]
+        found.append(masters.weights_at(np.array(at)))
+    return found
+
+
+def drawing(old: Masters, new: Masters, places: Sequence[FloatArray]) -> dict[str, Any]:
+    """A glyph before and after, in all masters, and their weights along each axis."""
+    sides = {
+        name: [
+            [each.degrees.tolist(), [np.round(points.ravel(), PRECISION).tolist() for points in each.points]]
+            for each in masters.contours
+        ]
+        for name, masters in (("old", old), ("new", new))
+    }
+    weights = [np.round(each, PRECISION + 3).tolist() for each in weights_along(old, places)]
+    return {"em": old.metrics.units_per_em, **sides, "weights": weights}
+
+
+def worst_place(old: Masters, change: Change, places: Sequence[FloatArray]) -> tuple[int, int]:
+    """The number of the axis and of the value on it where a kink turned most; -1 and 0 at the default."""
+    worst, most = (-1, 0), 0.0
+    if change.kind == "kink":
+        controls = joint_controls(old.contours[change.contour])[:, change.segment]
+        for a, weights in enumerate(weights_along(old, places)):
+            turns = np.nan_to_num(np.abs(turns_of(np.tensordot(weights, controls, axes=1))))
+            if turns.max() > most:
+                worst, most = (a, int(turns.argmax())), float(turns.max())
+    return worst
+
+
+def moved_words(change: Change) -> str:
+    """By how much points moved, and how many went."""
+    gone = f"{change.gone} gone" if change.gone else ""
+    return ", ".join(filter(None, (f"{change.moved:.3g}" if change.moved or not gone else "", gone)))
+
+
+def left_words(change: Change) -> str:
+    """Why a finding is left, and what it would take."""
+    needs = "" if change.needs is None else f": it takes {rounded_up(change.needs, 2):g} units"
+    return "" if change.why is None else f"{change.why}{needs}"
