@@ -144,8 +144,8 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
 def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
     """Defaults of a run that writes only fonts, unless what is given asks for other curves."""
     formats = {name.strip() for name in str(given.get("formats", "")).split(",")}
-    if not formats & FONTS or not MASTERS.isdisjoint(given):
-        return {}
+    if not formats & FONTS or (not MASTERS.isdisjoint(given) and "ttf" in formats):
+        return {}  # quadratics of all masters are fitted to C2 curves
     asks = formats - FONTS or not OTHER_CURVES.isdisjoint(given) or given.get("corners", "sharp") != "sharp"
     if given.get("continuity", "c2" if asks else "g2") != "g2":
         return {}

@@ -79,9 +79,10 @@ def pair_instances(
             that a stretch belongs to, infinite for closed curves. A bound beyond the limit is seldom the best to be had
             then, as no stretch of an arc is refined once another one is beyond it, and no gaps are seen.
     """
-    slips, lost, no_arc = len(arcs) > 0, np.nan, np.empty(0)
+    slips, no_arc = len(arcs) > 0, np.empty(0)
     work, marks, found = room_for(V)
     for c in range(len(anchor_offsets) - 1):
+        lost = np.nan
         result = results[V * result_offsets[c] : V * result_offsets[c + 1]]
         source = sources[V * source_offsets[c] : V * source_offsets[c + 1]]
         rounding = ROUNDING * max(extent(result), extent(source))

@@ -1,8 +1,9 @@
 """From the masters of a glyph to one curve for all of them: every instance is as smooth as the masters.
 
 The K masters of an arc are one curve in R^{2K}, interpolated there by variant 2 on one knot vector. An instance is a
-linear combination of the masters, and so a C2 spline on the same knots. The certificate holds at every location: see
-:mod:`..curves.pairing`.
+linear combination of the masters, and so a C2 spline on the same knots. With ``continuity="g2"`` the masters have the
+cubics that fonts store instead, with the same nodes in all (:mod:`.sharp.font_curves`). The certificate holds at every
+location: see :mod:`..curves.pairing`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .ladders import SHARP_TRIES
 from .options import Options
 
 if TYPE_CHECKING:
+    from .sharp.font_fit import FontCurve
     from .sharp.sharp_fit import SharpFit
     from .topology import Changes
 
@@ -40,8 +42,8 @@ class MastersContourResult:
     Attributes:
         source: the contour as the font has it. curve: the result, lines and cubics, in the source's direction.
         inner: (m,) whether segment j of the result begins inside an arc: no instance has a kink or a jump of curvature
-            there.
-        iterations: of variant 2, the most of all arcs; None if no arc has two spans.
+            there. With "g2" no kink that its source has not.
+        iterations: of variant 2, the most of all arcs; None if no arc has two spans, or with "g2".
         rate_bound: largest certified factor a step; None likewise.
         deviation_bound: certified bound of the two-sided distance to the source at every location, in font units.
         within_tolerance: whether it is within the tolerance.
@@ -126,7 +128,8 @@ class MastersResult:
 def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersResult:
     """Put one curve through all masters of a glyph.
 
-    Arcs end at corners and lines; with ``corners="smooth"`` it is one closed C2 curve a contour.
+    Arcs end at corners and lines; with ``corners="smooth"`` it is one closed C2 curve a contour. With
+    ``continuity="g2"`` there are no more cubics than the source has, and each master is on the grid of ``precision``.
 
     Args:
         masters: of the glyph; see :meth:`.Source.masters`. options: how; the tolerance holds at every location.
@@ -214,7 +217,15 @@ class _Fits(NamedTuple):
 
         which = [int(c) for c in which]
         chosen = [arrays.chosen(which) for arrays in self.outlines]
-        cubics, em = np.stack([all_cubics(arrays) for arrays in chosen]), self.masters.metrics.units_per_em
+        sources = [self.masters.contours[self.numbers[c]] for c in which]
+        em = self.masters.metrics.units_per_em
+        if self.options.is_for_fonts:
+            from .sharp.font_fit import fit_for_fonts
+
+            looks = self.masters.weights_at(self.masters.places())
+            found = fit_for_fonts(chosen, self.mixes, looks, self.options, self.tolerance, share, em)
+            return [_stored(source, each, self) for source, each in zip(sources, found, strict=True)]
+        cubics = np.stack([all_cubics(arrays) for arrays in chosen])
         try:
             fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, share * self.tolerance, em)
         except GlyphsplineError as error:
@@ -222,8 +233,8 @@ class _Fits(NamedTuple):
             raise
         curves, sharp = zip(*(Contours(curve) for curve in fit.curves), strict=True), self.options.corners == "sharp"
         return [
-            _contour_result(self.masters.contours[self.numbers[c]], k, fit, in_all, self.tolerance, sharp)
-            for k, (c, in_all) in enumerate(zip(which, curves, strict=True))
+            _contour_result(source, k, fit, in_all, self.tolerance, sharp)
+            for k, (source, in_all) in enumerate(zip(sources, curves, strict=True))
         ]
 
     def remarks(self, results: Sequence[MastersContourResult], found: Changes) -> Iterator[str]:
@@ -266,8 +277,8 @@ def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Ch
 
 def check_options(options: Options) -> None:
     """Raise an OptionError if masters cannot be converted with these options."""
-    if options.is_fixed or options.continuity != "c2" or options.remove_overlaps:
-        raise OptionError('masters are converted by tolerance, with continuity="c2", and keep their overlaps')
+    if options.is_fixed or options.remove_overlaps:
+        raise OptionError("masters are converted by tolerance, and keep their overlaps")
 
 
 def _contour_result(
@@ -297,6 +308,22 @@ def _contour_result(
         kept=int(((spans == 1 if sharp else spans <= 1) & (fit.pieces.errors[own] == 0.0)).sum()),
         regular=bool(fit.regular[own].all()),
     )
+
+
+def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
+    """The result of a contour as fonts store it."""
+    from ..curves.slip import regular
+
+    precision, degrees = fits.options.precision, found.curves[0].degrees
+    curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
+    cubics, given = curve.cubics(), source.cubics()
+    first = found.anchors[:-1, 1].astype(np.int64) % len(source)
+    same = (np.abs(cubics - given[:, first]).max(axis=(0, 2, 3)) < NO_HANDLE) & (degrees > 1)
+    every = np.einsum("vk,kmpc->mvpc", fits.mixes, cubics)
+    return MastersContourResult(
+        source, curve, found.inner, iterations=None, rate_bound=None, deviation_bound=found.bound,
+        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=bool(regular(every).all()),
+    )  # fmt: skip
 
 
 def _energy(contour: Contour) -> float:

@@ -27,6 +27,10 @@ MOST_CORNERS = 1024
 """Corners of the grid of a design space, beyond which :meth:`Masters.grid` gives up."""
 
 
+STEPS = 8
+"""Places between two ticks of an axis at which a glyph is looked at. A turn changes by little from one to the next."""
+
+
 @dataclass(frozen=True)
 class DesignAxis:
     """An axis of a design space, in user space.
@@ -206,6 +210,17 @@ class Masters:
         axis, regions = self.axes[a], self.regions[self.regions[:, a, 1] != 0, a]
         ends = [-1.0 * (axis.minimum < axis.default), 0.0, 1.0 * (axis.maximum > axis.default)]
         return np.unique([*ends, *np.clip(regions.ravel(), ends[0], ends[2])])
+
+    def places(self) -> FloatArray:
+        """(M, A) normalised locations to look at: the corners of the grid, and a number along each axis."""
+        found = [self.grid()]
+        for a in range(len(self.axes)):
+            ticks = self.ticks(a)
+            between = np.interp(np.arange(STEPS * (len(ticks) - 1)) / STEPS, np.arange(len(ticks)), ticks)
+            along = np.zeros((len(between), len(self.axes)))
+            along[:, a] = between
+            found.append(along)
+        return np.unique(np.concatenate(found), axis=0)
 
     def grid(self) -> FloatArray:
         """(V, A) normalised corners of boxes inside which every weight is a product of linear functions.

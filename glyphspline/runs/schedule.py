@@ -103,7 +103,7 @@ def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: boo
     if options is None:
         return []
     if masters:
-        return ["masters"]
+        return ["masters", *(["g2"] if options.is_for_fonts else [])]
     rest = ["rest"] if options.remove_overlaps else []
     if formats and not needs_fit(formats):
         return ["unfitted", *rest]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import weakref
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,13 +22,14 @@ from glyphspline.curves.cubics import turns
 from glyphspline.curves.pairing import pair_instances
 from glyphspline.curves.slip import regular
 from glyphspline.fitting.convert_masters import changes_at
+from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.readers.single_fonts import masters_of_fonts
 from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.runs.summary import MastersSummary
-from glyphspline.types import FloatArray, MadeOnDemand
+from glyphspline.types import BoolArray, FloatArray, MadeOnDemand
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font
 from glyphspline.writers.font.variable_font import to_variable_font
@@ -104,6 +106,58 @@ def test_masters_that_agree_give_the_curve_of_one() -> None:
     np.testing.assert_allclose(twice.contours[0].curve.points[0], alone.contours[0].curve.points[0], atol=1e-6)
     np.testing.assert_array_equal(twice.contours[0].curve.points[0], twice.contours[0].curve.points[1])
     assert len(plain.contours[0].curve) == len(gs.convert_masters(masters_of(oval(200, 350, 0.5))).contours[0].curve)
+
+
+def brush(text: str) -> Iterator[tuple[gs.Outline, Masters]]:
+    """Characters of a running hand in two masters: as they are, and wider, slanted and curved otherwise."""
+    font = gs.open_font(FONTS / "kouzan-gyosho.otf")
+    for outline in font.outlines(font.select(text=text)):
+        wide = [np.rint(c.points @ [[1.15, 0.0], [0.06, 0.95]] + 4e-5 * c.points**2) for c in outline.contours]
+        contours = [
+            MasterContour(np.stack([c.points, other]), c.degrees)
+            for c, other in zip(outline.contours, wide, strict=True)
+        ]
+        regions = np.array([[[0.0, 1.0, 1.0]]])
+        yield outline, Masters(outline.name, 0, (), AXES[:1], regions, contours, np.ones(2), outline.metrics)
+
+
+def kinks(cubics: FloatArray, lines: BoolArray) -> int:
+    """The number of joints that turn by 0.5 to 12 degrees, but for those of two lines."""
+    turning = np.degrees(np.abs(turns(cubics, 1e-6)))
+    return int(np.count_nonzero((turning >= 0.5) & (turning < 12.0) & ~(lines & np.roll(lines, 1))))
+
+
+def test_masters_as_fonts_store_them_have_fewer_curves_and_no_new_kink_at_any_location() -> None:
+    before = after = 0
+    for _, masters in brush("永好"):
+        result = gs.convert_masters(masters, gs.Options(**FOR_FONTS))
+        for contour in result.contours:
+            assert contour.within_tolerance
+            np.testing.assert_array_equal(contour.curve.points, np.rint(contour.curve.points))
+            before, after = before + len(contour.source), after + len(contour.curve)
+            for wght in np.linspace(0, 1, 12):
+                weights = np.array([1 - wght, wght])
+                ours, source = contour.curve.mixed(weights).cubics(), contour.source.mixed(weights).cubics()
+                assert apart(ours, source) <= contour.deviation_bound + 0.05
+                old = kinks(source, contour.source.degrees == 1)
+                assert kinks(ours, contour.curve.degrees == 1) <= old, (masters.name, wght)
+    assert after < 0.95 * before
+
+
+def test_one_master_gets_the_curves_of_its_outline() -> None:
+    for outline, _ in brush("永"):
+        result = gs.convert_masters(Masters.of(outline), gs.Options(**FOR_FONTS))
+        plain = gs.convert(outline, gs.Options(**FOR_FONTS))
+        for one, other in zip(result.contours, plain.contours, strict=True):
+            np.testing.assert_array_equal(one.curve.points[0], other.curve.points)
+            assert one.deviation_bound == other.measures.deviation_bound
+
+
+def test_masters_that_agree_are_stored_alike() -> None:
+    points = np.rint(oval(200, 350, 0.5))
+    result = gs.convert_masters(masters_of(points, points), gs.Options(**FOR_FONTS, tolerance=5.0))
+    curve = result.contours[0].curve
+    np.testing.assert_array_equal(curve.points[0], curve.points[1])
 
 
 def test_an_arc_that_ends_on_a_slanted_line_has_no_kink_there_in_any_instance() -> None:
@@ -372,7 +426,7 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
         (["--axis", "wght=400:900"], "go together"),
         (["--from", str(CFF2)], "go together"),
         (["--from", str(CFF2), "--axis", "wght=400"], "an axis is like"),
-        (["--continuity", "g2"], "by tolerance"),
+        (["--continuity", "g2", "--format", "ttf"], "fitted to curves"),
     ],
 )
 def test_options_that_clash_with_masters_are_refused(more: list[str], said: str, tmp_path: Path) -> None:

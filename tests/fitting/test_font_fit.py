@@ -173,6 +173,7 @@ def test_fonts_are_written_as_they_are_fitted(tmp_path: Path) -> None:
         ({"formats": "otf", "corners": "smooth"}, False),
         ({"formats": "ttf", "step": "20"}, False),
         ({"formats": "ttf", "masters": True}, False),
+        ({"formats": "otf,ufo", "masters": True}, True),
         ({"formats": "svg"}, False),
         ({}, False),
     ],

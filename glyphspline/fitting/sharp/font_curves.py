@@ -6,6 +6,9 @@ cubics of the run are moved together until curvatures meet (:mod:`.harmony`), ro
 certified as rounded. Where a cubic fails, its stretch is fitted again more closely, and in the end stays as the source
 has it, to the byte. So does a run in which nothing is gained.
 
+A contour in K masters has the same nodes in all of them, and is fitted in each by itself. What a joint turns by is
+looked at in mixes of the masters too, and the certificate holds in the whole design space.
+
 Lengths here are in steps of the grid, on which points have whole coordinates.
 """
 
@@ -24,6 +27,7 @@ from .corners import NO_HANDLE, Joints
 from .cubics import fit_between, is_straight
 from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump, harmonise
 from .lattice import round_run
+from .spline_curve import chord
 
 UPRIGHT = np.sin(np.radians(1.5))
 """Sine of the angle to an axis up to which the tangent at an extremum is the axis."""
@@ -57,11 +61,42 @@ PRICE_OF_LINE = 0.1
 
 
 class Limits(NamedTuple):
-    """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit."""
+    """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit.
+
+    Attributes:
+        corners: (V, K) weights of the masters at the corners of the design space's grid. mixes: (M, K) weights with
+            which joints are looked at. A single outline is a master with the weight 1.
+    """
 
     tolerance: float
     em: float
     rounds: int
+    corners: FloatArray
+    mixes: FloatArray
+
+
+@compiled
+def alone(joints: Joints, v: int) -> Joints:
+    """The joints of one master, which share their arrays with those of all."""
+    return Joints(
+        joints.samples[v : v + 1], joints.places, joints.first, joints.spacing, joints.corner, joints.hard,
+        joints.arriving[v : v + 1], joints.leaving[v : v + 1], joints.tied, joints.line,
+    )  # fmt: skip
+
+
+@compiled
+def mixed(weights: FloatArray, cubics: FloatArray) -> FloatArray:
+    """(m V, 4, 2) instances of segments (K, m, 4, 2) in K masters, with weights (V, K): segment j in rows j V on."""
+    K, m = cubics.shape[:2]
+    V = len(weights)
+    found = np.zeros((m * V, 4, 2))
+    for j in range(m):
+        for v in range(V):
+            for k in range(K):
+                for i in range(4):
+                    for axis in range(2):
+                        found[j * V + v, i, axis] += weights[v, k] * cubics[k, j, i, axis]
+    return found
 
 
 @compiled
@@ -77,7 +112,10 @@ def cut_at(joints: Joints) -> BoolArray:
 
 @compiled
 def set_upright(cubics: FloatArray, joints: Joints) -> BoolArray:
-    """(m + 1,) at which smooth joints the outline is horizontal or vertical; their tangents become the axis."""
+    """(m + 1,) at which smooth joints of one master the outline is horizontal or vertical.
+
+    Their tangents become the axis.
+    """
     m = len(cubics)
     found = np.zeros(m + 1, dtype=np.bool_)
     for j in range(m):
@@ -136,16 +174,18 @@ def crosses_handles(cubic: FloatArray) -> bool:
 
 @compiled
 def between(joints: Joints, a: int, b: int, near: float, rounds: int, cubic: FloatArray) -> float:
-    """Fit one cubic (4, 2) from joint a to joint b; the largest distance of a sample."""
-    tangents = np.empty((1, 2, 2))
+    """Fit one cubic (K, 4, 2) from joint a to joint b in each master; the largest distance of a sample."""
+    tangents = np.empty((len(cubic), 2, 2))
     error = fit_between(joints, a, b, near, rounds, tangents)
     if error < np.inf:
-        p, q = joints.samples[0, joints.first[a]], joints.samples[0, joints.first[b]]
-        third = length(q[0] - p[0], q[1] - p[1]) / 3
-        for axis in range(2):
-            cubic[0, axis], cubic[3, axis] = p[axis], q[axis]
-            cubic[1, axis] = p[axis] + third * tangents[0, 0, axis]
-            cubic[2, axis] = q[axis] - third * tangents[0, 1, axis]
+        i, j = joints.first[a], joints.first[b]
+        third = chord(joints.samples, i, j) / 3
+        for v in range(len(cubic)):
+            p, q = joints.samples[v, i], joints.samples[v, j]
+            for axis in range(2):
+                cubic[v, 0, axis], cubic[v, 3, axis] = p[axis], q[axis]
+                cubic[v, 1, axis] = p[axis] + third * tangents[v, 0, axis]
+                cubic[v, 2, axis] = q[axis] - third * tangents[v, 1, axis]
     return error
 
 
@@ -154,24 +194,30 @@ def chosen_nodes(
     cubics: FloatArray, degrees: IntArray, joints: Joints, i: int, j: int, share: FloatArray, limits: Limits,
     places: IntArray, P: FloatArray,
 ) -> int:  # fmt: skip
-    """Cover the segments from joint i to joint j by the fewest cubics.
+    """Cover the segments from joint i to joint j by the fewest cubics, the same in all masters.
 
     Args:
         share: (n,) of each segment: of the tolerance that its cubic may use; 0 keeps it.
-        places: (n + 1,) receives the nodes, as numbers of segments from i. P: (n, 4, 2) receives the cubics.
+        places: (n + 1,) receives the nodes, as numbers of segments from i. P: (K, n, 4, 2) receives the cubics.
 
     Returns:
         Their number.
     """
-    n, beyond, flat = j - i, BEYOND * limits.em, STRAIGHT * limits.em
-    price, following = np.zeros(n + 1), np.empty(n, dtype=np.int64)
-    found, cubic = np.empty((n, 4, 2)), np.empty((4, 2))
+    n, masters, flat = j - i, len(cubics), STRAIGHT * limits.em
+    price, following, past = np.zeros(n + 1), np.empty(n, dtype=np.int64), np.empty(masters)
+    found, cubic = np.empty((n, masters, 4, 2)), np.empty((masters, 4, 2))
     for a in range(n - 1, -1, -1):
         price[a] = (PRICE_OF_LINE if degrees[i + a] == 1 else 1.0) + price[a + 1]
-        following[a], found[a] = a + 1, cubics[i + a]
-        least, misses, past, lines = share[a], 0, passes(cubics[i + a]), degrees[i + a] == 1
+        following[a] = a + 1
+        least, misses, lines = share[a], 0, degrees[i + a] == 1
+        past[:] = BEYOND * limits.em
+        for v in range(masters):
+            found[a, v] = cubics[v, i + a]
+            past[v] = max(past[v], passes(cubics[v, i + a]))
         for b in range(a + 2, n + 1):
-            least, past = min(least, share[b - 1]), max(past, passes(cubics[i + b - 1]))
+            least = min(least, share[b - 1])
+            for v in range(masters):
+                past[v] = max(past[v], passes(cubics[v, i + b - 1]))
             if least == 0.0 or misses > 1:
                 break
             lines = lines or degrees[i + b - 1] == 1
@@ -180,7 +226,10 @@ def chosen_nodes(
                 continue
             near = least * limits.tolerance
             error = between(joints, i + a, i + b, near, limits.rounds, cubic)
-            if error > near or passes(cubic) > max(beyond, past) or crosses_handles(cubic):
+            good = error <= near
+            for v in range(masters):
+                good = good and passes(cubic[v]) <= past[v] and not crosses_handles(cubic[v])
+            if not good:
                 misses += 1 if error < 2.0 * near else 2
                 continue
             misses = 0
@@ -189,7 +238,9 @@ def chosen_nodes(
                 price[a], following[a], found[a] = cost, b, cubic
     a = r = 0
     while a < n:
-        places[r], P[r] = a, found[a]
+        places[r] = a
+        for v in range(masters):
+            P[v, r] = found[a, v]
         a, r = following[a], r + 1
     places[r] = n
     return r
@@ -240,19 +291,27 @@ def as_run(
 
 
 @compiled
-def misses(run: Run, source: FloatArray, i: int, tolerance: float) -> BoolArray:
-    """(r,) which cubics of a run are not certified within the tolerance of the source (m, 4, 2).
+def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits) -> BoolArray:
+    """(r,) which cubics of a run are not certified within the tolerance of the source, in the whole design space.
 
     The run begins at joint i of the source. Every cubic is paired by itself with a stretch of the source.
+
+    Args:
+        P: (K, r, 4, 2) the cubics in all masters. run: those of one. source: (K, m, 4, 2).
     """
-    r, m = len(run.P), len(source)
-    work, marks, found = room_for(1)
-    places, bad = np.empty(r + 1), np.zeros(r, dtype=np.bool_)
+    r, m, V = len(run.P), source.shape[1], len(limits.corners)
+    chain, other, tolerance = mixed(limits.corners, P), mixed(limits.corners, source), limits.tolerance
+    work, marks, found = room_for(V)
+    places, bad, arc = np.empty(r + 1), np.zeros(r, dtype=np.bool_), np.empty(0)
+    if len(source) > 1:
+        arc = np.array([0.0, r, i, i + run.places[r]])
+        if run.closed:
+            arc[::2], arc[1::2] = -np.inf, np.inf
     for s in range(r + 1):
         here = places[s] = float(i + run.places[s])
         if run.kind[s] >= AXIS and s < r:
             low = float(i + run.places[s - 1]) if s > 0 else here - 1.0
-            places[s] = near_place(1, source, here, (low + here) / 2, (here + i + run.places[s + 1]) / 2, run.P, s)
+            places[s] = near_place(V, other, here, (low + here) / 2, (here + i + run.places[s + 1]) / 2, chain, s)
     if run.closed:
         places[r] = places[0] + m
     if places[0] < 0.0:
@@ -262,10 +321,10 @@ def misses(run: Run, source: FloatArray, i: int, tolerance: float) -> BoolArray:
             continue
         found[:] = 0.0
         pair_span(
-            1, run.P, s, 0.0, 1.0, source, places[s], places[s + 1], np.empty(0), True, tolerance, 0.02 * tolerance,
-            work, marks, found,
+            V, chain, s, 0.0, 1.0, other, places[s], places[s + 1], arc, True, tolerance, 0.02 * tolerance, work,
+            marks, found,
         )  # fmt: skip
-        bad[s] = not (found[0] <= 0.999 * tolerance and np.isfinite(run.P[s]).all())
+        bad[s] = not (found[0] <= 0.999 * tolerance and np.isfinite(P[:, s]).all())
     return bad
 
 
@@ -277,28 +336,36 @@ def fit_run(
     """The segments from joint i to joint j as fewer cubics, or with curvatures that meet; or as they are.
 
     Args:
-        start: (m,) tries of each segment that were in vain.
+        cubics: (K, m, 4, 2). upright: (K, m + 1). start: (m,) tries of each segment that were in vain.
 
     Returns:
-        (r, 4, 2) the cubics, and (r + 1,) the nodes: numbers of joints.
+        (K, r, 4, 2) the cubics, and (r + 1,) the nodes: numbers of joints.
     """
-    n = j - i
+    n, masters, em = j - i, len(cubics), limits.em
     share, tries = np.empty(n), start[i:j].copy()
-    places, P, ease = np.empty(n + 1, np.int64), np.empty((n, 4, 2)), np.ones(n + 1)
+    places, P, ease = np.empty(n + 1, np.int64), np.empty((masters, n, 4, 2)), np.ones(n + 1)
     for k in range(n):
         share[k] = SHARES[tries[k]]
         ease[k] = min(ease[k], EASE[tries[k]])
         ease[k + 1] = EASE[tries[k]]
-    before, whole = jumps_of(cubics, degrees, i, j, closed, limits.em), on_grid(cubics[i:j], degrees[i:j])
+    before, whole = 0, True
+    for v in range(masters):
+        before += jumps_of(cubics[v], degrees, i, j, closed, em)
+        whole = whole and on_grid(cubics[v, i:j], degrees[i:j])
     for _ in range(ATTEMPTS):
         r = chosen_nodes(cubics, degrees, joints, i, j, share, limits, places, P)
         if r == n and before == 0 and whole:
             break
-        run = as_run(cubics, degrees, joints, upright, i, closed, r, places, P, share, ease)
-        harmonise(run, joints, i, limits.tolerance, limits.em)
-        round_run(run, joints, i, limits.tolerance, limits.em)
-        bad = misses(run, cubics, i, limits.tolerance)
-        mark_joints(run, cubics, joints, i, limits.em, bad)
+        found, bad, jumps = np.empty((masters, r, 4, 2)), np.zeros(r, dtype=np.bool_), 0
+        for v in range(masters):
+            own = alone(joints, v)
+            run = as_run(cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], share, ease)
+            harmonise(run, own, i, limits.tolerance, em)
+            round_run(run, own, i, limits.tolerance, em)
+            mark_joints(run, cubics[v], i, em, bad)
+            found[v], jumps = run.P, jumps + jumps_in(run, em)
+        mark_turns(found, run, cubics, joints, i, limits.mixes, bad)
+        bad |= misses(found, run, cubics, i, limits)
         good = True
         for s in range(r):
             if bad[s] and not run.held[s]:
@@ -311,10 +378,10 @@ def fit_run(
         if closed:
             ease[0] = ease[n] = min(ease[0], ease[n])
         if good:
-            if r == n and whole and jumps_in(run, limits.em) >= before:
+            if r == n and whole and jumps >= before:
                 break
-            return run.P, i + run.places
-    return cubics[i:j].copy(), np.arange(i, j + 1)
+            return found, i + run.places
+    return cubics[:, i:j].copy(), np.arange(i, j + 1)
 
 
 @compiled
@@ -330,29 +397,40 @@ def on_grid(cubics: FloatArray, degrees: IntArray) -> bool:
 
 
 @compiled
-def mark_joints(run: Run, cubics: FloatArray, joints: Joints, i: int, em: float, bad: BoolArray) -> None:
-    """Mark the cubics at whose joints a rounded run turns, or its curvature jumps, more than it may."""
+def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, bad: BoolArray) -> None:
+    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may not."""
     r, m, P = len(run.P), len(cubics), run.P
     for s in range(r):
         alone = run.places[s + 1] - run.places[s] == 1
         if crosses_handles(P[s]):
             bad[s] = bad[s] or not alone or not crosses_handles(cubics[(i + run.places[s]) % m])
+    for s in range(0 if run.closed else 1, r):
+        k, a = (i + run.places[s]) % m, s - 1 if s > 0 else r - 1
+        wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + 0.02, 0.1)
+        bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
+
+
+@compiled
+def mark_turns(
+    P: FloatArray, run: Run, cubics: FloatArray, joints: Joints, i: int, mixes: FloatArray, bad: BoolArray
+) -> None:
+    """Mark the cubics (K, r, 4, 2) of a rounded run at whose joints some mix of the masters turns more than it may."""
+    r, m, M = len(run.P), cubics.shape[1], len(mixes)
+    new, old = mixed(mixes, P), mixed(mixes, cubics)
     for s in range(0, r if run.closed else r + 1):
         k = (i + run.places[s]) % m
-        old = joint_turn(cubics[k - 1 :], cubics[k:])
-        if not run.closed and s in (0, r):
-            q = 0 if s == 0 else r - 1
-            new = joint_turn(cubics[k - 1 :], P) if s == 0 else joint_turn(P[q:], cubics[k:])
-            if joints.corner[k]:
-                bad[q] = bad[q] or new < min(old, CORNER)
-            else:
-                bad[q] = bad[q] or new > max(old, KINK)
-        else:
-            a = s - 1 if s > 0 else r - 1
-            jump = end_jump(P[a], P[s], em)
-            wrong = joint_turn(P[a:], P[s:]) > max(old, KINK)
-            wrong = wrong or jump > max(end_jump(cubics[k - 1], cubics[k], em) + 0.02, 0.1)
-            bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
+        a, q = (s - 1) % r, s % r
+        left = old[(k - 1) % m * M :] if s == 0 and not run.closed else new[a * M :]
+        right = old[k * M :] if s == r else new[q * M :]
+        before, after, lost = 0.0, 0.0, False
+        for v in range(M):
+            turn, now = joint_turn(old[(k - 1) % m * M + v :], old[k * M + v :]), joint_turn(left[v:], right[v:])
+            before, after, lost = max(before, turn), max(after, now), lost or now < min(turn, CORNER)
+        wrong = lost if joints.corner[k] else after > max(before, KINK)
+        if s > 0 or run.closed:
+            bad[a] = bad[a] or wrong
+        if s < r:
+            bad[q] = bad[q] or wrong
 
 
 @compiled
@@ -377,29 +455,38 @@ def jumps_of(cubics: FloatArray, degrees: IntArray, i: int, j: int, closed: bool
 @compiled
 def fit_contour(
     cubics: FloatArray, degrees: IntArray, joints: Joints, start: IntArray, limits: Limits
-) -> tuple[FloatArray, IntArray, IntArray]:
-    """A contour that begins at a cut, if it has any.
+) -> tuple[FloatArray, IntArray, IntArray, BoolArray]:
+    """A contour (K, m, 4, 2) that begins at a cut, if it has any.
 
     Returns:
-        (r, 4, 2) its lines and cubics; (r,) their degrees; (r + 1,) the joints at which they begin and end.
+        (K, r, 4, 2) its lines and cubics; (r,) their degrees; (r + 1,) the joints at which they begin and end; (r,)
+        whether one begins inside a run.
     """
-    m, cuts, upright = len(cubics), cut_at(joints), set_upright(cubics, joints)
-    found, nodes, kinds, count = np.empty((m, 4, 2)), np.empty(m + 1, np.int64), np.empty(m, np.int64), 0
+    masters, m = cubics.shape[:2]
+    cuts, upright = cut_at(joints), np.empty((masters, m + 1), dtype=np.bool_)
+    for v in range(masters):
+        upright[v] = set_upright(cubics[v], alone(joints, v))
+    found, nodes, kinds, count = np.empty((masters, m, 4, 2)), np.empty(m + 1, np.int64), np.empty(m, np.int64), 0
+    inner = np.zeros(m, dtype=np.bool_)
     i = 0
     while i < m:
         j = i + 1
         while j < m and not cuts[j]:
             j += 1
-        closed = i == 0 and j == m and not cuts[0]
-        if j == i + 1 and not closed and (degrees[i] == 1 or on_grid(cubics[i:j], degrees[i:j])):
-            run, own = cubics[i:j], np.array([i, j])
+        closed, whole = i == 0 and j == m and not cuts[0], True
+        for v in range(masters):
+            whole = whole and on_grid(cubics[v, i:j], degrees[i:j])
+        if j == i + 1 and not closed and (degrees[i] == 1 or whole):
+            run, own = cubics[:, i:j].copy(), np.array([i, j])
         else:
             run, own = fit_run(cubics, degrees, joints, upright, i, j, closed, start, limits)
-        for s in range(len(run)):
-            found[count], nodes[count], kinds[count] = run[s], own[s], 3
+        for s in range(run.shape[1]):
+            for v in range(masters):
+                found[v, count] = run[v, s]
+            nodes[count], kinds[count], inner[count] = own[s], 3, closed or s > 0
             if own[s + 1] == own[s] + 1 and degrees[own[s]] == 1:
                 kinds[count] = 1
             count += 1
         i = j
     nodes[count] = m
-    return found[:count], kinds[:count], nodes[: count + 1]
+    return found[:, :count].copy(), kinds[:count], nodes[: count + 1], inner[:count]

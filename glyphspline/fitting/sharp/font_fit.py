@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,17 +14,17 @@ from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, r
 from ...compiled import compiled
 from ...curves.cubics import turns
 from ...curves.nearest import near_places
-from ...curves.pairing import SHARPNESS, pair_stretches
-from ...outlines.contour_arrays import ContourArrays, offsets_of
+from ...curves.pairing import SHARPNESS, pair_instances
+from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ...outlines.segments import all_cubics, farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from ..faithful import Fits
 from ..ladders import SHARP_TRIES
 from ..measures import distance_columns
 from ..options import Options
-from ..results import ConvertedContours, assembled, not_fitted
+from ..results import ConvertedContours, not_fitted
 from .corners import NO_HANDLE, find_joints
-from .font_curves import KEPT, Limits, cut_at, fit_contour
+from .font_curves import KEPT, Limits, cut_at, fit_contour, mixed
 from .font_curves import KINK as KINKED
 from .font_quadratics import fit_contour as fit_contour_quadratics
 from .settings import EFFORTS, Settings
@@ -38,118 +39,184 @@ GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
 @compiled
 def fit_contours(
     cubics: FloatArray, degrees: IntArray, offsets: IntArray, tries: IntArray, settings: Settings, limits: Limits
-) -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
-    """All contours fitted, each from its own first joint on, if that is still a node.
+) -> tuple[FloatArray, IntArray, IntArray, FloatArray, BoolArray]:
+    """All contours (K, m, 4, 2) fitted, each from its own first joint on, if that is still a node.
 
     Returns:
-        (r, 4, 2) cubics, (r,) degrees, (C + 1,) offsets; (r + C, 2) anchors as in
-        :func:`...curves.pairing.pair_stretches`.
+        (K, r, 4, 2) cubics, (r,) degrees, (C + 1,) offsets; (r + C, 2) anchors as in
+        :func:`...curves.pairing.pair_stretches`; (r,) whether a segment begins inside a run.
     """
-    most, count = len(degrees), 0
-    found, kinds, ends = np.empty((most, 4, 2)), np.empty(most, np.int64), np.zeros(len(offsets), np.int64)
-    anchors = np.empty((most + len(offsets), 2))
+    masters, most, V, count = len(cubics), len(degrees), len(limits.corners), 0
+    found, kinds, ends = np.empty((masters, most, 4, 2)), np.empty(most, np.int64), np.zeros(len(offsets), np.int64)
+    anchors, inner = np.empty((most + len(offsets), 2)), np.zeros(most, dtype=np.bool_)
     for c in range(len(offsets) - 1):
         a, b = offsets[c], offsets[c + 1]
-        m, chain, own, held = b - a, cubics[a:b], degrees[a:b], tries[a:b]
+        m, source, own, held = b - a, cubics[:, a:b].copy(), degrees[a:b], tries[a:b]
+        run, types, nodes, k, inside = source, own, np.arange(m + 1), 0, np.zeros(m, dtype=np.bool_)
         if m > 1 and (held < KEPT).any():
-            joints = find_joints(chain.reshape(1, m, 4, 2), own, settings)
-            cuts, k = cut_at(joints), 0
+            joints = find_joints(source, own, settings)
+            cuts = cut_at(joints)
             while k < m and not cuts[k]:
                 k += 1
             if k == m:
-                k = farthest_joint(chain[:, 0])
+                k = farthest_joint(source[0, :, 0])
+            chain = source
             if k > 0:
-                chain, own, held = np.concatenate((chain[k:], chain[:k])), np.roll(own, -k), np.roll(held, -k)
-                joints = find_joints(chain.reshape(1, m, 4, 2), own, settings)
-            run, types, nodes = fit_contour(chain, own, joints, held, limits)
-        else:
-            run, types, nodes, k = chain, own, np.arange(m + 1), 0
+                chain = np.concatenate((source[:, k:], source[:, :k]), axis=1)
+                own, held = np.roll(own, -k), np.roll(held, -k)
+                joints = find_joints(chain, own, settings)
+            run, types, nodes, inside = fit_contour(chain, own, joints, held, limits)
         # Back to the first joint of the source, or the next node after it.
-        r, first = len(run), 0
+        r, first = run.shape[1], 0
         while first < r and nodes[first] + k < m:
             first += 1
         for s in range(r):
             q = (first + s) % r
-            found[count + s], kinds[count + s] = run[q], 1 if types[q] == 1 else 3
+            for v in range(masters):
+                found[v, count + s] = run[v, q]
+            kinds[count + s], inner[count + s] = 1 if types[q] == 1 else 3, inside[q]
             anchors[count + c + s, 0], anchors[count + c + s, 1] = s, (nodes[q] + k) % m
         places = anchors[count + c : count + c + r, 1]
-        hints = places.copy()
-        near_places(1, cubics[a:b], hints, found[count : count + r], True, 0.0, 0.0, places)
+        hints, outline = places.copy(), mixed(limits.corners, source)
+        begins = mixed(limits.corners, found[:, count : count + r])
+        near_places(V, outline, hints, begins, True, 0.0, 0.0, places)
         for s in range(r):
-            here, p = cubics[a + int(hints[s]), 0], found[count + s, 0]
-            if here[0] == p[0] and here[1] == p[1]:  # the outline may come by here twice
+            alike = True
+            for v in range(V):
+                here, p = outline[int(hints[s]) * V + v, 0], begins[s * V + v, 0]
+                alike = alike and here[0] == p[0] and here[1] == p[1]
+            if alike:  # the outline may come by here twice
                 places[s] = hints[s]
         if places[0] < 0.0:
             places += m
         anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m
         count += r
         ends[c + 1] = count
-    return found[:count], kinds[:count], ends, anchors[: count + len(offsets) - 1]
+    return found[:, :count].copy(), kinds[:count], ends, anchors[: count + len(offsets) - 1], inner[:count]
+
+
+class FontCurve(NamedTuple):
+    """A contour as fonts store it, the same segments in K masters.
+
+    Attributes:
+        curves: in each master. inner: (r,) whether a segment begins inside a run.
+        anchors: (r + 1, 2) places on it and on its source that belong together.
+        bound: certified distance from the source, of masters in the whole design space. gap: the largest one seen; of
+            masters it is not looked for.
+    """
+
+    curves: tuple[ContourArrays, ...]
+    inner: BoolArray
+    anchors: FloatArray
+    bound: float
+    gap: float
+
+
+ONE = np.ones((1, 1))
+"""The weights of a single outline, which is its only master."""
 
 
 def font_fits(options: Options, tolerance: float, em: float) -> Fits:
     """Fits within ``tolerance``, and then closer; it and ``em`` are in font units."""
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
-        return _converted(contours, options, tolerance, SHARP_TRIES[attempt], em)
+        found = fit_for_fonts([contours], ONE, ONE, options, tolerance, SHARP_TRIES[attempt], em)
+        result = not_fitted(contours, joined([each.curves[0] for each in found]))
+        distances = distance_columns([each.gap for each in found], [each.bound for each in found], tolerance)
+        return replace(result, measures={**result.measures, **distances})
 
     return Fits(len(SHARP_TRIES), fit, keeps_crossing=True)
 
 
-def _converted(source: ContourArrays, options: Options, tolerance: float, share: float, em: float) -> ConvertedContours:
-    """Contours fitted to within a share of the tolerance; where a check finds what it does not find in the source,
-    segments stay as they are."""
+def fit_for_fonts(
+    sources: Sequence[ContourArrays], corners: FloatArray, mixes: FloatArray, options: Options, tolerance: float,
+    share: float, em: float,
+) -> list[FontCurve]:  # fmt: skip
+    """Contours in K masters fitted to within a share of the tolerance; where a check finds in a master what it does not
+    find in the source, segments stay as they are.
+
+    Args:
+        corners: (V, K) weights of the masters at the corners of the design space's grid. mixes: (M, K) those with which
+            joints are looked at.
+    """
+    source = sources[0]
     tries = np.zeros(len(source.degrees), dtype=np.int64)
-    found, anchors = _fitted(source, tries, options, tolerance, share, em)
-    parts = [(found, c) for c in range(source.num_contours)]
-    places = [anchors[a:b] for a, b in pairwise((found.curves.offsets + np.arange(len(parts) + 1)).tolist())]
-    expected = _findings(source, em)
+    found = _fitted(sources, tries, corners, mixes, options, tolerance, share, em)
+    expected = [_findings(master, em) for master in sources]
     for level in GATES:
-        wrong = _new_findings(source, expected, assembled(parts).curves, places, em)
-        outside = [c for c, (each, k) in enumerate(parts) if not each.measures["within_tolerance"][k]]
+        wrong, places = np.zeros(len(tries), dtype=np.bool_), [each.anchors for each in found]
+        for v, (master, known) in enumerate(zip(sources, expected, strict=True)):
+            wrong |= _new_findings(master, known, joined([each.curves[v] for each in found]), places, em)
+        outside = [c for c, each in enumerate(found) if not each.bound <= tolerance]
         for c in outside:
             wrong[source.offsets[c] : source.offsets[c + 1]] = True
-        which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1)
+        which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1).tolist()
         before = tries.copy()
         tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT)
-        for c in which.tolist() if level > KEPT else outside:
+        for c in which if level > KEPT else outside:
             tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
         if (tries == before).all():
             break
         mine = np.concatenate([tries[source.offsets[c] : source.offsets[c + 1]] for c in which])
-        found, anchors = _fitted(source.chosen(which), mine, options, tolerance, share, em)
-        ends = found.curves.offsets + np.arange(len(which) + 1)
-        for k, c in enumerate(which.tolist()):
-            parts[c], places[c] = (found, k), anchors[ends[k] : ends[k + 1]]
-    return assembled(parts)
+        chosen = [master.chosen(which) for master in sources]
+        again = _fitted(chosen, mine, corners, mixes, options, tolerance, share, em)
+        for c, each in zip(which, again, strict=True):
+            found[c] = each
+    return found
 
 
 def _fitted(
-    source: ContourArrays, tries: IntArray, options: Options, tolerance: float, share: float, em: float
-) -> tuple[ConvertedContours, FloatArray]:
-    """Contours fitted and certified, and which places belong together.
+    sources: Sequence[ContourArrays], tries: IntArray, corners: FloatArray, mixes: FloatArray, options: Options,
+    tolerance: float, share: float, em: float,
+) -> list[FontCurve]:  # fmt: skip
+    """Contours fitted and certified.
 
     Args:
         tries: (m,) of each segment that were in vain; ``KEPT`` keeps it.
     """
-    scale = 10.0**options.precision
+    scale, source, V = 10.0**options.precision, sources[0], len(corners)
     near = scale * share * tolerance
     settings = EFFORTS[options.effort](
         near=near, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale, c2=False,
         round_corners=False, margin=0.0, residual=0.0,
     )  # fmt: skip
-    cubics, limits = all_cubics(source), Limits(near, em * scale, settings.chain_rounds)
-    found, degrees, offsets, anchors = fit_contours(
+    cubics = np.stack([all_cubics(master) for master in sources])
+    limits = Limits(near, em * scale, settings.chain_rounds, corners, mixes)
+    found, degrees, offsets, anchors, inner = fit_contours(
         cubics * scale, source.degrees, source.offsets, tries, settings, limits
     )
-    curves = chains(found / scale, degrees, offsets)
-    written, ends = all_cubics(curves.rounded(options.precision)), offsets + np.arange(len(offsets))
-    bounds, gaps = pair_stretches(
-        written, offsets, cubics, source.offsets, anchors, ends, SHARPNESS * tolerance, tolerance
-    )
-    result, first = not_fitted(source, curves), offsets[:-1]
-    distances = np.maximum.reduceat(gaps, first).tolist(), np.maximum.reduceat(bounds, first).tolist()
-    return replace(result, measures={**result.measures, **distance_columns(*distances, tolerance)}), anchors
+    curves = [chains(each / scale, degrees, offsets) for each in found]
+    written = np.stack([all_cubics(curve.rounded(options.precision)) for curve in curves])
+    ends = offsets + np.arange(len(offsets))
+    bounds, gaps = np.full((2, len(inner)), np.nan)
+    arcs, sharpness = np.empty((0, 4)), SHARPNESS * tolerance
+    if len(sources) > 1:
+        own = [runs_of(inner[a:b], anchors[a + c : b + c + 1]) for c, (a, b) in enumerate(pairwise(offsets.tolist()))]
+        arcs, sharpness, gaps = np.concatenate(own), 0.0, np.zeros(len(inner))
+    pair_instances(
+        V, mixed(corners, written), offsets, mixed(corners, cubics), source.offsets, anchors, ends, arcs, sharpness,
+        tolerance, bounds, gaps,
+    )  # fmt: skip
+    if len(sources) > 1:
+        gaps[:] = np.nan
+    return [
+        FontCurve(
+            tuple(curve.part(c, c + 1) for curve in curves), inner[a:b], anchors[a + c : b + c + 1],
+            float(bounds[a:b].max()), float(gaps[a:b].max()),
+        )
+        for c, (a, b) in enumerate(pairwise(offsets.tolist()))
+    ]  # fmt: skip
+
+
+def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
+    """(r, 4) of each segment of a contour the places where its run begins and ends, on it and on its source."""
+    r, starts = len(inner), np.flatnonzero(~inner)
+    if not len(starts):
+        return np.tile([-np.inf, np.inf], (r, 2))
+    lap = anchors[-1] - anchors[0]
+    laps = np.concatenate([anchors[starts[-1:]] - lap, anchors[starts], anchors[starts[:1]] + lap])
+    k = np.searchsorted(starts, np.arange(r), side="right")
+    return np.stack([laps[k, 0], laps[k + 1, 0], laps[k, 1], laps[k + 1, 1]], axis=1)
 
 
 def _findings(contours: ContourArrays, em: float) -> FloatArray:

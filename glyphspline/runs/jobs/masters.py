@@ -194,6 +194,8 @@ def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
     if unknown := [name for name in given if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
+    if "ttf" in given and spec.options.is_for_fonts:
+        raise GlyphsplineError('quadratics of all masters are fitted to curves of continuity "c2"')
     if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
         check_back(font, spec)
     if axis is not None:
