@@ -21,9 +21,7 @@ from ..report import FOLDER as GALLERY
 from ..report.data import DECIMALS, glyph_text, plain, row_of
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
-from ..writers.svg.comb import curves_of
-from ..writers.svg.curvature_map import map_document
-from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data, svg_document
+from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data
 from ..writers.svg.path_data import PathData, curves_data
 from .engine import Item
 from .folder import Done, Output, Task, done
@@ -159,33 +157,11 @@ def write_files(job: Output, task: Task, glyph: Glyph) -> Done:
 def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str | bytes:
     """A glyph's file of a format.
 
-    Path data, measures and the scale of maps are made once for a batch or run, and shared by the formats named here;
-    all others are written by their own ``write``.
+    Path data, measures and the scale of maps are made once for a batch or run, and handed to the formats named here.
     """
     spec, result, source, polygons = job.spec, glyph.result, glyph.source, glyph.polygons
-    look, maps = spec.settings.look, spec.maps
-    if name == "svg":
-        return svg_document(result, glyph.path, look)
     if name == RESULTS:
         return to_text(result)
-    kind: Any = name.removeprefix("curvature-")
-    if name in ("png", "pdf"):
-        from ..writers.figures.drawings import drawing_image  # imports matplotlib
-
-        return drawing_image(result, kind, look, glyph.path.box)
-    if name == "curvature":
-        assert job.curvature_scale is not None
-        path = glyph.path
-        if maps.comb == "source":
-            path = curves_data(curves_of(result, maps.comb), result.options.precision)[0]
-        return map_document(result, path, job.curvature_scale, maps.comb, in_corners=maps.corner_teeth)
-    if name in MAPS:
-        from ..writers.figures.drawings import map_image
-
-        return map_image(result, kind, comb=maps.comb, scale=job.curvature_scale, in_corners=maps.corner_teeth)
-    if name == "source":
-        assert source is not None
-        return svg_document(result, source, look)
     if name in (POLYGON, GALLERY):
         assert source is not None
         assert polygons is not None
@@ -194,4 +170,13 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
         polygon, control = (part.text for part in polygons)
         shown = {"source": source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
         return glyph_text(shown, files, glyph.measures or ())
-    return format_named(name).write(result, spec.settings.scaled(result.outline.metrics))
+    path, box = {"path": glyph.path}, {"ink": glyph.path.box}
+    shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}
+    known = shared.get(name, {})
+    if name in MAPS:
+        known = {"maps": spec.maps, "scale": job.curvature_scale}
+        known |= path if name == "curvature" and spec.maps.comb != "source" else {}
+    settings = spec.settings if known else spec.settings.scaled(result.outline.metrics)
+    write: Any = format_named(name).write
+    made: str | bytes = write(result, settings, **known)
+    return made

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
@@ -85,13 +84,6 @@ def upright_in_columns(text: str, clusters: Sequence[int]) -> list[bool]:
 
 
 @cache
-def _upright_ranges() -> tuple[list[int], list[int]]:
-    """First and last code points of ``UPRIGHT``."""
-    ranges = [entry.split("-") for entry in UPRIGHT.split()]
-    return [int(ends[0], 16) for ends in ranges], [int(ends[-1], 16) for ends in ranges]
-
-
 def _stands(character: str) -> bool:
-    first, last = _upright_ranges()
-    k = bisect(first, ord(character)) - 1
-    return k >= 0 and ord(character) <= last[k]
+    ends = (entry.split("-") for entry in UPRIGHT.split())
+    return any(int(pair[0], 16) <= ord(character) <= int(pair[-1], 16) for pair in ends)

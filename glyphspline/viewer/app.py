@@ -37,10 +37,12 @@ from .requests import State, read_state, search
 HOST = "127.0.0.1"
 
 PACKAGES = {
-    **dict.fromkeys(("viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), "glyphspline.viewer"),
+    **dict.fromkeys(("viewer.html", "viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), __package__),
     **dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report"),
 }
 """All static files and their packages: no path of a request reaches the file system."""
+
+KINDS = {"html": "text/html", "css": "text/css", "js": "text/javascript"}
 
 FIRST = "龍龙好gSa"
 """The first of these in the font is shown first: the paper's characters, or some with curves."""
@@ -151,7 +153,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
     """
     work = Work(path, face_index)
     routes = [
-        Route("/", page),
+        Route("/", static),
         Route("/static/{name}", static),
         Route("/api/font", _answer(lambda request: font_facts(work))),
         Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
@@ -161,18 +163,12 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
     return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])
 
 
-def page(request: Request) -> Response:
-    """The page itself, the same for every font."""
-    return Response(files(__package__).joinpath("viewer.html").read_bytes(), media_type="text/html")
-
-
 def static(request: Request) -> Response:
-    """One of the page's files."""
-    name = request.path_params["name"]
+    """The page, the same for every font, or one of its files."""
+    name = request.path_params.get("name", "viewer.html")
     if name not in PACKAGES:
         return Response("no such file", status_code=404)
-    kind = "text/css" if name.endswith(".css") else "text/javascript"
-    return Response(files(PACKAGES[name]).joinpath(name).read_bytes(), media_type=kind)
+    return Response(files(PACKAGES[name]).joinpath(name).read_bytes(), media_type=KINDS[name.rpartition(".")[2]])
 
 
 def font_facts(work: Work) -> dict[str, Any]:

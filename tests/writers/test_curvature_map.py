@@ -17,7 +17,8 @@ import glyphspline as gs
 from glyphspline.curves.curvature import bowls
 from glyphspline.outlines.ink import corner_points, ink_sides
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.drawings import map_image
+from glyphspline.writers.figures.drawings import write_map
+from glyphspline.writers.settings import Maps, Settings
 from glyphspline.writers.svg.comb import (
     LONGEST,
     SIDES,
@@ -120,7 +121,7 @@ def test_the_sources_comb_is_exact_and_stands_on_the_source() -> None:
     assert classes.count("source-comb") == classes.count("outline") == 1
     assert "source" not in classes
     assert "dashed: of the source" in " ".join(legend_of(svg))
-    assert map_image(glyph, "png", comb="both") != map_image(glyph, "png")
+    assert write_map(glyph, Settings(), "png", Maps("both")) != write_map(glyph, Settings(), "png")
     with pytest.raises(gs.OptionError, match="comb is"):
         to_curvature_svg(glyph, comb="neither")  # type: ignore[arg-type]
 
@@ -261,14 +262,14 @@ def test_without_curvature_there_is_still_a_map(curves: tuple[gs.Contour, ...]) 
     svg = to_curvature_svg(glyph)
     assert strokes(svg) == {}
     assert "nan" not in svg
-    assert map_image(glyph, "png").startswith(b"\x89PNG")
+    assert write_map(glyph, Settings(), "png").startswith(b"\x89PNG")
 
 
 def test_same_input_gives_the_same_bytes() -> None:
     assert to_curvature_svg(random_glyph()) == to_curvature_svg(random_glyph())
-    assert map_image(random_glyph(), "png") == map_image(random_glyph(), "png")
-    pdf = map_image(random_glyph(), "pdf")
-    assert pdf == map_image(random_glyph(), "pdf")
+    assert write_map(random_glyph(), Settings(), "png") == write_map(random_glyph(), Settings(), "png")
+    pdf = write_map(random_glyph(), Settings(), "pdf")
+    assert pdf == write_map(random_glyph(), Settings(), "pdf")
     assert b"Date" not in pdf
 
 
@@ -278,7 +279,9 @@ def test_a_pickled_result_is_drawn_alike() -> None:
 
 
 def test_png_shows_the_comb_in_its_colours() -> None:
-    pixels = np.round(imread(io.BytesIO(map_image(disc(200, 1), "png", scale=1 / 200, vertices=False)))[..., :3] * 255)
+    pixels = np.round(
+        imread(io.BytesIO(write_map(disc(200, 1), Settings(), "png", scale=1 / 200, vertices=False)))[..., :3] * 255
+    )
     violet = np.array([int(palette()[-1][i : i + 2], 16) for i in (1, 3, 5)])
     body = pixels[100:-250]  # without the title and the colour bar, which shows every colour
     assert (np.abs(body - violet).max(axis=2) < 40).sum() > 500
@@ -296,6 +299,27 @@ def luminance(colour: str) -> float:
     channels = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
     linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
     return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def in_oklch(lightness: float, chroma: float, hue: float) -> str:
+    """An OKLCh colour (Ottosson 2020), its hue in degrees, as sRGB clipped to the gamut channel by channel."""
+    lms = [[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]]
+    rgb = [
+        [4.0767416621, -3.3077115913, 0.2309699292],
+        [-1.2684380046, 2.6097574011, -0.3413193965],
+        [-0.0041960863, -0.7034186147, 1.7076147010],
+    ]
+    lab = np.array([lightness, chroma * np.cos(np.radians(hue)), chroma * np.sin(np.radians(hue))])
+    linear = np.clip(np.array(rgb) @ (np.array(lms) @ lab) ** 3, 0, 1)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return "#" + "".join(f"{round(255 * value):02x}" for value in encoded.tolist())
+
+
+def test_colours_are_of_one_lightness_and_their_hues_follow_the_curvature() -> None:
+    strength = np.arange(-SIDES, SIDES + 1) / SIDES
+    chroma = np.where(strength == 0, 0.0, 0.06 + 0.14 * np.abs(strength))
+    hue = np.where(strength > 0, 215 + 85 * strength, 80 + 60 * strength)
+    assert [*map(in_oklch, [0.66] * len(hue), chroma.tolist(), hue.tolist())] == list(palette())
 
 
 def test_every_colour_is_seen_on_white_and_on_black() -> None:

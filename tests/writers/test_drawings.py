@@ -17,8 +17,8 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.types import FloatArray
-from glyphspline.writers.figures.drawings import drawing_image
-from glyphspline.writers.settings import Appearance
+from glyphspline.writers.figures.drawings import write_drawing
+from glyphspline.writers.settings import Appearance, Settings
 from tests.drawings import circle, result
 from tests.places import GYOSHO as FONT
 
@@ -30,7 +30,7 @@ def root_of(svg: str) -> Any:
 
 
 def pixels(look: Appearance) -> FloatArray:
-    return np.asarray(imread(io.BytesIO(drawing_image(result(DISC), "png", look))))[..., :3]
+    return np.asarray(imread(io.BytesIO(write_drawing(result(DISC), Settings(look), "png"))))[..., :3]
 
 
 def media_box(pdf: bytes) -> list[float]:
@@ -45,7 +45,7 @@ def test_a_size_is_the_height_and_the_width_is_in_proportion() -> None:
     assert (width, height) == (600, 1000)
     assert (root.attrib["width"], root.attrib["height"]) == ("12mm", "20mm")
     assert "width" not in root_of(gs.to_svg(result(DISC))).attrib
-    pdf = drawing_image(result(DISC), "pdf", Appearance(size="20mm"))
+    pdf = write_drawing(result(DISC), Settings(Appearance(size="20mm")), "pdf")
     assert media_box(pdf) == pytest.approx([0, 0, 12 / 25.4 * 72, 20 / 25.4 * 72], abs=0.01)
     assert pixels(Appearance(size="400px")).shape[:2] == (400, 240)
     assert max(pixels(Appearance(size="5000mm")).shape) <= 8000
@@ -57,7 +57,9 @@ def test_the_size_of_an_em_does_not_depend_on_the_region_shown() -> None:
         _, _, width, height = map(float, root.attrib["viewBox"].split())
         lengths = [float(root.attrib[name].removesuffix("pt")) for name in ("width", "height")]
         assert lengths == pytest.approx([width * 12 / 1000, height * 12 / 1000], abs=1e-4)
-    assert media_box(drawing_image(result(DISC), "pdf", Appearance(em="1in"))) == pytest.approx([0, 0, 43.2, 72])
+    assert media_box(write_drawing(result(DISC), Settings(Appearance(em="1in")), "pdf")) == pytest.approx(
+        [0, 0, 43.2, 72]
+    )
     with pytest.raises(gs.OptionError, match="exclude each other"):
         gs.to_svg(result(DISC), size="20mm", em="12pt")
     with pytest.raises(gs.OptionError, match="em is a length"):
@@ -70,7 +72,7 @@ def test_colours_are_those_asked_for() -> None:
     plain = root_of(gs.to_svg(result(DISC)))[-1]
     assert plain.attrib["fill"] == "currentColor"
     assert "stroke" not in plain.attrib
-    pdf = drawing_image(result(DISC), "pdf", Appearance(fill="none", stroke="#f00"))
+    pdf = write_drawing(result(DISC), Settings(Appearance(fill="none", stroke="#f00")), "pdf")
     (content,) = (zlib.decompress(part) for part in re.findall(rb"stream\n(.*?)\nendstream", pdf, re.DOTALL)[:1])
     assert b"1 0 0 RG" in content
 
@@ -82,7 +84,7 @@ def test_a_png_is_the_glyph_as_drawn() -> None:
     np.testing.assert_allclose(drawn[4, 4], 1)
     assert (drawn < 0.99).any(axis=2).mean() == pytest.approx(np.pi / 4, abs=0.02)
     assert (np.ptp(drawn.reshape(-1, 3), axis=0) > 0.4).all(), "no comb, no legend: ink and paper"
-    assert drawing_image(result(DISC), "pdf") == drawing_image(result(DISC), "pdf")
+    assert write_drawing(result(DISC), Settings(), "pdf") == write_drawing(result(DISC), Settings(), "pdf")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...fitting.results import GlyphResult
 from ...types import FloatArray
-from ..settings import CURRENT, PLAIN, PLAIN_MAPS, Appearance, Combs, ImageKind, Maps, Settings
+from ..settings import CURRENT, PLAIN_MAPS, Combs, ImageKind, Maps, Settings
 from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, legend, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
@@ -22,25 +22,15 @@ LARGEST = 8000.0
 """Maximum width and height of a PNG in pixels; a larger one has fewer an inch."""
 
 
-def write_drawing(result: GlyphResult, settings: Settings, kind: ImageKind) -> bytes:
-    """The file of a result's drawing."""
-    return drawing_image(result, kind, settings.look)
-
-
-def write_map(result: GlyphResult, settings: Settings, kind: ImageKind, maps: Maps = PLAIN_MAPS) -> bytes:
-    """The file of a result's curvature map."""
-    scale = maps.scale_for(result.outline.metrics.units_per_em)
-    return map_image(result, kind, comb=maps.comb, scale=scale, in_corners=maps.corner_teeth)
-
-
-def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN, ink: Box | None = None) -> bytes:
+def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: Box | None = None) -> bytes:
     """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
 
     Args:
         glyph: a result of :func:`glyphspline.convert`. kind: of the file.
-        look: without a size the drawing is 6 inches high; "currentColor" is black.
+        settings: without a size the drawing is 6 inches high; "currentColor" is black.
         ink: the box around the glyph's curves, if it is known.
     """
+    look = settings.look
     outline = glyph.outline
     left, bottom, right, top = shown_box(
         em_box(outline), ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
@@ -61,19 +51,20 @@ def drawing_image(glyph: GlyphResult, kind: ImageKind, look: Appearance = PLAIN,
     return saved(figure, kind, min(dpi, LARGEST / (inches * max(1.0, width / height))))
 
 
-def map_image(
+def write_map(
     glyph: GlyphResult,
+    settings: Settings,
     kind: ImageKind,
-    *,
-    comb: Combs = "result",
+    maps: Maps = PLAIN_MAPS,
     scale: float | None = None,
+    *,
     vertices: bool = True,
-    in_corners: bool = False,
 ) -> bytes:
-    """The curvature map as a PNG on white, or as a one-page PDF; the others as for :func:`to_curvature_svg`."""
-    scale = curvature_scale([glyph]) if scale is None else scale
+    """The curvature map as a PNG on white, or as a one-page PDF; see :func:`..svg.curvature_map.write_map`."""
+    if scale is None:
+        scale = maps.scale_for(glyph.outline.metrics.units_per_em) or curvature_scale([glyph])
     figure = blank(SIZE, SIZE, layout="constrained")
-    draw_map(figure.add_subplot(), glyph, comb, scale, vertices, in_corners)
+    draw_map(figure.add_subplot(), glyph, maps.comb, scale, vertices, maps.corner_teeth)
     return saved(figure, kind)
 
 

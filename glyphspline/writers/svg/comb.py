@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -32,6 +31,12 @@ NEAR = 1 / 40
 
 SOURCE = "#e8590c"
 """Colour of the line through the tips of the source's comb in a map of both."""
+
+COLOURS = (
+    "#f44f5d #ec5d4e #e26945 #d77342 #ca7c45 #be844e #b18a5a #929292 "
+    "#599cb8 #539ac9 #5796d9 #658fe7 #7986f2 #8f7bf8 #a76ef8"
+)
+"""Of the classes, in their order; see :func:`palette`."""
 
 SIDES = 7
 """Colour classes on each side of zero. More cannot be distinguished on thin teeth, and each adds a path."""
@@ -156,30 +161,11 @@ def colour_classes(relative: FloatArray) -> IntArray:
     return np.clip(np.rint(relative * SIDES), -SIDES, SIDES).astype(np.int64)
 
 
-@cache
 def palette() -> list[str]:
     """The colours "#rrggbb" of the classes, from the most concave ink to the most convex; 0 is grey.
 
     Their OKLCh lightness is 0.66: contrast of about 3:1 with white and 6:1 with black, so both themes can show them.
-    Hues run from green-blue to violet where the ink is convex, from yellow to red where it is concave.
+    Chroma grows from 0.06 to 0.2. Hues run from green-blue (215°) to violet (300°) where the ink is convex, from yellow
+    (80°) to red (20°) where it is concave.
     """
-    found = []
-    for index in range(-SIDES, SIDES + 1):
-        strength = abs(index) / SIDES
-        chroma = 0.06 + 0.14 * strength if index else 0.0
-        found.append(_oklch(0.66, chroma, 215.0 + 85.0 * strength if index > 0 else 80.0 - 60.0 * strength))
-    return found
-
-
-def _oklch(lightness: float, chroma: float, hue: float) -> str:
-    """An OKLCh colour (Ottosson 2020), its hue in degrees, as sRGB clipped to the gamut channel by channel."""
-    lms = [[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]]
-    rgb = [
-        [4.0767416621, -3.3077115913, 0.2309699292],
-        [-1.2684380046, 2.6097574011, -0.3413193965],
-        [-0.0041960863, -0.7034186147, 1.7076147010],
-    ]
-    lab = np.array([lightness, chroma * np.cos(np.radians(hue)), chroma * np.sin(np.radians(hue))])
-    linear = np.clip(np.array(rgb) @ (np.array(lms) @ lab) ** 3, 0, 1)
-    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return "#" + "".join(f"{round(255 * value):02x}" for value in encoded.tolist())
+    return COLOURS.split()

@@ -6,6 +6,7 @@ from functools import cache, lru_cache
 from itertools import pairwise
 from math import floor
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 
@@ -78,37 +79,39 @@ def to_curvature_svg(
         True
     """
     scale = curvature_scale([glyph]) if scale is None else scale
-    path = curves_data(curves_of(glyph, shown_by(comb)), glyph.options.precision)[0]
-    return map_document(
-        glyph, path, scale, comb, vertices=vertices, control_polygon=control_polygon, in_corners=in_corners
-    ).decode()
+    how: dict[str, Any] = {"vertices": vertices, "control_polygon": control_polygon, "in_corners": in_corners}
+    return map_document(glyph, scale, comb, **how).decode()
 
 
-def write_map(result: GlyphResult, settings: Settings, maps: Maps = PLAIN_MAPS) -> bytes:
-    """The file of a result."""
-    scale = maps.scale_for(result.outline.metrics.units_per_em) or curvature_scale([result])
-    path = curves_data(curves_of(result, shown_by(maps.comb)), result.options.precision)[0]
-    return map_document(result, path, scale, maps.comb, in_corners=maps.corner_teeth, words=settings.title)
+def write_map(
+    result: GlyphResult,
+    settings: Settings,
+    maps: Maps = PLAIN_MAPS,
+    scale: float | None = None,
+    path: PathData | None = None,
+) -> bytes:
+    """The file of a result; ``scale`` and the path of the curves under the comb, if they are known."""
+    if scale is None:
+        scale = maps.scale_for(result.outline.metrics.units_per_em) or curvature_scale([result])
+    return map_document(result, scale, maps.comb, path, in_corners=maps.corner_teeth, words=settings.title)
 
 
 def map_document(
     glyph: GlyphResult,
-    path: PathData,
     scale: float,
     combs: Combs = "result",
+    path: PathData | None = None,
     *,
     vertices: bool = True,
     control_polygon: bool = False,
     in_corners: bool = False,
     words: str | None = None,
 ) -> bytes:
-    """The document of :func:`to_curvature_svg` in UTF-8, from the path data of the curves under the comb.
-
-    ``words``: what the title names instead of the glyph.
-    """
+    """The document of :func:`to_curvature_svg` in UTF-8; ``words``: what the title names instead of the glyph."""
     outline, arrays, whose = glyph.outline, glyph.arrays, shown_by(combs)
     em = outline.metrics.units_per_em
     precision = comb_precision(em)
+    path = path or curves_data(curves_of(glyph, whose), glyph.options.precision)[0]
     layers, box, cut = _comb(glyph, scale, combs, in_corners, precision)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"

@@ -14,7 +14,7 @@ from ...errors import require_choice
 from ...fitting.results import GlyphResult, end_to_end
 from ...outlines.contour_arrays import joined, offsets_of
 from ...outlines.outline import FontMetrics, Outline
-from ..settings import CURRENT, PLAIN, VIEW_BOXES, Appearance, Settings, ViewBox
+from ..settings import CURRENT, VIEW_BOXES, Appearance, Settings, ViewBox
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -69,27 +69,23 @@ def to_svg(
     return write_svg(glyph, Settings(look)).decode()
 
 
-def write_svg(result: GlyphResult, settings: Settings) -> bytes:
-    """The file of a result."""
-    path = curves_data(result.arrays.curves, result.options.precision)[0]
-    return svg_document(result, path, settings.look, settings.title)
-
-
-def write_source(result: GlyphResult, settings: Settings) -> bytes:
-    """The file of the outline that a result was made of."""
-    return svg_document(result, source_data([result])[0], settings.look, settings.title)
-
-
-def svg_document(glyph: GlyphResult, path: PathData, look: Appearance = PLAIN, words: str | None = None) -> bytes:
-    """The document of :func:`to_svg` in UTF-8, from the path data of the glyph's curves; ``words`` are its title."""
-    outline, precision = glyph.outline, glyph.options.precision
+def write_svg(result: GlyphResult, settings: Settings, path: PathData | None = None) -> bytes:
+    """The document of :func:`to_svg` in UTF-8; ``path`` is that of the curves, if it is known."""
+    outline, precision, look = result.outline, result.options.precision, settings.look
+    path = path or curves_data(result.arrays.curves, precision)[0]
     em = outline.metrics.units_per_em
     box = shown_box(em_box(outline), path.box, look.view_box)
     prefix = id_prefix(outline.name, outline.gid)
     value, shape = shown_as(box, look, em, precision)
-    begin = head(value, f"{prefix}-title", title(outline, words), data_attributes(outline, precision), shape)
+    name = title(outline, settings.title)
+    begin = head(value, f"{prefix}-title", name, data_attributes(outline, precision), shape)
     paint = painting(look, em, float(value.split()[3]))
     return document([begin, f'<path id="{prefix}-outline" {paint} d="{path.text}"/>\n</svg>\n'])
+
+
+def write_source(result: GlyphResult, settings: Settings, path: PathData | None = None) -> bytes:
+    """The file of the outline that a result was made of."""
+    return write_svg(result, settings, path or source_data([result])[0])
 
 
 def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str, str]:
